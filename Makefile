@@ -49,8 +49,9 @@ chaos:  ## kill, freeze and fail processes of missions, and print what became of
 plug:  ## measure what changes and what happens while a mission runs
 	$(BIN)/python -m tests.plug
 
-hostile:  ## play hostile documents in lint, pushes and missions, and print what they were kept from
+hostile:  ## play hostile documents and strangers on the bus, and print what they were kept from
 	$(BIN)/python -m tests.hostile --times 50
+	$(BIN)/python -m tests.hostile.bus
 
 newcomer:  ## run README's two commands in a fresh clone, an empty home and without a compiler
 	tests/newcomer.sh

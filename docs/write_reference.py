@@ -23,7 +23,7 @@ from aos_deploy.schemas import SCHEMAS
 from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
-from aos_protocol import errors, keys
+from aos_protocol import access, errors, keys
 from aos_protocol.messages import base, bundles, mission, records, skills, study
 
 DOCS = Path(__file__).resolve().parent
@@ -111,6 +111,23 @@ def operation_table() -> str:
     return "\n".join(lines) + "\n"
 
 
+# --- access --------------------------------------------------------------------------------------------
+
+
+def access_table() -> str:
+    """The table of who may do what, a line for each key; what nobody may is left empty."""
+    heads = " | ".join(access.ACTS)
+    lines = [f"| Key | {heads} |", f"| --- |{' --- |' * len(access.ACTS)}"]
+    for row in access.TABLE:
+        cells = [_roles(getattr(row, act)) for act in access.ACTS]
+        lines.append(f"| `{row.key}` | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _roles(roles: tuple[str, ...]) -> str:
+    return "all" if roles == access.ROLES else ", ".join(roles)
+
+
 # --- messages ------------------------------------------------------------------------------------------
 
 
@@ -184,6 +201,7 @@ def with_generated_parts(current: str) -> str:
     parts = {
         "http": operation_table,
         "keys": key_table,
+        "access": access_table,
         "messages": message_sections,
         "limits": limits_table,
         "words": words_tables,

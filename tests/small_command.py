@@ -8,9 +8,11 @@ import os
 import socket
 import sys
 import threading
+from pathlib import Path
 
 import zenoh
 
+password = Path(os.environ["AOS_PASSWORD_FILE"]).read_text().strip()
 host, port = os.environ["AOS_ENDPOINT"].removeprefix("tcp/").rsplit(":", 1)
 try:
     socket.create_connection((host, int(port))).close()
@@ -20,10 +22,13 @@ settings = {
     "mode": "client",
     "connect": {"endpoints": [os.environ["AOS_ENDPOINT"]]},
     "scouting": {"multicast": {"enabled": False}},
-    "transport": {"shared_memory": {"enabled": False}},
+    "transport": {
+        "shared_memory": {"enabled": False},
+        "auth": {"usrpwd": {"user": os.environ["AOS_USER"], "password": password}},
+    },
 }
 with zenoh.open(zenoh.Config.from_json5(json.dumps(settings))) as session:
-    name = sys.argv[1] if len(sys.argv) > 1 else os.environ["AOS_ADAPTER"]
+    name = os.environ["AOS_ADAPTER"]
     key = f"aos/{os.environ['AOS_ROBOT']}/serve/{name}/1/{session.zid()}/sense"
     token = session.liveliness().declare_token(key)
     threading.Event().wait()

@@ -84,7 +84,7 @@ _KINDS = {
     ),
     "class": Kind(value="class", options=None),
     COMMAND: Kind(value="command", options=("host", "folder")),
-    EXTERNAL: Kind(value="note"),
+    EXTERNAL: Kind(value="note", options=("credential",)),
 }
 
 

@@ -74,7 +74,12 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
             f"  robot: {{command: [python, {program}]}}",
         ]
     elif kind == "external":
-        lines += ["adapters:", "  robot: external"]
+        lines += [
+            "bus: {listen: tcp/127.0.0.1:7447}    # where the program finds it, run after run",
+            "# The file has the program's password; aos-up makes it once.",
+            "adapters:",
+            "  robot: {external: '', credential: robot.password}",
+        ]
     elif kind == "class":
         lines += [
             "# In the robot's own Python, with the package aos-adapter:",
@@ -85,11 +90,6 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
     elif kind in ROS_KINDS:
         value, meaning = ROS_KINDS[kind]
         lines += [
-            *(
-                ["bus: {listen: tcp/127.0.0.1:7448}    # 7447 is the router of ROS 2"]
-                if kind == "ros2"
-                else []
-            ),
             f"# Every option: in the sources of AOS, docs/adapters/{kind}.md.",
             "adapters:",
             "  robot:",

@@ -13,6 +13,7 @@ from aos_deploy.remote import HOST
 from aos_deploy.typed import known_names, plain_value
 from aos_deploy.yaml_source import YamlMap, YamlNode, YamlScalar
 from aos_language.findings import Findings
+from aos_protocol.access import ADAPTER, OPERATOR, WATCHER, Party
 from aos_protocol.diagnostics import Span
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
@@ -23,8 +24,8 @@ EVERYTHING_ELSE = "*"
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
-TAKEN = ("router", "registry", "middleware", "solver", "aos-up")
-"""The names of our own processes."""
+TAKEN = ("router", "registry", "middleware", "solver", "aos-up", OPERATOR, WATCHER)
+"""The names of our own processes, and of those who command and look on."""
 _BINDING_KEYS = ("fields", "result")
 
 
@@ -38,6 +39,17 @@ class AdapterPlan(msgspec.Struct, frozen=True, kw_only=True):
     bind: dict[str, Binding] = {}
     serves_others: bool = False
     elsewhere: tuple[str, ...] = ()
+
+    @property
+    def party(self) -> Party:
+        """The adapter as the bus knows it."""
+        return Party(
+            name=self.name,
+            role=ADAPTER,
+            paths=tuple(self.bind),
+            serves_others=self.serves_others,
+            elsewhere=self.elsewhere,
+        )
 
     @property
     def is_process(self) -> bool:
@@ -89,6 +101,7 @@ def played_by_model(faults: Mapping[str, float] | None = None) -> tuple[AdapterP
     return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=kind, options=options, serves_others=True),)
 
 
+_HOW_TO_SHARE = "Write it as {external: '', credential: FILE}; the adapter reads its password there"
 _HOW_TO_NAME = "Write it as adapters: {NAME: {command: [PROGRAM, ARGUMENT]}}, and bind paths to NAME"
 
 
@@ -141,6 +154,10 @@ def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> Adapter
             findings.error("AOS106", f"adapters.{name}.command is not a list of texts", where, _HOW_TO_NAME)
             return None
         _check_host(name, options, where, findings)
+    credential = options.get("credential")
+    if chosen[0] == EXTERNAL and "credential" in options and not (isinstance(credential, str) and credential):
+        findings.error("AOS106", f"adapters.{name}.credential is no file", where, _HOW_TO_SHARE)
+        return None
     if chosen[0] == "class":
         kind = msgspec.structs.replace(kind, adapter=str(options.pop("class", "")))
     return AdapterPlan(name=name, kind_name=chosen[0], kind=kind, options=options)

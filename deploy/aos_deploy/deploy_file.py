@@ -51,9 +51,12 @@ _ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):\d{1,5}")
 
 
 class BusPart(msgspec.Struct, frozen=True, kw_only=True):
-    """The address at which the router listens; port 0 takes any free one."""
+    """The address at which the router listens: without one, a socket in the run directory.
 
-    listen: str = "tcp/127.0.0.1:7447"
+    Port 0 takes any free one.
+    """
+
+    listen: str = ""
 
 
 class ConstraintPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -230,7 +233,7 @@ def check_endpoint(endpoint: str) -> None:
         raise DeployError(
             f"{endpoint!r} is not an endpoint of this machine",
             code="AOS801",
-            hint="Write it as tcp/127.0.0.1:7447, with port 0 for any free one",
+            hint="Write it as tcp/127.0.0.1:7447, with port 0 for any free one, or leave it out",
         )
 
 
@@ -242,7 +245,8 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
             hint = "Use letters, digits, - and _"
             findings.error("AOS106", f"{name!r} is not a {key} name", _place(node, key), hint)
     try:
-        check_endpoint(file.bus.listen)
+        if file.bus.listen:
+            check_endpoint(file.bus.listen)
     except DeployError as error:
         findings.error("AOS106", error.message, _place(node, "bus", "listen"), error.hint)
     if file.solver.simulations is not None and file.solver.time_s is not None:

@@ -21,10 +21,15 @@ _ATTEMPTS = 100
 def hold_endpoint(endpoint: str) -> Iterator[str]:
     """Keeps an endpoint for this process until the block ends; gives it with a free port in place of port 0.
 
+    An empty one stands for a socket in the run directory, which nobody else can take.
+
     Two starts that only look whether a port is free may both find it so, and then the services of one meet
     the router of the other. So a start first takes a name that the kernel gives to one process at a time, and
     takes back however that process ends. BusError AOS802 if another start has it, or any program listens.
     """
+    if not endpoint:
+        yield ""
+        return
     address, _, port = endpoint.rpartition(":")
     with socket.socket(socket.AF_UNIX) as name:
         if port != "0":

@@ -6,6 +6,7 @@ import asyncio
 import os
 import signal
 from collections.abc import Callable
+from contextlib import aclosing
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -20,10 +21,10 @@ from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.living_runs import noted
 from aos_deploy.page_address import page_address
 from aos_deploy.printing import from_here
-from aos_deploy.program import programs_of_deployment
+from aos_deploy.program import outsiders_of, programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
-from aos_deploy.run_end import beginning_of, settled
+from aos_deploy.run_end import account_of, beginning_of, settled
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp
 from aos_deploy.verdict import Account, Verdict
@@ -60,6 +61,7 @@ class MissionRun:
 
     stays = False
     """True where the system goes on after a mission."""
+    _run: RunDirectory
 
     def __init__(
         self,
@@ -100,7 +102,8 @@ class MissionRun:
             return await self._run_at(endpoint)
 
     async def _run_at(self, endpoint: str) -> Summary:
-        run = self._run_directory()
+        run = self._run = self._run_directory()
+        endpoint = endpoint or run.make_endpoint()
         self._report(Told(f"run directory {from_here(run.path)}"))
         if not sandbox_support().is_whole:
             self._report(Told(sandbox_text()))
@@ -152,7 +155,10 @@ class MissionRun:
             run.forget_fault(program.name)
         await asyncio.to_thread(check_mission_of, deployment)
         try:
-            async with supervised(programs, base, run, self._hear, self._clock) as supervisor:
+            outsiders = outsiders_of(deployment)
+            async with supervised(
+                programs, base, run, self._hear, self._clock, outsiders=outsiders
+            ) as supervisor:
                 self._supervisor = supervisor
                 await supervisor.start()
                 self._write_record(run, endpoint, supervisor)
@@ -241,15 +247,32 @@ class MissionRun:
 
     async def _follow_mission(self, supervisor: Supervisor) -> None:
         client = AosClient(supervisor.bus, self._deployment.file.robot)
-        async for event in client.follow(away_s=None, stays=self.stays):
-            if isinstance(event, BundleReport) and event.source in self._own_pushes:
-                # Told already, with the way to the files; another push of the same is news.
-                self._own_pushes.remove(event.source)
-                continue
-            self._take(event)
-            self._report(event)
-            if isinstance(event, MissionState) and event.phase == "ended":
-                self._take_end(event)
+        # It goes on after any word of an end: whether that is one, the journal says.
+        async with aclosing(client.follow(away_s=None, stays=True)) as events:
+            async for event in events:
+                if isinstance(event, BundleReport) and event.source in self._own_pushes:
+                    # Told already, with the way to the files; another push of the same is news.
+                    self._own_pushes.remove(event.source)
+                    continue
+                end = event if isinstance(event, MissionState) and event.phase == "ended" else None
+                if end is not None and not await asyncio.to_thread(self._has_journaled, end):
+                    what = f"{end.mission} has ended, {end.ending}"
+                    self._report(Told(f"not believed: {what}; its journal says that it goes on"))
+                    continue
+                self._take(event)
+                self._report(event)
+                if end is not None:
+                    self._take_end(end)
+                    if not self.stays:
+                        return
+
+    def _has_journaled(self, state: MissionState) -> bool:
+        """Says whether the journal has the end that somebody tells. One that cannot be read says nothing."""
+        try:
+            account = account_of(self._run.path)
+        except StorageError:
+            return True
+        return account.has_ended
 
     def _take_end(self, state: MissionState) -> None:
         """Does nothing: the run ends with its mission, and is settled when all processes are gone."""

@@ -9,23 +9,32 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.passes import Passes
 from aos_deploy.program import Program, settings_of
 from aos_deploy.remote import check_ssh, remote_command
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import DeployError
 from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.credentials import PASSWORD_FILE_VARIABLE, USER_VARIABLE
 from aos_runtime.failpoints import reach
 from aos_runtime.service_settings import ServiceSettings
 
-__all__ = ["check_command", "start_process"]
+__all__ = ["ROUTER_MODULE", "check_command", "start_process"]
+
+ROUTER_MODULE = "aos_runtime.router"
 
 
-async def start_process(program: Program, base: ServiceSettings, run: RunDirectory) -> Child:
-    """The process. `base` says robot, endpoint, run directory. DeployError AOS802 if it cannot be started."""
+async def start_process(program: Program, base: ServiceSettings, run: RunDirectory, passes: Passes) -> Child:
+    """The process. `base` says robot, endpoint, run directory, and `passes` has its credential.
+
+    DeployError AOS802 if it cannot be started.
+    """
     reach("up.start.before")
-    own = msgspec.structs.replace(base, service=program.name)
+    password = "" if program.module == ROUTER_MODULE else str(passes.file(program.user))
+    own = msgspec.structs.replace(base, service=program.name, password_file=password)
     settings = run.write_settings(program.name, settings_of(program, own))
     environment = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}
+    environment |= {USER_VARIABLE: program.user, PASSWORD_FILE_VARIABLE: password}
     if not program.is_own:
         environment |= {"AOS_SETTINGS": str(settings), "AOS_ADAPTER": program.name}
     with run.open_log(program.name) as log:
@@ -33,13 +42,16 @@ async def start_process(program: Program, base: ServiceSettings, run: RunDirecto
             check_ssh(program.name, program.host)
             command = remote_command(program, base.endpoint, environment, settings)
             # Its input stays open: when that ends, so does the program over there.
-            return await Child.start(
+            child = await Child.start(
                 guarded(command, Limits(grace_s=program.stop_s)),
                 name=program.name,
                 stdin=PIPE,
                 stdout=log,
                 stderr=log,
             )
+            # Command lines can be read by everybody on a machine, what goes through a pipe cannot.
+            child.stdin.write(f"{passes.credential(program.user).password}\n".encode())
+            return child
         return await Child.start(
             program.argv(settings),
             name=program.name,

@@ -13,10 +13,12 @@ from aos_deploy.adapter_kinds import MODEL
 from aos_deploy.adapters import AdapterPlan
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.own_programs import ProgramPart, ReadyPart
+from aos_deploy.passes import Outsider
+from aos_protocol.access import ADAPTER, ROLES, SERVER, WATCHER, Party
 from aos_runtime.children import Limits, guarded
 from aos_runtime.service_settings import ServiceSettings
 
-__all__ = ["Program", "cache_dir", "programs_of_deployment", "settings_of", "words_of"]
+__all__ = ["Program", "cache_dir", "outsiders_of", "programs_of_deployment", "settings_of", "words_of"]
 
 
 class Program(msgspec.Struct, frozen=True, kw_only=True):
@@ -52,6 +54,26 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     def is_own(self) -> bool:
         """True if it is one of the deploy file's `programs:`."""
         return bool(self.on_exit)
+
+    @property
+    def party(self) -> Party | None:
+        """Its place on the bus; None for a program of the user's, which looks on like others."""
+        if self.is_own:
+            return None
+        if not self.is_adapter:
+            return Party(name=self.name, role=self.name if self.name in ROLES else SERVER)
+        return Party(
+            name=self.name,
+            role=ADAPTER,
+            paths=self.paths,
+            serves_others=self.settings.get("serves_others", False),
+            elsewhere=tuple(self.settings.get("elsewhere", ())),
+        )
+
+    @property
+    def user(self) -> str:
+        """Its name on the bus."""
+        return WATCHER if self.is_own else self.name
 
     @property
     def ending_s(self) -> float:
@@ -97,6 +119,16 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
             stop_s=5.0,
             is_restarted=True,
         ),
+    )
+
+
+def outsiders_of(deployment: Deployment) -> tuple[Outsider, ...]:
+    """The adapters that somebody else starts, with the files that the deploy file names for them."""
+    folder = deployment.path.parent
+    return tuple(
+        Outsider(plan.party, folder / plan.options["credential"] if plan.options.get("credential") else None)
+        for plan in deployment.adapters
+        if not plan.is_process
     )
 
 

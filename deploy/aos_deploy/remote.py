@@ -38,14 +38,17 @@ _OPTIONS = (
 # It ends the program when its own input ends, that is with the connection, however that ends.
 _SCRIPT = """\
 exec 3<&0
+IFS= read -r password <&3
 cd {folder} || exit {not_found}
 command -v {program} >/dev/null || {{
     echo "there is no program "{program}" in $(pwd) or on the PATH" >&2
     exit {not_found}
 }}
-AOS_SETTINGS=$(mktemp) && printf %s {settings} >"$AOS_SETTINGS" || exit 1
-trap 'rm -f "$AOS_SETTINGS"' EXIT
-export AOS_SETTINGS {environment}
+AOS_SETTINGS=$(mktemp) && AOS_PASSWORD_FILE=$(mktemp) || exit 1
+trap 'rm -f "$AOS_SETTINGS" "$AOS_PASSWORD_FILE"' EXIT
+printf %s {settings} >"$AOS_SETTINGS" && printf '%s\\n' "$password" >"$AOS_PASSWORD_FILE" || exit 1
+password=
+export AOS_SETTINGS AOS_PASSWORD_FILE {environment}
 own_group=; target=; command -v setsid >/dev/null && {{ own_group=setsid; target=-; }}
 $own_group {command} </dev/null 3<&- & program=$!
 {{
@@ -79,13 +82,14 @@ def check_ssh(adapter: str, host: str) -> None:
 def remote_command(
     program: Program, endpoint: str, variables: Mapping[str, str], settings: Path
 ) -> list[str]:
-    """The ssh that runs a program on its host until its input ends.
+    """The ssh that runs a program on its host until its input ends. Its first line is the password.
 
-    The command finds `variables`, with the bus's port on its own side, and the settings in a file.
+    The command finds `variables`, with the bus's port on its own side, settings and password in files.
     """
     port = random.SystemRandom().randrange(*_PORTS)
     environment = {**variables, "AOS_ENDPOINT": f"tcp/127.0.0.1:{port}"}
-    environment.pop("AOS_SETTINGS", None)
+    for file in ("AOS_SETTINGS", "AOS_PASSWORD_FILE"):
+        environment.pop(file, None)
     first, *arguments = program.command
     first = "python3" if first == "python" else first
     script = _SCRIPT.format(

@@ -11,7 +11,7 @@ from aos_protocol.messages import DecisionRecord
 
 __all__ = ["Difference", "difference"]
 
-_OF_THE_PLACE = ("robot", "service", "endpoint", "run_dir", "cache_dir", "policy")
+_OF_THE_PLACE = ("robot", "service", "endpoint", "password_file", "run_dir", "cache_dir", "policy")
 """Settings that say where a run was and not how it decided."""
 
 

@@ -4,7 +4,9 @@ runs/20260105T101500Z-armadillo/
   run.json         what runs here: endpoint, robot, deploy file, seed, process ids
   deploy.json      the deploy file, with what it leaves to defaults
   solver.policy    the policy file, where decisions come from one
+  bus              the socket of the bus, where the path is short enough for one
   settings/        what each service was started with
+  credentials/     the passwords for the bus, one file for each who may be on it
   logs/            what each service said
   faults/          why a service ended, if it ended by a fault
   journal.db       the mission: decisions and outcomes
@@ -25,6 +27,7 @@ from typing import Any, BinaryIO
 
 import msgspec
 
+from aos_deploy.bus_socket import place_of_socket, remove_socket
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_runtime.failpoints import reach
@@ -37,9 +40,14 @@ LATEST = "latest"
 """The link to the newest run, in the folder of runs."""
 
 
+_ANEW = ("endpoint", "password_file", "dictionary", "parties", "ros2")
+"""The settings that a run which goes on does not keep."""
+
+
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents, and
-    `sandbox` what confines the documents' code. `version` is that of AOS."""
+    `sandbox` what confines the documents' code. `version` is that of AOS. Nodes of ROS 2 meet at `ros2`,
+    where a run serves them."""
 
     robot: str
     endpoint: str
@@ -51,6 +59,7 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     is_played: bool = False
     sandbox: str = ""
     version: str = ""
+    ros2: str = ""
 
 
 class ProcessEnd(msgspec.Struct, frozen=True):
@@ -109,6 +118,7 @@ class RunDirectory:
         self.keeps_settings = False
         """True where services have the settings that they had when the run was started."""
         self._lock: int | None = None
+        self._socket: Path | None = None
 
     @classmethod
     def create(cls, runs: Path, robot: str, now_ns: int) -> RunDirectory:
@@ -116,7 +126,7 @@ class RunDirectory:
         stamp = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
         try:
             path = _made(runs, f"{stamp}-{robot}")
-            for folder in ("settings", "logs", "faults"):
+            for folder in ("settings", "credentials", "logs", "faults"):
                 (path / folder).mkdir(mode=0o700)
             created = cls(path)
             created._lock = _locked(path, fcntl.LOCK_EX)
@@ -138,9 +148,27 @@ class RunDirectory:
 
     def close(self) -> None:
         """The run is over. A process that is killed lets go of the lock as well."""
+        if self._socket is not None:
+            remove_socket(self._socket)
+            self._socket = None
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
+
+    def make_endpoint(self) -> str:
+        """The endpoint of a socket that nobody else can reach; DeployError AOS805 if it has no place.
+
+        What it needs is removed by `close`.
+        """
+        try:
+            self._socket = place_of_socket(self.path)
+        except OSError as error:
+            raise DeployError(
+                f"the bus has no place: {error.strerror}",
+                code="AOS805",
+                hint="Name a folder with a shorter path with --runs",
+            ) from error
+        return f"unixsock-stream/{self._socket}"
 
     @classmethod
     def latest(cls, runs: Path) -> RunDirectory:
@@ -154,11 +182,15 @@ class RunDirectory:
         return cls((runs / LATEST).resolve())
 
     def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
-        """Writes the settings of a service, and returns their path; StorageError AOS701 if that cannot be."""
+        """Writes the settings of a service, and returns their path; StorageError AOS701 if that cannot be.
+
+        In a run that goes on a service keeps its settings, but for where the bus is and who it is there.
+        """
         path = self.path / "settings" / f"{service}.json"
-        if self.keeps_settings and path.exists():
-            return path
         with _kept(path):
+            if self.keeps_settings and path.exists():
+                before = msgspec.json.decode(path.read_bytes())
+                settings = before | {name: settings[name] for name in _ANEW if name in settings}
             _write_privately(path, _pretty(settings))
         return path
 

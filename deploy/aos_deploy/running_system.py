@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, get_type_hints
 
 from aos_deploy.living_runs import living_run
 from aos_deploy.options import Connect, Robot, Run, Runs
+from aos_protocol.access import OPERATOR
 from aos_protocol.errors import DeployError
+from aos_runtime.credentials import credential_of_run
 
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
@@ -34,19 +36,24 @@ class System(NamedTuple):
             raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
         return bool(self.connect)
 
-    def do(self, work: Callable[[AosClient], Awaitable[T]]) -> T:
-        """Returns what `work` makes of the system; AosError if there is none."""
-        connect, robot = self.connect, self.robot
+    def do(self, work: Callable[[AosClient], Awaitable[T]], *, user: str = OPERATOR) -> T:
+        """Returns what `work` makes of the system; AosError if there is none.
+
+        On the bus it is the `user` of the run, and at an endpoint whoever the environment says.
+        """
+        connect, robot, credential = self.connect, self.robot, None
         if not self.is_at_endpoint:
-            record = living_run(self.run, self.runs).read_record()
+            run = living_run(self.run, self.runs)
+            record = run.read_record()
             connect, robot = record.endpoint, robot or record.robot
+            credential = credential_of_run(run.path, user)
 
         import asyncio  # Only here, as the client: the commands that need no bus start quicker.
 
         from aos_runtime.client import AosClient
 
         async def inside() -> T:
-            async with AosClient.connect(connect, robot) as client:
+            async with AosClient.connect(connect, robot, credential=credential) as client:
                 return await work(client)
 
         return asyncio.run(inside())

@@ -14,7 +14,7 @@ from aos_deploy.events import Report, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.living_runs import noted
 from aos_deploy.printing import from_here
-from aos_deploy.program import programs_of_deployment
+from aos_deploy.program import outsiders_of, programs_of_deployment
 from aos_deploy.run_directory import RunDirectory, RunRecord
 from aos_deploy.serving import serving_program
 from aos_deploy.supervisor import Supervisor, supervised
@@ -22,6 +22,7 @@ from aos_protocol.errors import AosError
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
+from aos_skills.ros.connect import DEFAULT_ROUTER
 
 __all__ = ["ServeEnd", "ServeRun"]
 
@@ -38,6 +39,8 @@ class ServeRun:
     def __init__(self, deployment: Deployment, kind: str, report: Report, clock: Clock) -> None:
         self._deployment = deployment
         self._server = serving_program(deployment, kind)
+        self._is_meeting_place = kind == "ros2" and "router" not in self._server.settings["options"]
+        self._ros2 = ""
         self._report = report
         self._clock = clock
         self._supervisor: Supervisor | None = None
@@ -45,10 +48,14 @@ class ServeRun:
 
     async def run(self) -> ServeEnd:
         """Runs until it is cancelled, which is its normal end, or a process ends by itself."""
-        with hold_endpoint(self._deployment.file.bus.listen) as endpoint:
+        listen = self._deployment.file.bus.listen
+        with hold_endpoint(listen or (DEFAULT_ROUTER if self._is_meeting_place else "")) as held:
             run = RunDirectory.create(
                 self._deployment.runs, self._deployment.file.robot, self._clock.now_ns()
             )
+            endpoint = run.make_endpoint() if self._is_meeting_place or not held else held
+            if self._is_meeting_place:
+                self._meet_at(held)
             self._report(Told(f"run directory {from_here(run.path)}"))
             if not sandbox_support().is_whole:
                 self._report(Told(sandbox_text()))
@@ -64,6 +71,13 @@ class ServeRun:
             run.close()
         return ServeEnd(int(code))
 
+    def _meet_at(self, endpoint: str) -> None:
+        """Nodes of ROS 2 have no credentials: they meet at a router that has nothing of the bus."""
+        self._ros2 = endpoint
+        settings = self._server.settings
+        options = settings["options"] | {"router": endpoint}
+        self._server = msgspec.structs.replace(self._server, settings=settings | {"options": options})
+
     def kill(self) -> None:
         """Ends every process without waiting for it."""
         if self._supervisor is not None:
@@ -75,7 +89,15 @@ class ServeRun:
         base = ServiceSettings(robot=robot, service="", endpoint=endpoint, run_dir=str(run.path))
         programs = [one for one in programs_of_deployment(deployment) if one.is_adapter or one.is_own]
         try:
-            async with supervised((*programs, self._server), base, run, self._report, self._clock) as all_of:
+            async with supervised(
+                (*programs, self._server),
+                base,
+                run,
+                self._report,
+                self._clock,
+                outsiders=outsiders_of(deployment),
+                ros2=self._ros2,
+            ) as all_of:
                 self._supervisor = all_of
                 await all_of.start()
                 run.write_record(self._record(endpoint, all_of))
@@ -100,4 +122,5 @@ class ServeRun:
             pid=os.getpid(),
             pids=supervisor.pids,
             sandbox=sandbox_text(),
+            ros2=self._ros2,
         )

@@ -18,17 +18,21 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from aos_deploy.events import Report, ServiceChanged
+from aos_deploy.passes import Outsider, Passes
 from aos_deploy.process_end import end_of, look_at_log, status_text
-from aos_deploy.process_start import start_process
+from aos_deploy.process_start import ROUTER_MODULE, start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
 from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
 from aos_deploy.run_directory import ProcessEnd, RunDirectory
+from aos_protocol.access import OPERATOR, Party
 from aos_protocol.errors import AosError, DeployError
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
-from aos_runtime.bus import Bus
+from aos_runtime.bus import Access, Bus
 from aos_runtime.children import Child
 from aos_runtime.clock import Clock
 from aos_runtime.failpoints import reach
@@ -41,7 +45,7 @@ __all__ = ["ROUTER", "Supervisor", "supervised"]
 STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
 """The consequences of a process that ends by itself."""
 
-ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S, is_restarted=True)
+ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
 
 FROZEN_S = 5.0
 """A process of ours that is silent for so long, after it was ready, is killed."""
@@ -77,14 +81,26 @@ async def supervised(
     run: RunDirectory,
     report: Report,
     clock: Clock,
+    *,
+    outsiders: tuple[Outsider, ...] = (),
+    ros2: str = "",
 ) -> AsyncIterator[Supervisor]:
     """A supervisor whose processes are gone when the block ends, however it ends.
 
     When a service ends by itself the block is cancelled, and an exception group with the reason comes out of
-    it. `base` says robot, endpoint and run directory; its service name is not used.
+    it. `base` says robot, endpoint and run directory; its service name is not used. The `outsiders` may be
+    on the bus, too. At `ros2`, if it is given, nodes of ROS 2 meet.
     """
+    parties = [party for program in programs if (party := program.party) is not None]
+    passes = Passes(run, parties, outsiders)
+    router = {
+        "dictionary": str(passes.dictionary),
+        "parties": msgspec.to_builtins(passes.parties),
+        "ros2": ros2,
+    }
+    programs = (msgspec.structs.replace(ROUTER, settings=router), *programs)
     async with asyncio.TaskGroup() as tasks:
-        supervisor = Supervisor(programs, base, run, report, clock, tasks)
+        supervisor = Supervisor(programs, base, run, report, clock, tasks, passes)
         try:
             yield supervisor
         finally:
@@ -104,9 +120,11 @@ class Supervisor:
         report: Report,
         clock: Clock,
         tasks: asyncio.TaskGroup,
+        passes: Passes,
     ) -> None:
         self.keys = Keys(base.robot)
-        self._programs = programs
+        self._router, *self._programs = programs
+        self._passes = passes
         self._base = base
         self._run = run
         self._report = report
@@ -138,12 +156,16 @@ class Supervisor:
         later = [program for program in self._programs if program.command]
         if any(program.is_own for program in later):
             later = [program for program in self._programs if program.command or program.is_adapter]
-        for program in (ROUTER, *self._programs):
+        for program in (self._router, *self._programs):
             if program not in later:
                 await self._spawn(program)
         self._beside(self._start_in_order(later))
         self.bus = self._bus = await Bus.open(
-            self._base.endpoint, sender="aos-up", connect_timeout_s=ROUTER.start_s
+            self._base.endpoint,
+            sender="aos-up",
+            connect_timeout_s=ROUTER.start_s,
+            credential=self._passes.credential(OPERATOR),
+            access=Access(self._base.robot, Party(name=OPERATOR, role=OPERATOR)),
         )
         self._is_ready(self._running[ROUTER.name])
         self._beside(self._follow_presence(self.bus))
@@ -205,7 +227,9 @@ class Supervisor:
         running.restarts.start(running.started_s)
         log = self._run.log(program.name)
         log_start = log.stat().st_size if log.exists() else 0
-        running.child = await start_process(program, self._base, self._run)
+        if program.name == ROUTER.name:
+            self._passes.write_dictionary()  # The router before it, if there was one, has removed its own.
+        running.child = await start_process(program, self._base, self._run, self._passes)
         reach("up.start.after")
         if program.is_own:
             running.seeking = self._beside(self._seek_ready(running, log_start))

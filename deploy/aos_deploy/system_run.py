@@ -34,7 +34,7 @@ class SystemRun(MissionRun):
     _mission = ""
 
     def _run_directory(self) -> RunDirectory:
-        run = self._run = super()._run_directory()
+        run = super()._run_directory()
         make_folder_of_missions(run.path)
         return run
 
@@ -48,6 +48,13 @@ class SystemRun(MissionRun):
         if isinstance(event, MissionState) and event.mission != self._mission:
             self._mission, self._heard = event.mission, Account()
         super()._take(event)
+
+    def _has_journaled(self, state: MissionState) -> bool:
+        try:
+            entry = entry_of(self._run.path, state.mission)
+        except StorageError:
+            return True
+        return entry is not None and entry.ended_ns > 0
 
     def _take_end(self, state: MissionState) -> None:
         """Keeps the summary of a mission that has ended, once."""

@@ -52,11 +52,12 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
     if record.is_played:
         deployment = without_a_robot(deployment)
     file = deployment.file
+    is_port = record.endpoint.startswith("tcp/")
     file = msgspec.structs.replace(
         file,
         stay=stays(run.path),
         solver=msgspec.structs.replace(file.solver, seed=record.seed),
-        bus=msgspec.structs.replace(file.bus, listen=record.endpoint),
+        bus=msgspec.structs.replace(file.bus, listen=record.endpoint if is_port else ""),
     )
     deployment = msgspec.structs.replace(deployment, file=file, runs=run.path.parent)
     return deployment, TakenUp(run, record, has_begun)

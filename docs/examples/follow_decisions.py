@@ -1,6 +1,6 @@
 """Follows a robot's decisions from the first step of its mission, whenever it is started.
 
-python docs/examples/follow_decisions.py [ENDPOINT [ROBOT]]
+python docs/examples/follow_decisions.py [RUN]
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import sys
 from aos_runtime.client import AosClient
 
 
-async def main(endpoint: str = "tcp/127.0.0.1:7447", robot: str = "armadillo") -> None:
-    async with AosClient.connect(endpoint, robot) as aos:
+async def main(run: str = "runs/latest") -> None:
+    async with AosClient.of_run(run) as aos:
         async for record in aos.decisions():
             if record.outcome is None:
                 values = {action.action: round(action.q, 2) for action in record.actions}

@@ -136,6 +136,7 @@ CODES: dict[str, str] = {
     "AOS605": "the bus cannot be reached",
     "AOS606": "the handler failed",
     "AOS607": "whoever took the question ended before it replied",
+    "AOS608": "not allowed on the bus",
     "AOS701": "the journal, or another file of a run, cannot be written",
     "AOS702": "the journal cannot be read",
     "AOS801": "the deploy file is not valid",

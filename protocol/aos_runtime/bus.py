@@ -17,11 +17,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import zenoh
 from zenoh.handlers import Callback
 
+from aos_protocol.access import ROUND_TRIP, Act
 from aos_protocol.codec import decode, encode, encode_fault
 from aos_protocol.errors import AosError, BusError, LostAnswerError
 from aos_protocol.messages import Message
+from aos_runtime.access_check import Access
 from aos_runtime.bus_config import LEASE_S, client_config, opened_session
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.credentials import Credential
 from aos_runtime.older_python import timeout
 from aos_runtime.question import RECEIPT, STRAYS_S, Question
 from aos_runtime.server_watch import ServerWatch
@@ -30,7 +33,7 @@ from aos_runtime.subscription import Subscription, Undeclare
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
-__all__ = ["Bus", "Subscription"]
+__all__ = ["Access", "Bus", "Subscription"]
 
 M = TypeVar("M", bound=Message)
 R = TypeVar("R", bound=Message)
@@ -55,8 +58,11 @@ _log = logging.getLogger("aos.bus")
 class Bus:
     """A client's session on the bus. Belongs to the event loop that opened it; close it before that ends."""
 
-    def __init__(self, session: zenoh.Session, sender: str, clock: Clock) -> None:
+    def __init__(
+        self, session: zenoh.Session, sender: str, clock: Clock, access: Access | None = None
+    ) -> None:
         self.sender = sender
+        self._access = access
         self._session = session
         self._clock = clock
         self._loop = asyncio.get_running_loop()
@@ -77,19 +83,18 @@ class Bus:
         connect_timeout_s: float = 5.0,
         clock: Clock | None = None,
         lease_s: float = LEASE_S,
+        credential: Credential | None = None,
+        access: Access | None = None,
     ) -> Bus:
         """Connects to the router, waiting for it to come up; BusError AOS605 if it does not in time.
 
-        A process that freezes has left the bus after `lease_s`.
+        A process that freezes has left the bus after `lease_s`. The router of a system wants a `credential`.
+        With `access` it raises BusError AOS608 for whatever the router would deny in silence.
         """
-        fault = BusError(
-            f"no bus router answers at {endpoint}",
-            code="AOS605",
-            hint="Start a system with aos-up, or give the endpoint of the one that runs",
-        )
-        config = client_config(endpoint, lease_s=lease_s)
+        config = client_config(endpoint, credential=credential, lease_s=lease_s)
+        fault = _cannot_connect(endpoint, credential)
         session = await opened_session(config, connect_timeout_s, _RETRY_S, fault)
-        return cls(session, sender, clock or SystemClock())
+        return cls(session, sender, clock or SystemClock(), access)
 
     async def __aenter__(self) -> Self:
         return self
@@ -128,6 +133,7 @@ class Bus:
         reply; LateAnswerError if no reply comes within `timeout_s`; BusError AOS602 or AOS603 if the reply is
         malformed or of another protocol version; the handler's own AosError if it raised one.
         """
+        self._check("asks", key)
         payload = encode(message, sender=self.sender, stamp_ns=self._clock.now_ns())
         question = Question(key, reply, timeout_s, on_stray)
         hears_strays = on_stray is not None
@@ -163,6 +169,8 @@ class Bus:
         as AOS606 and into the log. On return the key can be asked from anywhere.
         """
 
+        self._check("answers", key)
+
         def on_query(query: zenoh.Query) -> None:
             self._loop.call_soon_threadsafe(self._start_answering, query, request, handler)
 
@@ -172,6 +180,7 @@ class Bus:
 
     def tell(self, key: str, message: Message) -> None:
         """Sends to whoever listens now. Nothing says whether it arrived: use it for what can be re-read."""
+        self._check("tells", key)
         payload = encode(message, sender=self.sender, stamp_ns=self._clock.now_ns())
         self._check_open()
         self._session.put(key, payload, congestion_control=zenoh.CongestionControl.BLOCK)
@@ -181,6 +190,7 @@ class Bus:
 
         Messages that cannot be decoded are logged and left out.
         """
+        self._check("hears", key)
 
         async def declare(subscription: Subscription[tuple[str, M]]) -> Undeclare:
             def on_payload(message_key: str, payload: bytes) -> None:
@@ -201,6 +211,7 @@ class Bus:
 
     async def announce(self, key: str) -> None:
         """Makes `key` present until the bus closes or this process ends, however it ends."""
+        self._check("announces", key)
         self._tokens[key] = self._session.liveliness().declare_token(key)
         await self._wait_for_router()
 
@@ -221,6 +232,7 @@ class Bus:
 
         Once entered, the keys already there are in the queue.
         """
+        self._check("watches", key_expression)
 
         async def declare(subscription: Subscription[tuple[str, bool]]) -> Undeclare:
             present: set[str] = set()
@@ -262,6 +274,10 @@ class Bus:
         await asyncio.sleep(_LINK_S)  # The session hears of its link a moment later.
         return not self.is_routed or self.router != router
 
+    def _check(self, act: Act, key: str) -> None:
+        if self._access is not None:
+            self._access.check(act, key)
+
     def _check_open(self) -> None:
         if self._is_closed:
             raise BusError(f"{self.sender} has left the bus", code="AOS605")
@@ -285,7 +301,7 @@ class Bus:
     async def _has_gone_round(self) -> bool:
         done = self._loop.create_future()
         self._session.liveliness().get(
-            "aos/round-trip",
+            ROUND_TRIP,
             Callback(_ignore, partial(self._loop.call_soon_threadsafe, _settle, done), indirect=False),
             timeout=_ROUND_TRIP_S,
         )
@@ -366,6 +382,17 @@ class Bus:
             query.reply_err(encode_fault(error, sender=self.sender, stamp_ns=self._clock.now_ns()))
         except (zenoh.ZError, BusError) as failure:
             _log.warning("the refusal on %s was not delivered: %s", query.key_expr, failure)
+
+
+def _cannot_connect(endpoint: str, credential: Credential | None) -> BusError:
+    """The error where no session opens: Zenoh tells a router that is not there from one that refuses by
+    nothing."""
+    hint = "Start a system with aos-up, or give the endpoint of the one that runs"
+    if credential is None:
+        refused = "or it lets nobody in without AOS_USER and AOS_PASSWORD_FILE"
+    else:
+        refused = f"or it knows no {credential.user} with this password"
+    return BusError(f"no bus router answers at {endpoint}, {refused}", code="AOS605", hint=hint)
 
 
 def _ignore(_: object) -> None:

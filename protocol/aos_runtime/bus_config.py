@@ -9,11 +9,13 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import zenoh
 
 from aos_protocol.errors import BusError
+from aos_runtime.credentials import Credential
 
 __all__ = ["ADAPTER_LEASE_S", "LEASE_S", "client_config", "opened_session", "router_config"]
 
@@ -36,14 +38,22 @@ _COMMON: dict[str, Any] = {
 }
 
 
-def client_config(endpoint: str, *, lease_s: float = LEASE_S, stamps: bool = False) -> zenoh.Config:
+def client_config(
+    endpoint: str,
+    *,
+    credential: Credential | None = None,
+    lease_s: float = LEASE_S,
+    stamps: bool = False,
+) -> zenoh.Config:
     """A client of the router at `endpoint`, such as `tcp/127.0.0.1:7447`. Opening it tries once.
 
-    The router takes the client for gone when it is silent for `lease_s`. Publishers that keep a history for
-    late comers need `stamps`, a time on all that is sent.
+    A router that knows its clients wants a `credential`. It takes the client for gone when it is silent for
+    `lease_s`. Publishers that keep a history for late comers need `stamps`, a time on all that is sent.
     """
     connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0, "retry": _RETRY}
-    return _config({"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}}, lease_s)
+    options = {"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}}
+    auth = None if credential is None else {"user": credential.user, "password": credential.password}
+    return _config(options, lease_s, auth)
 
 
 async def opened_session(
@@ -61,17 +71,30 @@ async def opened_session(
             await asyncio.sleep(retry_s)
 
 
-def router_config(endpoint: str) -> zenoh.Config:
-    """The router, listening at `endpoint` and nowhere else."""
-    return _config({"mode": "router", "listen": {"endpoints": [_checked(endpoint)]}})
+def router_config(
+    endpoint: str, *, access: dict[str, Any] | None = None, dictionary: Path | None = None
+) -> zenoh.Config:
+    """The router, listening at `endpoint` and nowhere else.
+
+    With a `dictionary` of names and passwords nobody else gets in, and they may do what `access` says.
+    Without one it carries everything for everybody, as the routers of other systems do.
+    """
+    options: dict[str, Any] = {"mode": "router", "listen": {"endpoints": [_checked(endpoint)]}}
+    if access is not None:
+        options["access_control"] = access
+    return _config(options, auth=None if dictionary is None else {"dictionary_file": str(dictionary)})
 
 
-def _config(options: dict[str, Any], lease_s: float = LEASE_S) -> zenoh.Config:
-    transport = {
+def _config(
+    options: dict[str, Any], lease_s: float = LEASE_S, auth: dict[str, str] | None = None
+) -> zenoh.Config:
+    transport: dict[str, Any] = {
         "link": {"tx": {"lease": int(lease_s * 1000)}},
         # Shared memory would leave files behind when a process is killed.
         "shared_memory": {"enabled": False},
     }
+    if auth is not None:
+        transport["auth"] = {"usrpwd": auth}
     return zenoh.Config.from_json5(json.dumps(_COMMON | {"transport": transport} | options))
 
 

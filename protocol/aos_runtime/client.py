@@ -1,6 +1,6 @@
 """A small client for whoever wants to follow a robot from Python.
 
-async with AosClient.connect("tcp/127.0.0.1:7447", "armadillo") as aos:
+async with AosClient.of_run("runs/latest") as aos:
     async for record in aos.decisions():
         print(record.step, record.action)
 """
@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import logging
 import uuid
-from collections.abc import AsyncIterator, Iterable, Mapping
+from collections.abc import AsyncGenerator, AsyncIterator, Iterable, Mapping
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
 
+from aos_protocol.access import OPERATOR, WATCHER, Party
 from aos_protocol.errors import (
     BusError,
     LateAnswerError,
@@ -43,7 +45,8 @@ from aos_protocol.messages import (
     WhyQuery,
 )
 from aos_runtime.asking import ask_until_answered
-from aos_runtime.bus import Bus
+from aos_runtime.bus import Access, Bus
+from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
 from aos_runtime.older_python import timeout
 from aos_runtime.subscription import Subscription, merged
 
@@ -70,8 +73,15 @@ STOP_TIMEOUT_S = 300.0
 """A mission that is stopped ends once what moves has stopped, and a decision on its way is made."""
 
 
+class _Place(msgspec.Struct):
+    """The part of `run.json` that a client needs."""
+
+    endpoint: str
+    robot: str
+
+
 class AosClient:
-    """A watcher of one robot, who can start and stop missions. Watching changes nothing."""
+    """A watcher of one robot, who can start and stop missions as its operator. Watching changes nothing."""
 
     def __init__(self, bus: Bus, robot: str) -> None:
         self.bus = bus
@@ -80,12 +90,42 @@ class AosClient:
     @classmethod
     @asynccontextmanager
     async def connect(
-        cls, endpoint: str, robot: str, *, connect_timeout_s: float = 5.0
+        cls,
+        endpoint: str,
+        robot: str,
+        *,
+        connect_timeout_s: float = 5.0,
+        credential: Credential | None = None,
     ) -> AsyncIterator[AosClient]:
-        """A client of the system at `endpoint`; BusError AOS605 if none is there in time."""
-        bus = await Bus.open(endpoint, sender="client", connect_timeout_s=connect_timeout_s)
+        """A client of the system at `endpoint`; BusError AOS605 if none is there in time.
+
+        Without a `credential` it is who AOS_USER and AOS_PASSWORD_FILE say.
+        """
+        credential = credential or credential_of_environment()
+        bus = await Bus.open(
+            endpoint,
+            sender="client",
+            connect_timeout_s=connect_timeout_s,
+            credential=credential,
+            access=_access_of(robot, credential),
+        )
         async with bus:
             yield cls(bus, robot)
+
+    @classmethod
+    @asynccontextmanager
+    async def of_run(
+        cls, run: str | Path, user: str = WATCHER, *, connect_timeout_s: float = 5.0
+    ) -> AsyncIterator[AosClient]:
+        """A client of the system that has this run directory, as its `watcher` or its `operator`.
+
+        BusError AOS605 if this is no run directory, or the run is over.
+        """
+        place, credential = _place_of(Path(run), user)
+        async with cls.connect(
+            place.endpoint, place.robot, connect_timeout_s=connect_timeout_s, credential=credential
+        ) as client:
+            yield client
 
     async def mission_state(self) -> MissionState:
         """Asks for the mission's state now; NobodyAnswersError if there is no solver."""
@@ -204,7 +244,7 @@ class AosClient:
 
     async def follow(
         self, *, away_s: float | None = SOLVER_AWAY_S, stays: bool = False
-    ) -> AsyncIterator[DecisionRecord | MissionState | BundleReport]:
+    ) -> AsyncGenerator[DecisionRecord | MissionState | BundleReport, None]:
         """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
         bundles.
 
@@ -284,6 +324,23 @@ class AosClient:
             return await self.mission_state()
         except BusError:
             return None
+
+
+def _place_of(run: Path, user: str) -> tuple[_Place, Credential | None]:
+    """The place of a run's bus, and who somebody is on it."""
+    run = run.resolve()
+    try:
+        place = msgspec.json.decode((run / "run.json").read_bytes(), type=_Place)
+    except (OSError, msgspec.MsgspecError) as error:
+        raise BusError(f"{run} is no run directory: {error}", code="AOS605") from error
+    return place, credential_of_run(run, user)
+
+
+def _access_of(robot: str, credential: Credential | None) -> Access | None:
+    """The table's rows of a client; None for an adapter, whose paths are not known here."""
+    if credential is None or credential.user not in (OPERATOR, WATCHER):
+        return None
+    return Access(robot, Party(name=credential.user, role=credential.user))
 
 
 def _may_end(state: MissionState, mission: str) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Awaitable, Callable
 
 import msgspec
 
-from aos_protocol.errors import AosError, NobodyAnswersError, SkillError
+from aos_protocol.errors import AosError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId, Cancel, MissionQuery, MissionState, SkillCall
 from aos_runtime.bus import Bus
@@ -34,7 +34,7 @@ def meaning(request: Activate | SkillCall) -> str:
 class Fence:
     """Remembers the newest epoch of each mission and what each id stands for.
 
-    `epoch_of_solver` tells the epoch that a mission's solver has in its journal; None if no solver answers.
+    `epoch_of_solver` tells the epoch that a mission's solver has in its journal; None if nobody knows it.
     """
 
     def __init__(self, epoch_of_solver: Callable[[str], Awaitable[int | None]]) -> None:
@@ -97,15 +97,13 @@ class Fence:
         newest = self._epochs.get(id.mission, 0)
         if epoch < newest:
             raise SkillError(f"activation {id} comes from an older epoch, {epoch}", code="AOS506")
-        if epoch > max(newest, 1):
-            real = await self._epoch_of_solver(id.mission)
-            # Where no solver answers, and none was heard before, nobody's epochs are at stake.
-            if real != epoch and not (real is None and newest == 0):
-                raise SkillError(
-                    f"activation {id} comes from epoch {epoch}, which is not the mission's",
-                    code="AOS506",
-                    hint="Only the mission's solver counts its epochs",
-                )
+        # The first one needs no word: it makes none stale. Any other would, if it were made up.
+        if epoch > max(newest, 1) and await self._epoch_of_solver(id.mission) != epoch:
+            raise SkillError(
+                f"activation {id} comes from epoch {epoch}, which is not the mission's",
+                code="AOS506",
+                hint="Only the mission's solver counts its epochs",
+            )
 
 
 def epoch_of_solver(bus: Bus, keys: Keys) -> Callable[[str], Awaitable[int | None]]:
@@ -114,10 +112,8 @@ def epoch_of_solver(bus: Bus, keys: Keys) -> Callable[[str], Awaitable[int | Non
     async def asked(mission: str) -> int | None:
         try:
             state = await bus.ask(keys.mission_state, MissionQuery(), MissionState, timeout_s=_ASK_TIMEOUT_S)
-        except NobodyAnswersError:
-            return None
         except AosError:
-            return 0
+            return None
         return state.epoch if state.mission == mission else None
 
     return asked

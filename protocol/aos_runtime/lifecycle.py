@@ -25,7 +25,7 @@ import msgspec
 from aos_protocol.errors import AosError, DeployError, StorageError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
-from aos_runtime.bus import Bus
+from aos_runtime.bus import Access, Bus
 from aos_runtime.bus_config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.code_places import place_of
@@ -103,6 +103,8 @@ def run_service(
             connect_timeout_s=ROUTER_S,
             clock=clock,
             lease_s=lease_s,
+            credential=settings.credential,
+            access=Access(settings.robot, settings.party),
         )
         async with bus:
             await serve(Service(settings, bus, clock))

@@ -6,16 +6,33 @@ from pathlib import Path
 
 import msgspec
 
+from aos_protocol.access import ROLES, SERVER, Party
+from aos_runtime.credentials import Credential
+
 __all__ = ["ServiceSettings", "fault_path"]
 
 
 class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
-    """The settings that every service has; each adds its own. `run_dir` is absolute."""
+    """The settings that every service has; each adds its own. `run_dir` is absolute.
+
+    The password for the bus stands in `password_file`; without one the router is open to everybody.
+    """
 
     robot: str
     service: str
     endpoint: str
     run_dir: str
+    password_file: str = ""
+
+    @property
+    def party(self) -> Party:
+        """The service as the bus knows it."""
+        return Party(name=self.service, role=self.service if self.service in ROLES else SERVER)
+
+    @property
+    def credential(self) -> Credential | None:
+        """Its name and password; BusError AOS605 if the file cannot be read."""
+        return Credential.read(self.service, self.password_file) if self.password_file else None
 
 
 def fault_path(run_dir: str | Path, service: str) -> Path:

@@ -16,7 +16,16 @@ from starting import until_present
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import ActivationId, Cancel, Cancelled, SkillCall, SkillResult, TopicMessage
+from aos_protocol.messages import (
+    ActivationId,
+    Cancel,
+    Cancelled,
+    MissionQuery,
+    MissionState,
+    SkillCall,
+    SkillResult,
+    TopicMessage,
+)
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
@@ -143,6 +152,12 @@ async def test_fields_that_a_skill_cannot_use_are_refused_with_a_hint(robot: Rob
 
 async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused(robot: Robot) -> None:
     await robot.start()
+    assert (await robot.refusal("/sense", 1, epoch=2)).code == "AOS506"
+
+    async def state(_: MissionQuery, __: str) -> MissionState:
+        return MissionState("m", "acting", 1, 0.0, epoch=2)
+
+    await robot.bus.answer(robot.keys.mission_state, MissionQuery, state)
     first = await robot.call("/sense", 1, epoch=2)
     assert await robot.call("/sense", 1, epoch=2) == first
     assert (await robot.refusal("/sense", 2, epoch=1)).code == "AOS506"

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.run_directory import RunDirectory
+from aos_protocol.access import OPERATOR
 from aos_protocol.messages import (
     BundleReport,
     DecisionRecord,
@@ -91,11 +91,9 @@ async def played(
     text = _DEPLOY.format(seed=seed, robot=_ROOT / "tests/plug/robot.py")
     (folder / "tester.yaml").write_text(text)
     result = Played(seed)
-    async with _up(folder):
-        record = RunDirectory((folder / "runs" / "latest").resolve()).read_record()
-        async with AosClient.connect(record.endpoint, "tester") as client:
-            game = _Game(client, project, result, random.Random(seed))
-            await game.play(kinds, undisturbed, superseded)
+    async with _up(folder), AosClient.of_run(folder / "runs" / "latest", OPERATOR) as client:
+        game = _Game(client, project, result, random.Random(seed))
+        await game.play(kinds, undisturbed, superseded)
     return result
 
 

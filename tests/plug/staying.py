@@ -18,6 +18,7 @@ from processes import descendants
 
 from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_protocol.access import OPERATOR
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionEntry, PushBundle
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
@@ -75,7 +76,7 @@ async def stayed(folder: Path, missions: int, *, pushes: bool, kills: bool, chan
     Every third follows a push, and in every tenth the engine is killed.
     """
     result = Stayed()
-    async with _up(folder, 1, "--stay") as record, _client(record) as client:
+    async with _up(folder, 1, "--stay") as record, _client(folder) as client:
         result.run = (folder / "runs" / "latest").resolve()
         first = await client.until_ended(f"{result.run.name}-1")
         result.entries.append(first)
@@ -160,8 +161,8 @@ async def _drain(stream: asyncio.StreamReader) -> None:
         pass
 
 
-def _client(record: RunRecord) -> contextlib.AbstractAsyncContextManager[AosClient]:
-    return AosClient.connect(record.endpoint, record.robot)
+def _client(folder: Path) -> contextlib.AbstractAsyncContextManager[AosClient]:
+    return AosClient.of_run(folder / "runs" / "latest", OPERATOR)
 
 
 async def _push(client: AosClient, number: int) -> None:

@@ -67,7 +67,13 @@ def test_a_new_adapter_runs_as_it_is(kind: str, root: Path) -> None:
             assert up.stdout.readline()
         endpoint = re.search(r'"endpoint": "(\S+)"', Path("runs/latest/run.json").read_text())
         assert endpoint is not None
-        variables = {"AOS_ENDPOINT": endpoint[1], "AOS_ROBOT": "fetch", "AOS_ADAPTER": "robot"}
+        variables = {
+            "AOS_ENDPOINT": endpoint[1],
+            "AOS_ROBOT": "fetch",
+            "AOS_ADAPTER": "robot",
+            "AOS_USER": "robot",
+            "AOS_PASSWORD_FILE": "robot.password",
+        }
         with subprocess.Popen([sys.executable, "fetch_robot.py"], env={**os.environ, **variables}) as program:
             said = up.stdout.read()
             program.send_signal(signal.SIGTERM)

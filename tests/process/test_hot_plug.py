@@ -55,7 +55,6 @@ def deploy_file(
     (tmp_path / "patient.py").write_text(PATIENT_PICK)
     text = (root / "deploy" / "armadillo-hotplug.yaml").read_text()
     for old, new in {
-        "tcp/127.0.0.1:7447": "tcp/127.0.0.1:0",
         "[bundles/": f"[{root}/deploy/bundles/",
         "world: worlds/": f"world: {root}/deploy/worlds/",
         "runs: ../runs": "runs: runs",

@@ -19,6 +19,7 @@ import pytest
 from processes import HANG_S, kill
 
 from aos_deploy.history_check.files import violations_of_run
+from aos_protocol.access import OPERATOR
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import BundleReport, PushBundle
 from aos_runtime.client import AosClient
@@ -178,7 +179,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> 
     assert code == 3
     assert f"AOS516: `{given}` has probability 0 in the last belief" in error
 
-    async with AosClient.connect(stays.record["endpoint"], "tiger") as aos:
+    async with AosClient.of_run(stays.run, OPERATOR) as aos:
         entry = await aos.until_ended((await aos.start_mission(idle=2)).mission)
         assert (entry.number, entry.ending, entry.steps, entry.seed) == (4, "step_limit", 3, 4)
         records = [record async for record in aos.history()]
@@ -214,7 +215,7 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
     kill(stays.record["pids"]["solver"])
     stays.until("service", service="solver", state="ready")
     stays.be_slow(True)
-    async with AosClient.connect(stays.record["endpoint"], "tiger") as aos:
+    async with AosClient.of_run(stays.run, OPERATOR) as aos:
         mission = (await aos.start_mission(belief="keep")).mission
         stays.until("mission", mission=mission, phase="acting")
         kill(stays.record["pids"]["solver"])
@@ -260,7 +261,7 @@ async def test_the_next_mission_has_other_parameters_and_newer_documents(
         code, _, error = system.aos("mission", "start", "--set", "target=bod")
         assert code == 1
         assert "error[AOS146]: target cannot be 'bod': it is one of alice, bob. Did you mean `bob`?" in error
-        async with AosClient.connect(system.record["endpoint"], "errand") as aos:
+        async with AosClient.of_run(system.run, OPERATOR) as aos:
             # A push beside the start, so that it comes before the first decision or after it.
             push = aos.bus.ask(aos.keys.push_bundle, PushBundle(files), BundleReport, timeout_s=HANG_S)
             state, report = await asyncio.gather(aos.start_mission(values={"target": "bob"}), push)

@@ -152,7 +152,7 @@ def test_the_shipped_robot_serves_a_ros_2_program_of_others(
         list(events_of_until(robot, "Ctrl-C stops it"))
         run = json.loads((tmp_path / "latest" / "run.json").read_text())
         program = subprocess.run(
-            [sys.executable, "-m", "tests.ros2_sdk_client", run["endpoint"].rpartition(":")[2]],
+            [sys.executable, "-m", "tests.ros2_sdk_client", run["ros2"].rpartition(":")[2]],
             cwd=root,
             env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
             capture_output=True,
@@ -174,10 +174,10 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation(
         texts = [str(event.get("text")) for event in events_of_until(robot, "Ctrl-C stops it")]
         for line in block.strip().splitlines():
             assert line == "..." or line in texts
-        served = json.loads((tmp_path / "robot" / "latest" / "run.json").read_text())["endpoint"]
+        served = json.loads((tmp_path / "robot" / "latest" / "run.json").read_text())["ros2"]
         (file,) = in_the_checkout(drive, root)
         # Where the page has the ports of a whole machine, a test has those that are free.
-        text = Path(file).read_text().replace("tcp/127.0.0.1:7447", served).replace("7448", "0")
+        text = Path(file).read_text().replace("tcp/127.0.0.1:7447", served)
         text = text.replace("bundles/", f"{root}/deploy/bundles/").replace("100_000", "1_000")
         text = text.replace("[interfaces]", f"[{root}/deploy/interfaces]").replace("../runs", "runs")
         (tmp_path / "mission.yaml").write_text(text)

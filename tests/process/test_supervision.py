@@ -178,13 +178,10 @@ async def test_a_killed_system_leaves_no_grandchildren(system: System) -> None:
     await until_ended(pids)
 
 
-@pytest.mark.parametrize("name", [(), ("a_name_of_its_own",)], ids=["told", "own"])
-async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_serves(
-    system: System, name: tuple[str, ...]
-) -> None:
+async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_serves(system: System) -> None:
     async with (
         asyncio.timeout(HANG_S),
-        system.up(small("registry"), command("python", "small_command.py", *name)),
+        system.up(small("registry"), command("python", "small_command.py")),
     ):
         await system.until("robot", "ready")
     changes = [(event.service, event.state) for event in system.events]

@@ -12,6 +12,7 @@ from aos_deploy.living_runs import chosen_run
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import lines_of
+from aos_protocol.access import WATCHER
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_runtime.mission_folders import mission_folder, mission_folders
 
@@ -58,9 +59,8 @@ def decisions(
             for event in _journaled(directory, mission or newest):
                 show(event)
             return
-        record = directory.read_record()
-        system = System(record.endpoint, record.robot)
-    system.do(lambda aos: _stream(aos, show, is_following=follow))
+        system = System(run=directory.path)
+    system.do(lambda aos: _stream(aos, show, is_following=follow), user=WATCHER)
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:

@@ -15,6 +15,7 @@ import typer
 from aos_deploy.adapter_templates import KINDS, ROS_KINDS, adapter_files
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files, shipped
+from aos_deploy.systemd_unit import unit_name, unit_of
 from aos_language.convert import Dialect, convert
 from aos_language.load import load_bundle, read_bundle_files
 from aos_language.merge import pushed_project
@@ -130,6 +131,26 @@ def example(
     typer.echo(f"Run it:      aos-up {deploy}")
     for bundle in read_deploy_file(deploy).bundles:
         typer.echo(f"Look at it:  aos plan {os.path.relpath(bundle)} --exact")
+
+
+@new_app.command(epilog="Example: aos new unit armadillo.yaml --user robot")
+def unit(
+    deploy: Annotated[Path, typer.Argument(help="The deploy file")],
+    folder: Annotated[Path, typer.Option("--to", help="Where the file is made")] = Path(),
+    user: Annotated[str, typer.Option(help="Who runs it; else who you are")] = "",
+) -> None:
+    """Write a systemd unit that starts a deploy file's mission when the machine does.
+
+    It confines the mission to what it needs. The file says how it is taken into use.
+    """
+    deployment = read_deploy_file(deploy)
+    name = unit_name(deployment)
+    deployment.runs.mkdir(parents=True, exist_ok=True)  # systemd takes no folder that is not there.
+    _write(folder, {name: unit_of(deployment, user)})
+    typer.echo(f"Check it:    systemd-analyze verify {folder / name}")
+    typer.echo(
+        f"Use it:      sudo cp {folder / name} /etc/systemd/system/ && sudo systemctl enable --now {name}"
+    )
 
 
 def _copy(deploy: Path, target: Path) -> None:

@@ -15,6 +15,7 @@ from aos_deploy.running_system import System, on_system
 from aos_deploy.studied_run import StudiedRun
 from aos_deploy.terminal import waiting
 from aos_deploy.views.reasons import what_if_lines, why_lines
+from aos_protocol.access import WATCHER
 from aos_protocol.messages import WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.client import AosClient
 
@@ -125,6 +126,5 @@ def _found(
                     return await look(StudiedRun.open(directory.path, mission))
 
                 return asyncio.run(looked())
-            record = directory.read_record()
-            system = System(record.endpoint, record.robot)
-        return system.do(ask)
+            system = System(run=directory.path)
+        return system.do(ask, user=WATCHER)

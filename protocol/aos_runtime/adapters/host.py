@@ -280,7 +280,11 @@ class Host:
 
     async def _call(self, request: SkillCall, _: str) -> SkillResult:
         """Runs a call, joins the one of the same id, or tells again how it ended."""
-        await self._fence.check(request)
+        try:
+            await self._fence.check(request)
+        except SkillError as error:
+            _log.warning("refused: %s", error)
+            raise
         running = self._running
         if running is not None and running.call.id == request.id:
             await running.ended.wait()

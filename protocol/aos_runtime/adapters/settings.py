@@ -6,6 +6,7 @@ from typing import Any
 
 import msgspec
 
+from aos_protocol.access import ADAPTER, Party
 from aos_runtime.service_settings import ServiceSettings
 
 __all__ = ["AdapterSettings", "Binding"]
@@ -39,3 +40,14 @@ class AdapterSettings(ServiceSettings, frozen=True, kw_only=True):
     elsewhere: tuple[str, ...] = ()
     seed: int = 1
     cancel_s: float = 2.0
+
+    @property
+    def party(self) -> Party:
+        """The adapter as the bus knows it, with the paths that it may serve."""
+        return Party(
+            name=self.service,
+            role=ADAPTER,
+            paths=tuple(self.bind),
+            serves_others=self.serves_others,
+            elsewhere=self.elsewhere,
+        )

@@ -12,13 +12,15 @@ from typing import Any, NoReturn
 import msgspec
 
 from aos_runtime.adapters.settings import AdapterSettings
+from aos_runtime.credentials import PASSWORD_FILE_VARIABLE
 
 __all__ = ["USAGE", "settings_told"]
 
 USAGE = """usage: python -m aos_runtime.adapters MODULE:CLASS [NAME=VALUE]...
 
 CLASS of MODULE, or of a FILE.py, is the adapter; it finds each NAME in host.options. aos-up tells the rest
-by the environment; by hand, name AOS_ENDPOINT (such as tcp/127.0.0.1:7447), AOS_ROBOT and AOS_ADAPTER."""
+by the environment; by hand, name AOS_ENDPOINT (such as tcp/127.0.0.1:7447), AOS_ROBOT, AOS_ADAPTER, and
+AOS_PASSWORD_FILE, which is RUN/credentials/ADAPTER or the `credential` of the deploy file."""
 
 _USAGE_STATUS = 2
 _MUST_BE_TOLD = ("AOS_ENDPOINT", "AOS_ROBOT", "AOS_ADAPTER")
@@ -50,6 +52,7 @@ def settings_told(
         robot=environment["AOS_ROBOT"],
         service=environment["AOS_ADAPTER"],
         endpoint=environment["AOS_ENDPOINT"],
+        password_file=environment.get(PASSWORD_FILE_VARIABLE, ""),
         run_dir=str(_run_dir(settings, environment)),
         adapter=f"{module}:{name}",
         folder=str(folder),

@@ -15,9 +15,11 @@ from aos_deploy.living_runs import living_runs
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import message_of_row
+from aos_protocol.access import OPERATOR
 from aos_protocol.errors import AosError, BusError, DeployError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionEntry, MissionState
 from aos_runtime.client import AosClient
+from aos_runtime.credentials import Credential, credential_of_run
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder, mission_folders, number_of
 from aos_solver.mission.history import history_page
@@ -88,8 +90,13 @@ class Run(ABC):
             raise BusError(
                 f"the run {self.name} is over", code="AOS605", hint="Start a system, or look at its records"
             )
-        async with AosClient.connect(self.endpoint, self.robot) as client:
+        async with AosClient.connect(self.endpoint, self.robot, credential=self.credential) as client:
             yield client
+
+    @property
+    def credential(self) -> Credential | None:
+        """The operator's; None where the gateway's environment says who it is."""
+        return None
 
 
 class KeptRun(Run):
@@ -106,6 +113,10 @@ class KeptRun(Run):
     @property
     def is_running(self) -> bool:
         return self.directory.is_running
+
+    @property
+    def credential(self) -> Credential | None:
+        return credential_of_run(self.directory.path, OPERATOR)
 
     async def entry(self) -> RunEntry:
         if self._last is None or self._last.is_running:

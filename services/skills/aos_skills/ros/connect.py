@@ -8,7 +8,7 @@ from typing import Any
 
 from aos_skills.ros.node import RosNode
 
-__all__ = ["KINDS", "connect"]
+__all__ = ["DEFAULT_ROUTER", "KINDS", "connect"]
 
 KINDS = ("ros2", "dds", "ros1")
 

@@ -43,9 +43,7 @@ class ServerSettings(ServiceSettings, frozen=True, kw_only=True):
 async def serve(service: Service[ServerSettings]) -> None:
     """Serves until stopped: a path once an adapter serves it, a topic at once."""
     settings = service.settings
-    # Nodes of rmw_zenoh can meet at the run's own router.
-    options = {"router": settings.endpoint} | settings.options
-    node = await connect(settings.kind, settings.robot, options, Path(settings.folder))
+    node = await connect(settings.kind, settings.robot, settings.options, Path(settings.folder))
     server = _Server(service, node)
     try:
         async with asyncio.TaskGroup() as tasks:

@@ -1,0 +1,1 @@
+"""Whoever is on the bus tries all that he may not do."""

@@ -1,0 +1,107 @@
+"""Tries the bus: the matrix of the table, forgeries in a mission, malformed messages, and what it all costs.
+
+python -m tests.hostile.bus                     all of it
+python -m tests.hostile.bus matrix forgeries    parts
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from .cell import STEPS, cell
+from .cost import cost
+from .forgeries import FORGERIES, faults_of
+from .malformed import flooded_keys, flooding
+from .matrix import PARTIES, attempts, wrong
+from .routed import routed
+
+MAY_ANSWER_S = 0.1
+MAY_GROW_BYTES = 20_000_000
+
+
+def matrix(folder: Path, _: argparse.Namespace) -> int:
+    """Every party, act and key."""
+    tried = list(attempts())
+    with routed(folder, PARTIES) as router:
+        found = list(wrong(router, tried))
+    allowed = sum(attempt.is_allowed for attempt in tried)
+    print(f"matrix: {allowed} allowed and {len(tried) - allowed} denied attempts, {len(found)} otherwise")
+    for line in found:
+        print(f"  {line}")
+    return len(found)
+
+
+def forgeries(folder: Path, _: argparse.Namespace) -> int:
+    """Made-up messages, while a mission waits for them; then it must end as if nothing had been."""
+    broken = 0
+    with cell(folder) as mission:
+        for forgery in FORGERIES:
+            faults = faults_of(mission, forgery)
+            broken += bool(faults)
+            print(f"  {forgery.name}: {'; '.join(faults) or forgery.gets}", flush=True)
+        mission.go_on()
+        is_unharmed = mission.exit_code == 0 and mission.moved == ["step"] * STEPS
+    ending = mission.summary["ending"]
+    motions = len(mission.moved)
+    print(f"forgeries: {len(FORGERIES)}, {broken} broke a promise; mission: {ending}, {motions} motions")
+    return broken + (not is_unharmed)
+
+
+def malformed(folder: Path, options: argparse.Namespace) -> int:
+    """Messages that nobody can read, on every key."""
+    broken, slowest_s, most_bytes = 0, 0.0, 0
+    with cell(folder) as mission:
+        for key, user, is_question in flooded_keys():
+            flood = flooding(mission, key, user, is_question, options.messages)
+            grown_bytes = max(flood.grown_bytes.values())
+            slowest_s, most_bytes = max(slowest_s, flood.slowest_s), max(most_bytes, grown_bytes)
+            broken += flood.slowest_s > MAY_ANSWER_S or grown_bytes > MAY_GROW_BYTES
+            print(
+                f"  {key} by {user}: {flood.sent} in {flood.took_s:.1f} s, slowest answer "
+                f"{flood.slowest_s * 1e3:.0f} ms, memory +{grown_bytes / 1e6:.1f} MB",
+                flush=True,
+            )
+        mission.go_on()
+    print(
+        f"malformed: {broken} keys with an answer later than {MAY_ANSWER_S:g} s or more than "
+        f"{MAY_GROW_BYTES / 1e6:g} MB; slowest {slowest_s * 1e3:.0f} ms, at most +{most_bytes / 1e6:.1f} MB; "
+        f"mission: exit code {mission.exit_code}"
+    )
+    return broken + (mission.exit_code != 0)
+
+
+def costs(folder: Path, options: argparse.Namespace) -> int:
+    """The times of questions and sessions."""
+    print(cost(folder, options.questions, options.sessions))
+    return 0
+
+
+PARTS: dict[str, Callable[[Path, argparse.Namespace], int]] = {
+    "matrix": matrix,
+    "forgeries": forgeries,
+    "malformed": malformed,
+    "cost": costs,
+}
+
+
+def main() -> int:
+    """Exit code 0 where every promise was kept."""
+    parser = argparse.ArgumentParser(prog="python -m tests.hostile.bus", description=__doc__)
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, []], help="of these alone")
+    parser.add_argument("--messages", type=int, default=20_000, help="malformed messages on each key")
+    parser.add_argument("--questions", type=int, default=3000)
+    parser.add_argument("--sessions", type=int, default=200)
+    options = parser.parse_args()
+    broken = 0
+    for part in options.parts or PARTS:
+        with tempfile.TemporaryDirectory(prefix="aos-bus-", ignore_cleanup_errors=True) as folder:
+            broken += PARTS[part](Path(folder), options)
+    return int(broken > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,121 @@
+"""A router with access control as a process, and bare Zenoh sessions on it, without `Bus`."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import zenoh
+from zenoh.handlers import Callback
+
+from aos_deploy.passes import Passes
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.access import ROUND_TRIP, Party
+from aos_runtime.bus_config import client_config
+from aos_runtime.credentials import Credential
+from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.router import RouterSettings
+
+__all__ = ["ROBOT", "Routed", "open_router", "opened", "round_trip", "routed"]
+
+ROBOT = "test"
+_PATIENCE_S = 30.0
+
+
+class Routed:
+    """A router that knows its parties. `sessions` has one for each, by name."""
+
+    def __init__(self, endpoint: str, passes: Passes, log: Path, pid: int) -> None:
+        self.endpoint = endpoint
+        self.passes = passes
+        self.log = log
+        self.pid = pid
+        self.sessions: dict[str, zenoh.Session] = {}
+
+    def session(self, name: str) -> zenoh.Session:
+        """A party's session, opened once."""
+        if name not in self.sessions:
+            self.sessions[name] = opened(self.endpoint, self.passes.credential(name))
+        return self.sessions[name]
+
+
+@contextmanager
+def routed(folder: Path, parties: tuple[Party, ...]) -> Iterator[Routed]:
+    """The router of a run in the folder, with these parties, an operator and a watcher."""
+    run = RunDirectory.create(folder, ROBOT, 0)
+    endpoint = run.make_endpoint()
+    passes = Passes(run, parties)
+    passes.write_dictionary()
+    with _router(run, endpoint, str(passes.dictionary), passes.parties) as router:
+        made = Routed(endpoint, passes, run.log("router"), router.pid)
+        try:
+            yield made
+        finally:
+            for session in made.sessions.values():
+                session.close()
+
+
+@contextmanager
+def open_router(folder: Path) -> Iterator[str]:
+    """The endpoint of a router that knows nobody."""
+    run = RunDirectory.create(folder, ROBOT, 0)
+    endpoint = run.make_endpoint()
+    with _router(run, endpoint, "", ()):
+        opened(endpoint, None).close()
+        yield endpoint
+
+
+@contextmanager
+def _router(
+    run: RunDirectory, endpoint: str, dictionary: str, parties: tuple[Party, ...]
+) -> Iterator[subprocess.Popen[bytes]]:
+    settings = RouterSettings(
+        robot=ROBOT,
+        service="router",
+        endpoint=endpoint,
+        run_dir=str(run.path),
+        dictionary=dictionary,
+        parties=parties,
+    )
+    path = run.write_settings("router", msgspec.to_builtins(settings))
+    with (
+        run.open_log("router") as log,
+        subprocess.Popen(
+            [sys.executable, "-m", "aos_runtime.router", str(path)],
+            env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
+            stdout=log,
+            stderr=log,
+        ) as router,
+    ):
+        try:
+            yield router
+        finally:
+            router.terminate()
+    run.close()
+
+
+def opened(endpoint: str, credential: Credential | None) -> zenoh.Session:
+    """A session, once the router is there; ZError if it lets nobody in."""
+    config = client_config(endpoint, credential=credential)
+    config.insert_json5("connect/timeout_ms", str(int(_PATIENCE_S * 1000)))
+    return zenoh.open(config)
+
+
+def round_trip(*sessions: zenoh.Session) -> None:
+    """Returns when whatever the first session has sent has come to the router, then to the next session."""
+    for session in sessions:
+        done = threading.Event()
+        session.liveliness().get(ROUND_TRIP, Callback(_ignore, done.set, indirect=False), timeout=_PATIENCE_S)
+        if not done.wait(_PATIENCE_S):
+            raise TimeoutError("the router does not answer")
+
+
+def _ignore(_: Any) -> None:
+    """Takes replies whose end alone matters."""

@@ -1,0 +1,18 @@
+"""Messages that somebody makes up in mid-mission change nothing, and a log tells of each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hostile.bus.cell import STEPS, cell
+from hostile.bus.forgeries import FORGERIES, faults_of
+
+
+def test_a_mission_goes_its_way_whatever_others_make_up(tmp_path: Path, cache_dir: Path) -> None:
+    with cell(tmp_path, {"AOS_CACHE_DIR": str(cache_dir)}) as mission:
+        faults = {forgery.name: faults_of(mission, forgery) for forgery in FORGERIES}
+        assert {name: found for name, found in faults.items() if found} == {}
+        mission.go_on()
+    assert mission.exit_code == 0
+    assert mission.summary["ending"] == "goal"
+    assert mission.moved == ["step"] * STEPS
