@@ -20,7 +20,9 @@ from aos_protocol.messages import (
     BeliefSummary,
     DecisionRecord,
     Message,
+    MissionBegun,
     MissionState,
+    ModelAdopted,
     Outcome,
     SkillCall,
     SkillResult,
@@ -145,6 +147,17 @@ def test_a_mission_that_was_killed_at_any_row_breaks_no_rule() -> None:
         for ledger in (history.middleware, history.robot):
             ledger[:] = [entry for entry in ledger if entry.stamp_ns <= last_ns]
         assert history.broken_rules() == set(), end
+
+
+def test_a_new_solver_replays_what_an_older_model_had_handed_over() -> None:
+    """The steps before the takeover are explained by the newer model then."""
+    for by, broken in (("import", set()), ("replay", {"belief"})):
+        history = History()
+        history.change("decision", 2, belief=belief(7))
+        history.journal.insert(0, Entry(1, "adopted", ModelAdopted(2, "", 1, by, 0)))
+        begun = MissionBegun(MISSION, 2, 1, 2, "")
+        history.journal.insert(history.place("decision", 2), Entry(190, "begun", begun))
+        assert history.broken_rules() == broken, by
 
 
 def test_a_new_solver_asks_again_with_the_same_id_and_a_new_middleware_takes_it_up() -> None:

@@ -9,13 +9,24 @@ from typing import Any, NamedTuple
 import msgspec
 
 from aos_deploy.verdict import Account
-from aos_protocol.messages import Activate, ActivationId, BeliefSummary, DecisionRecord, MissionState, Outcome
+from aos_protocol.messages import (
+    Activate,
+    ActivationId,
+    BeliefSummary,
+    DecisionRecord,
+    MissionBegun,
+    MissionState,
+    ModelAdopted,
+    Outcome,
+)
 from aos_runtime.fence import meaning
 from aos_runtime.journal import JournalRow
 
 __all__ = ["KINDS", "Found", "Intention", "JournalRules", "digest"]
 
 KINDS: dict[str, type[Any]] = {
+    "begun": MissionBegun,
+    "adopted": ModelAdopted,
     "decision": DecisionRecord,
     "mission": MissionState,
     "intended": Activate,
@@ -56,6 +67,7 @@ class JournalRules:
         self._open: Activate | None = None
         self._outcome: Outcome | None = None
         self._belief: tuple[str, BeliefSummary] | None = None
+        self._is_handed_over = False
 
     def was_holding(self, stamp_ns: int) -> bool:
         """Says whether the mission held at this time."""
@@ -68,6 +80,9 @@ class JournalRules:
             found("over", f"a row of the kind {row.kind} after the mission's end")
         if isinstance(message, MissionState):
             self._take_state(row, message, found)
+            return
+        if isinstance(message, MissionBegun | ModelAdopted):
+            self._take_model(message)
             return
         if self._held_since_ns is not None and not isinstance(message, Outcome):
             found("hold", f"a row of the kind {row.kind} while the mission holds")
@@ -88,6 +103,13 @@ class JournalRules:
         self._held_since_ns = row.stamp_ns if state.phase == "holding" else None
         if _is_end(state) and self.end_ns is None:
             self.end_ns = row.stamp_ns
+
+    def _take_model(self, message: MissionBegun | ModelAdopted) -> None:
+        """A belief that was handed over from another model is not that which a new solver replays."""
+        if isinstance(message, ModelAdopted):
+            self._is_handed_over |= message.by != "replay"
+        elif self._is_handed_over:
+            self._belief, self._is_handed_over = None, False
 
     def _take_record(self, record: DecisionRecord, found: Found) -> None:
         self._check_epoch(record.epoch, found)
