@@ -37,7 +37,9 @@ def _verdict(why: Why) -> str:
 
 
 def _worth(value: float, stderr: float) -> str:
-    return f"{value:+.4g}" + (f" ± {stderr:.2g}" if stderr else "")
+    """`+2.713 ± 0.04`; an error that no shown digit of the value has is left out."""
+    is_shown = stderr > max(1e-4 * abs(value), 1e-9)
+    return f"{value:+.4g}" + (f" ± {stderr:.2g}" if is_shown else "")
 
 
 def _expected(why: Why) -> str:
