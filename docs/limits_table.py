@@ -189,8 +189,8 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "aos_runtime.client.START_TIMEOUT_S", "s", "AOS601",
         ),
         Row(
-            "a mission is waited for that is stopped",
-            "aos_runtime.client.STOP_TIMEOUT_S", "s", "AOS601",
+            "a mission is waited for that is stopped, or that is to carry out an action of an operator",
+            "aos_runtime.steering.STEER_TIMEOUT_S", "s", "AOS601",
         ),
         Row(
             "conditions with which a mission begins",

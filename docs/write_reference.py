@@ -24,7 +24,7 @@ from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
 from aos_protocol import access, errors, keys
-from aos_protocol.messages import base, bundles, mission, records, skills, study
+from aos_protocol.messages import base, bundles, mission, records, skills, steering, study
 
 DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -32,6 +32,7 @@ MESSAGES = {
     "around every message": base,
     "bundles": bundles,
     "mission": mission,
+    "steering": steering,
     "records": records,
     "study": study,
     "skills": skills,

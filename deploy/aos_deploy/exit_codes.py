@@ -80,6 +80,8 @@ def _before_the_mission(code: str) -> ExitCode:
         "AOS203",
         "AOS515",
         "AOS516",
+        "AOS517",
+        "AOS518",
         "AOS701",
     ):
         return ExitCode.NOT_STARTED

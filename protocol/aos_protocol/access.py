@@ -107,6 +107,7 @@ TABLE: tuple[Row, ...] = (
     Row("mission/stop", asks=(OPERATOR,), answers=(SOLVER,)),
     Row("mission/list", asks=(ADAPTER, OPERATOR, WATCHER), answers=(SOLVER,)),
     Row("mission/resume", asks=(OPERATOR,), answers=(SOLVER,)),
+    Row("mission/steer", asks=(OPERATOR,), answers=(SOLVER,)),
     Row(
         "mission/state",
         asks=(MIDDLEWARE, ADAPTER, OPERATOR, WATCHER),

@@ -10,7 +10,7 @@ compares no codes:
       PlanningError   AOS3xx  no decision, impossible observation
       MappingError    AOS4xx  an abstraction mapping raised, or no rule matched
       SkillError      AOS5xx  a skill is unknown, refused, timed out, lost
-                      MissionRunsError
+                      MissionRunsError, SteeringError
       BusError        AOS6xx  no answer, late answer, malformed message:
                       LateAnswerError, NobodyAnswersError, LostAnswerError
       StorageError    AOS7xx  journal or catalogue
@@ -43,6 +43,7 @@ __all__ = [
     "NobodyAnswersError",
     "PlanningError",
     "SkillError",
+    "SteeringError",
     "StorageError",
     "StudyError",
     "error_from_code",
@@ -128,6 +129,8 @@ CODES: dict[str, str] = {
     "AOS514": "the id of an activation was used for another one",
     "AOS515": "a mission runs already",
     "AOS516": "a mission cannot begin with this belief",
+    "AOS517": "a mission cannot be steered so",
+    "AOS518": "an action that somebody asked for is refused",
     "AOS530": "a mission that cannot be studied so",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
@@ -245,6 +248,12 @@ class StudyError(SkillError):
     code = "AOS530"
 
 
+class SteeringError(SkillError):
+    """Somebody wants something of a mission that cannot be done, or not now; nothing has changed."""
+
+    code = "AOS517"
+
+
 class BusError(AosError):
     code = "AOS601"
 
@@ -310,6 +319,8 @@ _SITUATIONS: dict[str, type[AosError]] = {
     "AOS217": EngineDefectError,
     "AOS220": IntractableError,
     "AOS515": MissionRunsError,
+    "AOS517": SteeringError,
+    "AOS518": SteeringError,
     "AOS530": StudyError,
     "AOS601": LateAnswerError,
     "AOS604": NobodyAnswersError,

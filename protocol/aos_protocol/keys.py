@@ -20,6 +20,7 @@
     aos/<robot>/mission/stop        query   end the mission                        StopMission -> MissionState
     aos/<robot>/mission/list        query   which missions there were               MissionsQuery -> Missions
     aos/<robot>/mission/resume      query   go on with a mission that holds     ResumeMission -> MissionState
+    aos/<robot>/mission/steer       query   hold, step, act, leave out, and back         Steer -> MissionState
     aos/<robot>/mission/state       stream and query: where the mission is       MissionQuery -> MissionState
     aos/<robot>/decision/record     stream  decisions and their outcomes                       DecisionRecord
     aos/<robot>/decision/history    query   the records from a sequence number        HistoryQuery -> History
@@ -161,6 +162,10 @@ class Keys:
     @property
     def resume_mission(self) -> str:
         return f"{self._root}/mission/resume"
+
+    @property
+    def steer_mission(self) -> str:
+        return f"{self._root}/mission/steer"
 
     @property
     def mission_state(self) -> str:

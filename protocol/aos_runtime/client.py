@@ -48,6 +48,7 @@ from aos_runtime.asking import ask_until_answered
 from aos_runtime.bus import Access, Bus
 from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
 from aos_runtime.older_python import timeout
+from aos_runtime.steering import STEER_TIMEOUT_S, SteeringQuestions
 from aos_runtime.subscription import Subscription, merged
 
 __all__ = ["AosClient", "DecisionFeed"]
@@ -69,9 +70,6 @@ START_TIMEOUT_S = 600.0
 STUDY_TIMEOUT_S = 600.0
 """A study begins with a replay, and may compile a model."""
 
-STOP_TIMEOUT_S = 300.0
-"""A mission that is stopped ends once what moves has stopped, and a decision on its way is made."""
-
 
 class _Place(msgspec.Struct):
     """The part of `run.json` that a client needs."""
@@ -80,12 +78,15 @@ class _Place(msgspec.Struct):
     robot: str
 
 
-class AosClient:
-    """A watcher of one robot, who can start and stop missions as its operator. Watching changes nothing."""
+class AosClient(SteeringQuestions):
+    """A watcher of one robot, who can start, steer and stop missions as its operator.
 
-    def __init__(self, bus: Bus, robot: str) -> None:
-        self.bus = bus
-        self.keys = Keys(robot)
+    Watching changes nothing. `by` is the name under which missions are steered; by default user and host of
+    this process.
+    """
+
+    def __init__(self, bus: Bus, robot: str, by: str = "") -> None:
+        super().__init__(bus, Keys(robot), by)
 
     @classmethod
     @asynccontextmanager
@@ -96,6 +97,7 @@ class AosClient:
         *,
         connect_timeout_s: float = 5.0,
         credential: Credential | None = None,
+        by: str = "",
     ) -> AsyncIterator[AosClient]:
         """A client of the system at `endpoint`; BusError AOS605 if none is there in time.
 
@@ -110,12 +112,12 @@ class AosClient:
             access=_access_of(robot, credential),
         )
         async with bus:
-            yield cls(bus, robot)
+            yield cls(bus, robot, by)
 
     @classmethod
     @asynccontextmanager
     async def of_run(
-        cls, run: str | Path, user: str = WATCHER, *, connect_timeout_s: float = 5.0
+        cls, run: str | Path, user: str = WATCHER, *, connect_timeout_s: float = 5.0, by: str = ""
     ) -> AsyncIterator[AosClient]:
         """A client of the system that has this run directory, as its `watcher` or its `operator`.
 
@@ -123,7 +125,7 @@ class AosClient:
         """
         place, credential = _place_of(Path(run), user)
         async with cls.connect(
-            place.endpoint, place.robot, connect_timeout_s=connect_timeout_s, credential=credential
+            place.endpoint, place.robot, connect_timeout_s=connect_timeout_s, credential=credential, by=by
         ) as client:
             yield client
 
@@ -163,10 +165,10 @@ class AosClient:
         return await ask_until_answered(
             self.bus,
             self.keys.stop_mission,
-            StopMission(mission),
+            StopMission(mission, by=self.by),
             MissionState,
             server=self.keys.live("solver"),
-            timeout_s=STOP_TIMEOUT_S,
+            timeout_s=STEER_TIMEOUT_S,
         )
 
     async def missions(self) -> Missions:

@@ -8,7 +8,7 @@ import pytest
 from models import built_bundle
 from scripted_missions import Surroundings, jammed, observed, run_mission, timed_out
 
-from aos_protocol.messages import Activate, Fault, Outcome
+from aos_protocol.messages import Activate, Fault, Outcome, Steer
 from aos_solver.building.build import BuiltModel
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, SkillRule
@@ -105,10 +105,10 @@ async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel) -
         return jammed(request) if request.id.step == 2 else good(request)
 
     around = Surroundings(robot)
-    around.on_hold = lambda: around.mission.resume()
+    around.on_hold = lambda: around.mission.steer(Steer("resume", by="ana"))
     rules = FailureRules(skills={"pick": SkillRule(on_failure="hold")})
     state, _ = await run_mission(finer, robot, rules=rules, around=around)
-    (held,) = [state for state in around.states if state.phase == "holding"]
+    held, _ = [state for state in around.states if state.phase == "holding"]
     assert held.remark == "the mission holds: pick: failed, AOS510: gripper jammed"
     assert state.ending == "goal"
 

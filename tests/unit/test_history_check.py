@@ -15,6 +15,7 @@ from aos_deploy.history_check.files import violations_of_run
 from aos_deploy.history_check.rules import RULES
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol.messages import (
+    ActionRefused,
     Activate,
     ActivationId,
     BeliefSummary,
@@ -26,6 +27,7 @@ from aos_protocol.messages import (
     Outcome,
     SkillCall,
     SkillResult,
+    Steer,
 )
 from aos_runtime.journal import Journal, JournalRow
 
@@ -179,6 +181,22 @@ def test_a_new_solver_asks_again_with_the_same_id_and_a_new_middleware_takes_it_
     assert history.broken_rules() == set()
 
 
+def test_a_mission_that_was_steered_breaks_no_rule() -> None:
+    """Step 1 is asked for while somebody holds, 2 is the step that they let the planner make."""
+    history = History()
+    for number in (0, 1):
+        history.change("decision", number, chosen_by="operator")
+    at = history.place("decision", 0)
+    hold = Steer("hold", by="ana")
+    _steer(history, at, hold, Steer("act", ("go(to=1)",), by="ana", request="r"))
+    refused = Steer("act", ("stay",), by="ana", request="s")
+    at = history.place("decision", 2)
+    _steer(history, at, refused, Steer("step", by="ana"))
+    history.journal.insert(at + 2, Entry(205, "refused", ActionRefused("stay", "s", "why")))
+    _steer(history, history.place("mission", 3), Steer("resume", by="ana"))
+    assert history.broken_rules() == set()
+
+
 def _damaged_row(history: History) -> None:
     history.journal[4] = Entry(0, "decision", state("planning", 1))
 
@@ -267,6 +285,34 @@ def _motion_while_it_holds(history: History) -> None:
     history.robot[place] = history.robot[place]._replace(stamp_ns=290)
 
 
+def _steer(history: History, place: int, *steers: Steer) -> None:
+    """Puts what somebody wants before a row."""
+    stamp_ns = history.journal[place].stamp_ns
+    history.journal[place:place] = [Entry(stamp_ns, "steered", steer) for steer in steers]
+
+
+def _decision_while_somebody_holds_it(history: History) -> None:
+    _steer(history, history.place("decision", 2), Steer("hold", by="ana"))
+
+
+def _decision_before_what_somebody_wants(history: History) -> None:
+    _steer(history, history.place("decision", 2), Steer("act", ("stay",), by="ana", request="r"))
+
+
+def _decision_that_nobody_wants(history: History) -> None:
+    for number in (2, 3):
+        history.change("decision", number, chosen_by="operator")
+
+
+def _decision_for_what_is_left_out(history: History) -> None:
+    _steer(history, history.place("decision", 2), Steer("leave_out", name="go(to=2)", by="ana"))
+
+
+def _refusal_that_nobody_asked_for(history: History) -> None:
+    place = history.place("decision", 2)
+    history.journal.insert(place, Entry(205, "refused", ActionRefused("stay", "r", "why")))
+
+
 def _row_after_the_end(history: History) -> None:
     history.journal.append(Entry(1100, "mission", state("planning", 3)))
 
@@ -303,6 +349,11 @@ BREAKS: dict[Callable[[History], None], str] = {
     _end_without_a_start: "ends",
     _decision_while_it_holds: "hold",
     _motion_while_it_holds: "hold",
+    _decision_while_somebody_holds_it: "steering",
+    _decision_before_what_somebody_wants: "steering",
+    _decision_that_nobody_wants: "steering",
+    _decision_for_what_is_left_out: "steering",
+    _refusal_that_nobody_asked_for: "steering",
     _row_after_the_end: "over",
     _motion_after_the_end: "over",
     _summary_that_differs: "verdict",

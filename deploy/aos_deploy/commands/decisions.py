@@ -67,6 +67,8 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
     """Returns the lines below a decision that say why that planner made it."""
     if not isinstance(event, DecisionRecord) or event.outcome is not None or not event.why:
         return []
+    if not event.planner:
+        return []  # The line of the decision says who has asked for it.
     return [f"         {event.planner}: {event.why}"]
 
 

@@ -1,4 +1,4 @@
-"""`aos mission`: the missions of a system that stays, one after the other."""
+"""`aos mission`: the missions of a system, one after the other, and steering the one that runs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from aos_deploy.commands import steering
 from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
 from aos_deploy.living_runs import chosen_run
 from aos_deploy.mission_values import SetValues, values_of_options
@@ -23,7 +24,7 @@ __all__ = ["register"]
 
 mission_app = typer.Typer(
     no_args_is_help=True,
-    help="Start, stop and list the missions of a system that `aos-up --stay` has started.",
+    help="Start, stop and list the missions of a system that `aos-up --stay` has started, and steer them.",
     epilog="Example: aos mission start --set target=bob --belief keep --given 'state.robot_at == Kitchen'",
 )
 
@@ -44,6 +45,7 @@ Idle = Annotated[
 
 def register(app: typer.Typer) -> None:
     """Adds `aos mission` to `aos`."""
+    steering.register(mission_app)
     app.add_typer(mission_app, name="mission")
 
 

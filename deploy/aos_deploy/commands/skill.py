@@ -24,7 +24,6 @@ from aos_protocol.messages import (
     MissionState,
     ProjectQuery,
     ProjectRevision,
-    ResumeMission,
     SkillCall,
     SkillProgress,
     SkillResult,
@@ -155,10 +154,11 @@ def resume(system: System) -> None:
 
     async def work(aos: AosClient) -> None:
         before = await aos.mission_state()
-        await aos.bus.ask(aos.keys.resume_mission, ResumeMission(), MissionState, timeout_s=_ASK_S)
-        typer.echo(
-            "the mission goes on" if before.phase == "holding" else f"it does not hold: {before.phase}"
-        )
+        if before.phase == "holding":
+            await aos.resume()
+            typer.echo("the mission goes on")
+        else:
+            typer.echo(f"it does not hold: {before.phase}")
 
     system.do(work)
 

@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from aos_deploy.history_check.steering_rules import SteeringRules
 from aos_deploy.verdict import Account
 from aos_protocol.messages import (
+    ActionRefused,
     Activate,
     ActivationId,
     BeliefSummary,
@@ -18,9 +20,11 @@ from aos_protocol.messages import (
     MissionState,
     ModelAdopted,
     Outcome,
+    Steer,
 )
 from aos_runtime.fence import meaning
 from aos_runtime.journal import JournalRow
+from aos_solver.mission.steering import REFUSED, STEERED
 
 __all__ = ["KINDS", "Found", "Intention", "JournalRules", "digest"]
 
@@ -31,6 +35,8 @@ KINDS: dict[str, type[Any]] = {
     "mission": MissionState,
     "intended": Activate,
     "outcome": Outcome,
+    STEERED: Steer,
+    REFUSED: ActionRefused,
 }
 """The kinds of rows that the rules are about."""
 
@@ -68,6 +74,7 @@ class JournalRules:
         self._outcome: Outcome | None = None
         self._belief: tuple[str, BeliefSummary] | None = None
         self._is_handed_over = False
+        self._steering = SteeringRules()
 
     def was_holding(self, stamp_ns: int) -> bool:
         """Says whether the mission held at this time."""
@@ -78,6 +85,9 @@ class JournalRules:
         """One row with its message, which is of one of KINDS; what is wrong is told to `found`."""
         if self.end_ns is not None and not _is_end(message):
             found("over", f"a row of the kind {row.kind} after the mission's end")
+        self._steering.take(message, found)
+        if isinstance(message, Steer | ActionRefused):
+            return
         if isinstance(message, MissionState):
             self._take_state(row, message, found)
             return

@@ -19,6 +19,8 @@ RULES = {
     "motion": "an id moves at most once",
     "ends": "what ends was started before, and ends once",
     "hold": "nothing starts while the mission holds",
+    "steering": "while somebody holds the mission nothing is decided but what was asked for, and nothing is "
+    "decided for that is left out",
     "over": "nothing follows the end of the mission",
     "verdict": "the summary has the verdict of the journal, as far as that goes",
 }

@@ -122,9 +122,9 @@ def decision_line(record: DecisionRecord) -> str:
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
-        values = ", ".join(_value(action) for action in others)
+        values = f"[{', '.join(_value(action) for action in others)}]  " if others else ""
         risks = "".join(f"  ({risk_text(constraint)})" for constraint in record.constraints)
-        return f"{head}  [{values}]  {effort_text(record)}{risks}"
+        return f"{head}  {values}{effort_text(record)}{risks}"
     outcome = record.outcome
     is_observed = outcome.status == "observed"
     what = observation_text(outcome.response, outcome.numbers) if is_observed else outcome.status
@@ -146,6 +146,8 @@ def _value(action: ActionValue) -> str:
 
 def effort_text(record: DecisionRecord) -> str:
     """Says who decided, and with how much work; short."""
+    if record.chosen_by in ("operator", "script"):
+        return record.why
     if not record.simulations:
         by = f"{record.planner} without a search" if record.planner else ""
         return f"{by} in {record.planning_s:.2f} s"

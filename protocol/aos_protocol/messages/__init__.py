@@ -63,6 +63,7 @@ from aos_protocol.messages.skills import (
     Stray,
     TopicMessage,
 )
+from aos_protocol.messages.steering import ActionRefused, Steer, SteeringVerb
 from aos_protocol.messages.study import (
     Consequence,
     DecisionTree,
@@ -78,6 +79,7 @@ from aos_protocol.messages.study import (
 )
 
 __all__ = [
+    "ActionRefused",
     "ActionValue",
     "Activate",
     "ActivationId",
@@ -128,6 +130,8 @@ __all__ = [
     "SkillProgress",
     "SkillResult",
     "StartMission",
+    "Steer",
+    "SteeringVerb",
     "StopMission",
     "Stray",
     "TakeoverWay",

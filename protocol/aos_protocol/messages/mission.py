@@ -70,11 +70,12 @@ class StartMission(Message, frozen=True):
 class StopMission(Message, frozen=True):
     """Cancels what moves and ends the mission as `cancelled`. Answered by its MissionState when it has ended.
 
-    Where no mission runs, nothing changes. An empty `mission` is the one that runs.
+    Where no mission runs, nothing changes. An empty `mission` is the one that runs. `by` is who asks.
     """
 
     mission: str = ""
     reason: str = "stopped by hand"
+    by: str = ""
 
 
 class MissionsQuery(Message, frozen=True):
@@ -147,7 +148,12 @@ class ModelAdopted(Message, frozen=True):
 
 
 class ResumeMission(Message, frozen=True):
-    """Lets a mission go on that holds; one that does not is left alone. Answered by its MissionState."""
+    """Lets a mission go on that holds; one that does not is left alone. Answered by its MissionState.
+
+    `by` is who asks.
+    """
+
+    by: str = ""
 
 
 class Marginal(Message, frozen=True):
@@ -209,6 +215,10 @@ class MissionState(Message, frozen=True):
 
     A mission that does not end by itself is ended in the journal by aos-up: as `cancelled`, as `fault`, or as
     `not_started` where nothing was decided. `code` is that of the fault.
+
+    `held_by` is who holds it, empty where nobody does: a mission in the phase `holding` without it holds for
+    a skill. `left_out` are the skills and grounded actions that decisions do without, with who left them out.
+    `asked` are the actions that somebody has asked for and that are still to be carried out.
     """
 
     mission: str
@@ -220,6 +230,9 @@ class MissionState(Message, frozen=True):
     revision: int = 0
     epoch: int = 0
     code: str = ""
+    held_by: str = ""
+    left_out: dict[str, str] = {}
+    asked: tuple[str, ...] = ()
 
 
 class ActionValue(Message, frozen=True):
@@ -275,13 +288,15 @@ class DecisionRecord(Message, frozen=True):
     is given as `is_impossible`. `remark` says what of the outcome could not be used for the belief. `planner`
     made the decision with so many `threads`; `why` says why it was that planner and what it has found.
     `constraints` are the mission's, each with what the decision risks. The decision does without the skills
-    that are `set_aside`, each with the reason; `actions` has none of theirs. With `is_cautious` it is for the
-    belief in which nothing ran that was not observed. `adopted` tells of the model that has taken over since
-    the decision before. `chosen_by` says who chose the action. `searches` are all that were made since the
-    decision before, in their order; where one made this decision it is the last
-    that is not dropped. The engine's
-    process had been started `engine_starts` times. `build_digest` is of the model's text, the engine's
-    headers, compiler and flags: decisions repeat where it is the same.
+    and grounded actions that are `set_aside`, each with the reason; `actions` has none of them. With
+    `is_cautious` it is for the belief in which nothing ran that was not observed. `adopted` tells of the
+    model that has taken over since the decision before. `chosen_by` says who chose the action. One that an
+    operator or a script has asked for was not searched for: `actions` and `planner` are empty.
+
+    `searches` are all that were made since the decision before, in their order; where one made this decision
+    it is the last that is not dropped. The engine's process had been started `engine_starts` times.
+    `build_digest` is of the model's text, the engine's headers, compiler and flags: decisions repeat where it
+    is the same.
     """
 
     sequence: int

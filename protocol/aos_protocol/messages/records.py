@@ -18,9 +18,9 @@ class SearchMade(Message, frozen=True):
     a skill ran (`is_pondering`). A policy file that was asked counts as a search without simulations.
 
     `simulations` has the number of each thread, and `known` is how many the tree held before. The search was
-    for none of the actions that are `barred`, each with the reason, and did `without` skills altogether. With
-    `is_cautious` it was for the belief in which nothing ran that was not observed. `engine` is how often the
-    engine's process had been started.
+    for none of the actions that are `barred`, each with the reason, and did altogether `without` skills and
+    grounded actions. With `is_cautious` it was for the belief in which nothing ran that was not observed.
+    `engine` is how often the engine's process had been started.
     """
 
     planner: str

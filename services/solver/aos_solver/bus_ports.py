@@ -53,10 +53,11 @@ class BusPorts:
         return self._mappings.announced
 
     async def until_changed(self, timeout_s: float) -> None:
-        self._changed.clear()
+        # A change that came before is not lost.
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(timeout_s):
                 await self._changed.wait()
+        self._changed.clear()
 
     def journal(self, kind: str, payload: Message) -> None:
         assert self._books.newest is not None

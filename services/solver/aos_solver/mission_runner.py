@@ -58,6 +58,7 @@ class MissionRunner:
         self._ports = ports
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
+        self._has_begun = asyncio.Event()
         self._succession = Succession(
             books, self._terms, registry.documents, Path(settings.cache_dir), settings.mission_values
         )
@@ -107,6 +108,13 @@ class MissionRunner:
                 running, past = RunningModel(running.revision, begun.engine), begun.past
                 await self._shelf.turn_to(running, self._succession.values(book.start))
             self._begin(book, running, book.start, past)
+
+    async def running(self) -> Mission | None:
+        """Returns the mission that runs, once it is taken up where its solver was started again."""
+        if self.mission is None and self.is_interrupted:
+            await self._has_begun.wait()
+        mission = self.mission
+        return mission if mission is not None and mission.state.phase != "ended" else None
 
     async def run(self) -> None:
         """Runs each mission that begins to its end; returns after the last one."""
@@ -187,6 +195,7 @@ class MissionRunner:
         self.mission = Mission(terms, running, self._ports, memory, past)
         self.ended.clear()
         self._started.set()
+        self._has_begun.set()
 
     def _terms(self, name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
         """The terms of a mission."""

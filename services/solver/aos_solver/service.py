@@ -25,6 +25,7 @@ from aos_protocol.messages import (
     ProjectRevision,
     ResumeMission,
     StartMission,
+    Steer,
     StopMission,
 )
 from aos_runtime.failpoints import reach
@@ -40,7 +41,7 @@ from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission_runner import MissionRunner
 from aos_solver.registry_watch import RegistryWatch
 from aos_solver.settings import Settings
-from aos_solver.stopping import until_stopped
+from aos_solver.steering_desk import SteeringDesk
 from aos_solver.study_desk import StudyDesk
 
 __all__ = ["serve"]
@@ -88,6 +89,7 @@ class _Solver:
         self._missions = MissionRunner(
             settings, self._books, self._shelf, self._mappings, self._registry, self._ports
         )
+        self._steering = SteeringDesk(self._missions, self._changed.set, service.bus, service.keys)
 
     async def run(self) -> None:
         bus, keys = self._bus, self._keys
@@ -97,6 +99,7 @@ class _Solver:
             await bus.answer(keys.decision_history, HistoryQuery, self._answer_history)
             await bus.answer(keys.check_model, CheckModel, self._check)
             await bus.answer(keys.resume_mission, ResumeMission, self._resume)
+            await bus.answer(keys.steer_mission, Steer, self._steer)
             await bus.answer(keys.stop_mission, StopMission, self._stop)
             await bus.answer(keys.missions, MissionsQuery, self._answer_missions)
             await self._studies.answer(bus, keys)
@@ -126,19 +129,21 @@ class _Solver:
         mission = self._missions.mission
         if mission is None or stop.mission not in ("", mission.state.mission):
             return self._missions.state
-        mission.stop(stop.reason)
-        self._changed.set()
-        await until_stopped(mission, stop.reason, self._missions.ended, self._bus, self._keys)
+        if mission.state.phase != "ended":
+            await self._steering.take(Steer("stop", by=stop.by, reason=stop.reason))
         return mission.state
 
     async def _answer_missions(self, _: MissionsQuery, __: str) -> Missions:
         return Missions(await asyncio.to_thread(self._books.entries), self._settings.stay)
 
-    async def _resume(self, _: ResumeMission, __: str) -> MissionState:
-        if self._missions.mission is not None:
-            self._missions.mission.resume()
-            self._changed.set()
+    async def _resume(self, resume: ResumeMission, _: str) -> MissionState:
+        mission = self._missions.mission
+        if mission is not None and mission.state.phase == "holding":
+            await self._steering.take(Steer("resume", by=resume.by))
         return self._missions.state
+
+    async def _steer(self, steer: Steer, _: str) -> MissionState:
+        return await self._steering.take(steer)
 
     async def _answer_state(self, _: MissionQuery, __: str) -> MissionState:
         return self._missions.state

@@ -33,6 +33,12 @@ async def _cancel(mission: Mission, reason: str, bus: Bus, keys: Keys) -> None:
     if mission.activation is None:
         return
     cancel = Cancel(reason, mission.activation, mission.state.epoch)
-    for path in await served_paths(bus, keys):
-        with suppress(AosError):
-            await bus.ask(keys.cancel(path), cancel, Cancelled, timeout_s=CANCEL_TIMEOUT_S)
+    # All at once: one that is slow to answer keeps nothing else moving.
+    questions = [
+        bus.ask(keys.cancel(path), cancel, Cancelled, timeout_s=CANCEL_TIMEOUT_S)
+        for path in await served_paths(bus, keys)
+    ]
+    answers = await asyncio.gather(*questions, return_exceptions=True)
+    for answer in answers:
+        if isinstance(answer, BaseException) and not isinstance(answer, AosError):
+            raise answer

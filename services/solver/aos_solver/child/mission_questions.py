@@ -27,12 +27,13 @@ class Restriction(msgspec.Struct, frozen=True, kw_only=True):
     """The actions and the belief of a decision.
 
     The decision is for none of the actions that are `barred`, which nobody could carry out now. The search
-    does without the skills `without`, now and later. With `cautious` it starts from the belief in which
-    nothing ran that was not observed.
+    does without the skills `without` and the actions `without_actions`, now and later. With `cautious` it
+    starts from the belief in which nothing ran that was not observed.
     """
 
     barred: Sequence[int] = ()
     without: Sequence[str] = ()
+    without_actions: Sequence[int] = ()
     cautious: bool = False
 
 
@@ -68,6 +69,7 @@ class MissionQuestions(Asking):
             planner=planner,
             threads=threads,
             without=",".join(within.without) or None,
+            without_actions=",".join(map(str, within.without_actions)) or None,
             cautious=within.cautious or None,
         )
         return await self._ask(command, Plan, deadline_s=PLANNING_DEADLINE_S + (time_s or 0))
@@ -101,12 +103,19 @@ class MissionQuestions(Asking):
         return await self._ask(command_line("risks", seed=seed), Risks)
 
     async def may_reach_goal(
-        self, *, without: Sequence[str] = (), cautious: bool = False, seconds: float = 1.0, seed: int = 0
+        self,
+        *,
+        without: Sequence[str] = (),
+        without_actions: Sequence[int] = (),
+        cautious: bool = False,
+        seconds: float = 1.0,
+        seed: int = 0,
     ) -> GoalReach:
-        """Looks for so much processor time whether actions lead to a goal without these skills."""
+        """Looks for so much processor time whether the other skills and actions lead to a goal."""
         command = command_line(
             "may_reach_goal",
             without=",".join(without) or None,
+            without_actions=",".join(map(str, without_actions)) or None,
             cautious=cautious or None,
             seconds=seconds,
             seed=seed,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import msgspec
 
@@ -19,10 +19,11 @@ from aos_solver.mission.endings import remark_of as remark_of_ending
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.ports import Available
 from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.steering import Asked
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
-__all__ = ["Choice", "Chooser", "Ended", "Held"]
+__all__ = ["Choice", "Chooser", "Ended", "Held", "Refused"]
 
 _TOO_RISKY = "it risks more than the mission's constraints have left"
 _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
@@ -31,7 +32,8 @@ _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
 class Choice(msgspec.Struct, frozen=True):
     """An action, and what it was chosen without. `is_cautious` says that it is for the cautious belief.
 
-    `forbidden` are the numbers of the actions that risk too much. `searches` are all that were made for it.
+    `forbidden` are the numbers of the actions that risk too much. `set_aside` are the skills and grounded
+    actions that it was chosen without. `searches` are all that were made for it.
     """
 
     plan: Plan
@@ -51,22 +53,62 @@ class Ended(msgspec.Struct, frozen=True):
 
 
 class Held(msgspec.Struct, frozen=True):
-    """Nothing can be run until something changes."""
+    """Nothing can be run until something changes; where it is `for_operator`, somebody has to change it."""
 
     remark: str
+    for_operator: bool = False
+
+
+class Refused(msgspec.Struct, frozen=True):
+    """An action that somebody asked for and that cannot be carried out now."""
+
+    why: str
+    hint: str = ""
+
+
+class _Without(msgspec.Struct, frozen=True):
+    """Skills and actions that a decision does without, each with the reason and as the engine has them."""
+
+    reasons: dict[str, str]
+    skills: list[str]
+    actions: list[int]
+
+    def restriction(self, barred: list[int], *, cautious: bool = False) -> Restriction:
+        return Restriction(
+            barred=barred, without=self.skills, without_actions=self.actions, cautious=cautious
+        )
+
+
+_GIVES_UP = (Ending.SKILLS_FAILED, Ending.NOTHING_WORTHWHILE)
 
 
 class Chooser:
-    """Decides within a mission's limits, constraints and rules for failures."""
+    """Decides within a mission's limits, constraints and rules for failures.
 
-    def __init__(self, terms: Terms, failures: Failures, around: Available, budget: RiskBudget) -> None:
+    `left_out` tells which skills and grounded actions somebody has left out, each with the reason.
+    """
+
+    def __init__(
+        self,
+        terms: Terms,
+        failures: Failures,
+        around: Available,
+        budget: RiskBudget,
+        left_out: Callable[[], Mapping[str, str]] = dict,
+    ) -> None:
         self._terms = terms
         self.search = terms.search
         self._limits = terms.limits
         self._failures = failures
         self._around = around
         self._budget = budget
+        self._left_out = left_out
         self._searches: list[SearchMade] = []
+
+    def drop(self, choice: Choice) -> None:
+        """The choice is not carried out; the next decision's record tells of its searches."""
+        dropped = [msgspec.structs.replace(made, is_dropped=True) for made in choice.searches]
+        self._searches = [*dropped, *self._searches]
 
     def forget_searches(self) -> None:
         """Another engine decides from now on, whatever was searched in the one before."""
@@ -74,11 +116,46 @@ class Chooser:
 
     def is_something_available(self, engine: Engine) -> bool:
         """Returns whether any action could be carried out now."""
-        away = self._around.unavailable.keys() | self._set_aside().keys()
-        return any(action.skill not in away for action in engine.description.actions)
+        away = self._around.unavailable.keys() | self._set_aside().keys() | self._left_out().keys()
+        actions = engine.description.actions
+        return any(action.skill not in away and action.name not in away for action in actions)
 
     async def choose(self, model: RunningModel, step: int, belief: BeliefSummary) -> Choice | Ended | Held:
-        """Chooses what follows at this belief; the action still can be carried out when it is chosen."""
+        """Chooses what follows at this belief; the action still can be carried out when it is chosen.
+
+        A mission that would give up without what somebody has left out holds for them.
+        """
+        choice = await self._choose(model, step, belief)
+        left_out = self._left_out()
+        if left_out and isinstance(choice, Ended) and choice.ending in _GIVES_UP:
+            why = "; ".join(dict.fromkeys([choice.remark, *left_out.values()]))
+            return Held(f"the mission holds: {why}", for_operator=True)
+        return choice
+
+    async def asked_for(self, model: RunningModel, step: int, asked: Asked) -> Choice | Refused:
+        """The choice of an action that somebody has asked for, without a search."""
+        engine, reasons = model.engine, self._left_out()
+        if not engine.has_action(asked.action):
+            return Refused("the documents that run now have no such action")
+        names = [action.name for action in engine.description.actions]
+        index = names.index(asked.action)
+        skill = engine.description.actions[index].skill
+        for name in (asked.action, skill):
+            if name in reasons:
+                return Refused(reasons[name], f"Take it back with `aos mission take-back '{name}'`")
+        if skill in self._around.unavailable:
+            return Refused(self._around.unavailable[skill])
+        risks = await engine.risks(self.search.seed_of(step)) if self._budget else None
+        if risks is not None and (refusal := self._budget.refusal(risks, index)):
+            return Refused(refusal)
+        predicted = (await engine.predict(index)).predicted
+        horizon = self.search.horizon or engine.description.horizon
+        plan = Plan(index, 0, horizon, (), predicted, 0.0, why=f"{asked.by} has asked for it")
+        chosen_by: ChosenBy = "script" if asked.is_script else "operator"
+        without = self._without(engine).reasons
+        return Choice(plan, risks, frozenset(), without, False, chosen_by, self._searched())
+
+    async def _choose(self, model: RunningModel, step: int, belief: BeliefSummary) -> Choice | Ended | Held:
         engine = model.engine
         actions = engine.description.actions
         risks = await engine.risks(self.search.seed_of(step)) if self._budget else None
@@ -86,10 +163,14 @@ class Chooser:
         if risks is not None and len(forbidden) == len(actions):
             return Ended(Ending.TOO_RISKY, self._budget.remark(risks))
         while True:
-            set_aside = self._set_aside()
-            possible = [number for number, action in enumerate(actions) if action.skill not in set_aside]
+            without = self._without(engine)
+            possible = [
+                number
+                for number, action in enumerate(actions)
+                if action.skill not in without.reasons and action.name not in without.reasons
+            ]
             if not set(possible) - forbidden:
-                return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
+                return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
             unavailable = self._around.unavailable
             barred = {
                 n: unavailable.get(actions[n].skill, _TOO_RISKY)
@@ -97,7 +178,7 @@ class Chooser:
                 if actions[n].skill in unavailable or n in forbidden
             }
             if len(barred) == len(possible):
-                why = "; ".join(sorted({*unavailable.values(), *set_aside.values()}))
+                why = "; ".join(sorted({*unavailable.values(), *without.reasons.values()}))
                 risky = ", and all others are too risky" if forbidden else ""
                 return Held(f"the mission holds, for no skill can be run: {why}{risky}")
             retried = self._failures.to_retry
@@ -105,16 +186,16 @@ class Chooser:
                 index = [action.name for action in actions].index(retried.action)
                 if index in possible and index not in barred:
                     again = await self._repeated(engine, retried, index)
-                    return Choice(again, risks, forbidden, set_aside, False, "retry", self._searched())
-            plan, is_cautious = await self._plan(engine, step, belief, barred, set_aside)
+                    return Choice(again, risks, forbidden, without.reasons, False, "retry", self._searched())
+            plan, is_cautious = await self._plan(engine, step, belief, barred, without)
             if actions[plan.index].skill in self._around.unavailable:
                 continue
-            ended = await self._ending(engine, plan, belief, set_aside)
-            plan = _explained(plan, set_aside, is_cautious)
+            ended = await self._ending(engine, plan, belief, without)
+            plan = _explained(plan, without.reasons, is_cautious)
             if ended is not None:
                 return ended
             chosen_by, searches = self.search.chosen_by, self._searched()
-            return Choice(plan, risks, forbidden, set_aside, is_cautious, chosen_by, searches)
+            return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
 
     def _searched(self) -> tuple[SearchMade, ...]:
         """The searches since the decision before, which are told once."""
@@ -124,19 +205,28 @@ class Chooser:
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
 
+    def _without(self, engine: Engine) -> _Without:
+        """The skills and actions of the model that are set aside or left out."""
+        wanted = {**self._set_aside(), **self._left_out()}
+        actions = engine.description.actions
+        skills = {action.skill for action in actions}
+        numbers = [number for number, action in enumerate(actions) if action.name in wanted]
+        known = skills.union(actions[number].name for number in numbers)
+        reasons = {name: why for name, why in wanted.items() if name in known}
+        return _Without(reasons, sorted(skills & reasons.keys()), numbers)
+
     async def _plan(
         self,
         engine: Engine,
         step: int,
         belief: BeliefSummary,
         barred: Mapping[int, str],
-        set_aside: Mapping[str, str],
+        without: _Without,
     ) -> tuple[Plan, bool]:
         """The best action, and whether it is for the cautious belief.
 
         It is where the mission would be over but for that belief, or else nothing would be worth doing.
         """
-        without = sorted(set_aside)
         if not self._terms.is_cautious:
             return await self._search(engine, step, barred, without), False
         if is_held_back(belief, self._limits):
@@ -154,12 +244,12 @@ class Chooser:
         engine: Engine,
         step: int,
         barred: Mapping[int, str],
-        without: list[str],
+        without: _Without,
         *,
         cautious: bool = False,
     ) -> Plan:
         """A plan, of whose search a record is kept; those before it are dropped."""
-        within = Restriction(barred=list(barred), without=without, cautious=cautious)
+        within = without.restriction(list(barred), cautious=cautious)
         plan = await self.search.run(engine, step, within)
         self._searches = [msgspec.structs.replace(made, is_dropped=True) for made in self._searches]
         if plan.pondered:
@@ -171,7 +261,7 @@ class Chooser:
                 plan.by_thread or (plan.simulations,),
                 plan.known_simulations,
                 {engine.description.actions[number].name: why for number, why in barred.items()},
-                tuple(without),
+                tuple(sorted(without.reasons)),
                 cautious,
                 engine=engine.starts,
             )
@@ -189,18 +279,24 @@ class Chooser:
             ]
 
     async def _ending(
-        self, engine: Engine, plan: Plan, belief: BeliefSummary, set_aside: Mapping[str, str]
+        self, engine: Engine, plan: Plan, belief: BeliefSummary, without: _Without
     ) -> Ended | None:
         """The ending that the best action calls for.
 
         Without the skills that are set aside, something is worth doing where it is worth more than nothing,
-        and where it leads to a goal at least.
+        and where it leads to a goal at least. So it is without those that are left out, where no goal is out
+        of reach with them as well.
         """
-        if set_aside and is_worth_nothing(plan.best, self._limits):
+        if without.reasons and is_worth_nothing(plan.best, self._limits):
             is_cautious = belief.cautious is not None
-            reach = await engine.may_reach_goal(without=sorted(set_aside), cautious=is_cautious)
-            if not reach.is_reachable:
-                return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
+            reach = await engine.may_reach_goal(
+                without=without.skills, without_actions=without.actions, cautious=is_cautious
+            )
+            is_reason = reach.is_reachable or bool(self._set_aside())
+            if not is_reason:
+                is_reason = (await engine.may_reach_goal(cautious=is_cautious)).is_reachable
+            if is_reason and not reach.is_reachable:
+                return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
         ending = ending_after_planning(plan.best, plan.actions, self._limits)
         return Ended(ending, remark_of_ending(ending, belief, self._limits)) if ending else None
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import msgspec
 
-from aos_protocol.errors import AosError
+from aos_protocol.errors import AosError, SteeringError
 from aos_protocol.messages import (
     Activate,
     ActivationId,
@@ -20,17 +20,22 @@ from aos_protocol.messages import (
     MissionState,
     ModelAdopted,
     Outcome,
+    Steer,
 )
 from aos_solver.child.answers import BeliefUpdate
+from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
-from aos_solver.mission.choosing import Choice, Chooser, Ended, Held
+from aos_solver.mission.choosing import Choice, Chooser, Ended, Held, Refused
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
+from aos_solver.mission.helm import Helm
+from aos_solver.mission.holding import Holding
 from aos_solver.mission.memory import MissionMemory, Pending
 from aos_solver.mission.past import Past, evidence_of, replayed, updated
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.reports import Reports
 from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.steering import LIFTS, Asked
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
@@ -67,12 +72,13 @@ class Mission:
         self._model = model
         self._ports = ports
         self._failures = Failures(terms.failures)
-        self._is_resumed = False
-        self._to_stop = ""
+        self._abandoning = Abandoning()
+        self._helm = Helm(memory.steering, ports, self._reports.steered)
         self.past = Past(terms.limits.refuted_below, before.steps if before is not None else ())
         self._adopted: ModelAdopted | None = None
         self._budget = RiskBudget(model.engine.bounds)
-        self._chooser = Chooser(terms, self._failures, ports, self._budget)
+        self._chooser = Chooser(terms, self._failures, ports, self._budget, lambda: self._helm.left_out)
+        self._holding = Holding(terms.hold_s, ports, self._helm, self._failures, self._adopt)
 
     @property
     def state(self) -> MissionState:
@@ -85,15 +91,34 @@ class Mission:
             await self.run_or_raise()
         except AosError as error:
             self._reports.end(Ending.FAULT, str(error))
+        self._helm.end(self.state)
         return self.state
 
-    def resume(self) -> None:
-        """Somebody has looked after what the mission holds for."""
-        self._is_resumed = True
+    def steer(self, steer: Steer) -> None:
+        """Takes what somebody wants, journals it and tells of it; it acts at the next decision.
 
-    def stop(self, reason: str) -> None:
-        """Ends the mission as `cancelled` before anything else moves. Whoever stops it cancels what moves."""
-        self._to_stop = reason
+        What was asked for before changes nothing. SteeringError says why something cannot be done. Whoever
+        stops the mission cancels what moves.
+        """
+        if self.state.phase == "ended":
+            raise SteeringError(f"the mission {self.state.mission} has ended, {self.state.ending}")
+        is_holding = self.state.phase == "holding"
+        if not self._helm.take(steer, self._model.engine.description, is_holding=is_holding):
+            return
+        if steer.verb in LIFTS:
+            self._holding.resume()
+        if self._to_stop:
+            self._abandoning.begin()
+        self._reports.tell()
+
+    async def until_decided(self, request: str) -> None:
+        """Returns once the actions of a request were decided for; SteeringError where they will not be."""
+        await self._helm.until_decided(request)
+
+    @property
+    def _to_stop(self) -> str:
+        """The reason why somebody wants it to end as `cancelled` before anything else moves."""
+        return self._helm.now.to_stop
 
     @property
     def activation(self) -> ActivationId | None:
@@ -115,6 +140,11 @@ class Mission:
             await keep_belief(self._ports, self._model, 0, self.belief)
         while (ending := self._ending()) is None:
             if await self._adopt():
+                continue
+            if self._helm.now.waits and not self._to_stop:
+                by = self._helm.now.held_by
+                self._move_to("holding", self.state.step, remark=f"{by} holds the mission")
+                await self._holding.for_operator()
                 continue
             choice = await self._choose()
             if choice is None:
@@ -150,14 +180,14 @@ class Mission:
             self._move_to("acting", decision.step, remark=decision.action)
             return await self._finish(decision, outcome or await self._act(decision, intention))
         if memory.is_held and self._failures.to_hold:
-            await self._hold(self._failures.to_hold, lambda: False)
+            await self._hold(self._failures.to_hold)
         return self._goes_on()
 
     async def _finish(self, decision: DecisionRecord, outcome: Outcome) -> bool:
         """Takes the outcome of a decision; returns whether the mission goes on."""
         await self._observe(decision, outcome)
         if self._failures.to_hold:
-            await self._hold(self._failures.to_hold, lambda: False)
+            await self._hold(self._failures.to_hold)
         return self._goes_on()
 
     def _goes_on(self) -> bool:
@@ -202,46 +232,59 @@ class Mission:
         return ending_of_belief(self.belief, self.state.step, self._terms.limits) or self._ports.world_ending
 
     async def _choose(self) -> Choice | Ended | None:
-        """The next decision, or an ending; None after a hold, since nothing can be run."""
-        engine, step = self._model.engine, self.state.step
+        """The next decision, or an ending; None after a hold, and where somebody has steered meanwhile."""
+        step, turns, asked = self.state.step, self._helm.turns, self._helm.asked
         if self._to_stop:
             return Ended(Ending.CANCELLED, self._to_stop)
         self._move_to("planning", step)
-        choice = await self._chooser.choose(self._model, step + 1, self.belief)
-        if self._to_stop:
+        choice = await self._abandoning.unless_begun(self._next(step + 1, asked))
+        if self._to_stop or choice is None:
             return Ended(Ending.CANCELLED, self._to_stop)
+        if self._helm.turns != turns:
+            if isinstance(choice, Choice):
+                self._chooser.drop(choice)
+            return None
+        if isinstance(choice, Refused):
+            assert asked is not None
+            self._helm.refuse(asked, choice.why, choice.hint)
+            return None
         if not isinstance(choice, Held):
             return choice
-        await self._hold(choice.remark, lambda: self._chooser.is_something_available(engine), adopts=True)
+        await self._hold(choice.remark, self._may_go_on(choice), adopts=True)
         return None
 
-    async def _hold(self, why: str, goes_on: Callable[[], bool], *, adopts: bool = False) -> None:
-        """Decides nothing until the mission goes on by itself or is resumed, for `hold_s` at most.
+    async def _next(self, step: int, asked: Asked | None) -> Choice | Ended | Held | Refused:
+        """The choice of the action that somebody has asked for, or else the mission's own."""
+        if asked is not None:
+            return await self._chooser.asked_for(self._model, step, asked)
+        return await self._chooser.choose(self._model, step, self.belief)
 
-        Where it `adopts`, it also goes on with a model that takes over.
-        """
-        hold_s = self._terms.hold_s
-        ends_at_s = self._ports.clock.monotonic_s() + hold_s
-        self._is_resumed = False
+    def _may_go_on(self, held: Held) -> Callable[[], bool]:
+        """Returns what tells that the reason of a hold is gone."""
+        engine, turns, helm = self._model.engine, self._helm.turns, self._helm
+        if held.for_operator:
+            return lambda: helm.turns != turns
+        return lambda: helm.turns != turns or self._chooser.is_something_available(engine)
+
+    async def _hold(
+        self, why: str, goes_on: Callable[[], bool] = lambda: False, *, adopts: bool = False
+    ) -> None:
+        """Decides nothing until the mission goes on: see `Holding.until`."""
         self._move_to("holding", self.state.step, remark=why)
-        while not (self._is_resumed or self._to_stop or goes_on()):
-            now_s = self._ports.clock.monotonic_s()
-            left_s = ends_at_s - now_s
-            if adopts and await self._adopt():
-                return
-            if left_s <= 0:
-                raise AosError(f"{why}; nothing has changed for {hold_s:g} s", code="AOS513")
-            await self._ports.until_changed(min(left_s, self._failures.s_until_return(now_s)))
+        await self._holding.until(why, goes_on, adopts=adopts)
 
     def _decide(self, choice: Choice) -> DecisionRecord:
         """The record of a decision, which spends what the action risks."""
         risks, index = choice.risks, choice.plan.index
         actions = self._model.engine.description.actions
-        listed = [number for number, action in enumerate(actions) if action.skill not in choice.set_aside]
+        told = {value.action for value in choice.plan.actions}
+        listed = [number for number, action in enumerate(actions) if action.name in told]
         spent = self._budget.spend(risks, index, listed) if risks is not None else ()
         seed = self._terms.search.seed_of(self.state.step + 1)
         adopted, self._adopted = self._adopted, None
-        return self._reports.decided(choice, self._model, self.belief, seed, spent, adopted)
+        decision = self._reports.decided(choice, self._model, self.belief, seed, spent, adopted)
+        self._helm.decided(decision)
+        return decision
 
     async def _act(self, decision: DecisionRecord, intention: Activate | None = None) -> Outcome:
         """The outcome of a decision's activation; what was intended before is asked for as it was."""
@@ -274,14 +317,14 @@ class Mission:
         self.past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
-        self._reports.observed(decision, outcome, update, update_s, remark)
+        self._helm.observed(self._reports.observed(decision, outcome, update, update_s, remark))
         self.belief = update.summary
         await keep_belief(self._ports, self._model, decision.step, self.belief)
 
     def _take_failure(
         self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, now_s: float
     ) -> str:
-        return self._failures.take(
+        said = self._failures.take(
             decision,
             outcome,
             is_excluded=update.is_excluded,
@@ -289,6 +332,9 @@ class Mission:
             now_s=now_s,
             announced=self._ports.announced,
         )
+        if decision.chosen_by in ("operator", "script"):
+            self._failures.to_retry = None  # Whoever has asked for it decides that.
+        return said
 
     def _move_to(self, phase: str, step: int, *, remark: str = "") -> None:
         self._reports.move_to(phase, step, self._model, self.belief, remark)

@@ -12,14 +12,17 @@ import msgspec
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import (
+    ActionRefused,
     Activate,
     BeliefSummary,
     DecisionRecord,
     MissionBegun,
     MissionState,
     Outcome,
+    Steer,
 )
 from aos_runtime.journal import JournalRow
+from aos_solver.mission.steering import LIFTS, REFUSED, STEERED, Steering
 
 __all__ = ["BEGUN", "MissionMemory", "PastStep", "Pending", "folded"]
 
@@ -32,6 +35,8 @@ _KINDS: dict[str, type[Any]] = {
     "intended": Activate,
     "outcome": Outcome,
     "mission": MissionState,
+    STEERED: Steer,
+    REFUSED: ActionRefused,
 }
 
 
@@ -63,7 +68,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
 
     `begun` is the row with which the first solver began the mission, None where none has. `sequence` is the
     number of the next record, and `goal_probability` that of the last one's belief. `mission_parameters` are
-    the values that the mission began with.
+    the values that the mission began with. With `is_lifted` somebody has looked after what it held for.
     """
 
     epoch: int = 0
@@ -74,6 +79,8 @@ class MissionMemory(msgspec.Struct, frozen=True):
     goal_probability: float = 0.0
     mission_parameters: dict[str, str] = {}
     begun: MissionBegun | None = None
+    steering: Steering = Steering()
+    is_lifted: bool = False
 
     @property
     def has_ended(self) -> bool:
@@ -82,7 +89,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     @property
     def is_held(self) -> bool:
         """True where the mission held when its journal broke off."""
-        return self.state is not None and self.state.phase == "holding"
+        return _is_holding(self.state) and not self.is_lifted
 
 
 def folded(rows: Iterable[JournalRow]) -> MissionMemory:
@@ -91,15 +98,20 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     begun: MissionBegun | None = None
     steps: list[PastStep] = []
     parameters: dict[str, str] = {}
+    steering, is_lifted = Steering(), False
     for row in rows:
         if row.kind not in _KINDS:
             continue
         said = _decoded(row)
+        steering = _steered(steering, said, state)
         match said:
             case MissionBegun():
                 epoch, parameters, begun = said.epoch, said.mission_parameters, begun or said
             case MissionState():
+                is_lifted = is_lifted and _is_holding(said)
                 state = said
+            case Steer():
+                is_lifted = is_lifted or (said.verb in LIFTS and _is_holding(state))
             case DecisionRecord(outcome=None):
                 pending = Pending(said)
             case DecisionRecord(outcome=Outcome() as outcome):
@@ -113,7 +125,36 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
                 pending = _of(pending, row)._replace(outcome=said)
         if isinstance(said, DecisionRecord):
             sequence, goal_probability = said.sequence + 1, said.belief.goal_probability
-    return MissionMemory(epoch, tuple(steps), pending, state, sequence, goal_probability, parameters, begun)
+    return MissionMemory(
+        epoch,
+        tuple(steps),
+        pending,
+        state,
+        sequence,
+        goal_probability,
+        parameters,
+        begun,
+        steering,
+        is_lifted,
+    )
+
+
+def _steered(steering: Steering, said: Any, state: MissionState | None) -> Steering:
+    """The steering after a row of the journal; `state` is the mission's before it."""
+    match said:
+        case Steer():
+            return steering.after(said, is_holding=_is_holding(state))
+        case ActionRefused():
+            return steering.refused(said)
+        case DecisionRecord(outcome=None):
+            return steering.decided(said)
+        case DecisionRecord():
+            return steering.observed(said)
+    return steering
+
+
+def _is_holding(state: MissionState | None) -> bool:
+    return state is not None and state.phase == "holding"
 
 
 def _without_search(decision: DecisionRecord) -> DecisionRecord:

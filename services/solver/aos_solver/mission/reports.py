@@ -19,6 +19,7 @@ from aos_solver.mission.choosing import Choice
 from aos_solver.mission.endings import Ending
 from aos_solver.mission.memory import MissionMemory
 from aos_solver.mission.ports import Ports
+from aos_solver.mission.steering import Steering
 from aos_solver.mission.takeover import RunningModel
 
 __all__ = ["Reports"]
@@ -33,6 +34,7 @@ class Reports:
         self._ports = ports
         self._sequence = memory.sequence
         self._goal_probability = memory.goal_probability
+        self._steering = memory.steering
 
     def decided(
         self,
@@ -82,7 +84,7 @@ class Reports:
 
     def observed(
         self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, update_s: float, remark: str
-    ) -> None:
+    ) -> DecisionRecord:
         """Reports the outcome of a decision, and the belief after it; the `remark` is for people."""
         remarks = (update.remark, remark, *_faults_of_monitors(outcome))
         record = msgspec.structs.replace(
@@ -99,6 +101,15 @@ class Reports:
             remark="; ".join(text for text in remarks if text),
         )
         self._publish(record)
+        return record
+
+    def steered(self, steering: Steering) -> None:
+        """Takes note of how the mission is steered now; `tell` and each other state tell of it."""
+        self._steering = steering
+
+    def tell(self) -> None:
+        """Reports the state once more, with what is new of it."""
+        self._change_state()
 
     def stand_at(self, step: int) -> None:
         """Takes up a mission at this step, which was reported before."""
@@ -127,7 +138,15 @@ class Reports:
         self._ports.publish_record(record)
 
     def _change_state(self, **changes: Any) -> None:
-        self.state = msgspec.structs.replace(self.state, **changes)
+        steering = self._steering
+        is_over = changes.get("phase", self.state.phase) == "ended"
+        self.state = msgspec.structs.replace(
+            self.state,
+            held_by="" if is_over else steering.held_by,
+            left_out=dict(steering.left_out),
+            asked=() if is_over else tuple(asked.action for asked in steering.queue),
+            **changes,
+        )
         self._ports.journal("mission", self.state)
         self._ports.publish_state(self.state)
 

@@ -71,6 +71,17 @@ class RiskBudget:
         if constraints:
             self._remaining = [max(constraint.left - constraint.risk, 0.0) for constraint in constraints]
 
+    def refusal(self, risks: Risks, index: int) -> str:
+        """Says which constraints an action of this number exceeds; empty where it may be chosen."""
+        exceeded = [
+            f"never {bound.never}: {remaining:.3g} is left of {bound.probability:g}, and it risks {risk:.3g}"
+            for bound, remaining, risk in zip(
+                self._bounds, self._remaining, risks.actions[index], strict=True
+            )
+            if risk > remaining + _ROUNDING
+        ]
+        return "; ".join(exceeded)
+
     def remark(self, risks: Risks) -> str:
         """Says why no action can be chosen."""
         refused = []

@@ -153,7 +153,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
             n for n, action in enumerate(engine.description.actions) if action.skill in within.without
         ]
         values = choice.values[: len(names)].copy()
-        values[[*within.barred, *left_out]] = -np.inf
+        values[[*within.barred, *left_out, *within.without_actions]] = -np.inf
         best = int(np.argmax(values))
         prediction = await engine.predict(best, cautious=within.cautious)
         actions = tuple(

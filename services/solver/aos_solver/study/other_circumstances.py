@@ -106,10 +106,11 @@ def _restricted(engine: Engine, query: WhatIfQuery, was: Restriction) -> Restric
                 raise SkillError(f"there is no {kind} {name}", code="AOS501", hint=hint)
     barred = sorted({*was.barred, *(numbers[name] for name in query.forbid)})
     without = sorted({*was.without, *query.without})
-    left = [a for n, a in enumerate(engine.description.actions) if n not in barred and a.skill not in without]
+    gone = {*barred, *was.without_actions}
+    left = [a for n, a in enumerate(engine.description.actions) if n not in gone and a.skill not in without]
     if not left:
         raise StudyError("no action would be left", hint="Forbid fewer")
-    return Restriction(barred=barred, without=without, cautious=was.cautious)
+    return msgspec.structs.replace(was, barred=barred, without=without)
 
 
 @asynccontextmanager

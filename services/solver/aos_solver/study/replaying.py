@@ -272,7 +272,13 @@ class ReplayedMission:
         """The actions and the belief that a search was for; actions that the model lacks are left out."""
         numbers = {action.name: number for number, action in enumerate(self.engine.description.actions)}
         barred = [numbers[name] for name in made.barred if name in numbers]
-        return Restriction(barred=barred, without=made.without, cautious=made.is_cautious)
+        skills = {action.skill for action in self.engine.description.actions}
+        return Restriction(
+            barred=barred,
+            without=[name for name in made.without if name in skills],
+            without_actions=[numbers[name] for name in made.without if name in numbers],
+            cautious=made.is_cautious,
+        )
 
     async def _restart_up_to(self, number: int) -> None:
         """Starts the engine's process anew where the mission's was: its searches begin without a tree."""

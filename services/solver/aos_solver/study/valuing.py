@@ -69,7 +69,9 @@ class Valuing:
             found = await engine.exact_values(self.horizon, cautious=self.within.cautious)
             values = {value.action: Value(value.q, n=1) for value in found.actions}
         else:
-            within = Restriction(without=self.within.without) if anywhere else self.within
+            within = (
+                msgspec.structs.replace(self.within, barred=(), cautious=False) if anywhere else self.within
+            )
             plan = await self._with(share).run(engine, self._step, within)
             values = {value.action: Value(value.q, value.stderr, value.n) for value in plan.actions}
         return values if anywhere else {name: v for name, v in values.items() if name not in self.barred}

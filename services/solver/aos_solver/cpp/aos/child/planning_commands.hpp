@@ -35,7 +35,7 @@ class PlanningCommands {
   PlanningCommands(BeliefCommands<Model>& beliefs, Planner<Model>& search) : beliefs_(beliefs), search_(search) {}
 
   // The command's items are the numbers of the actions that cannot be carried out now. The skills that it names as
-  // `without` are not there for the whole search.
+  // `without`, and the actions whose numbers are `without_actions`, are not there for the whole search.
   void plan(JsonWriter& json, const Command& command) {
     const auto left_out = left_out_by(command);
     if (left_out.empty()) return plan_with(search_, json, command, all_actions());
@@ -145,19 +145,22 @@ class PlanningCommands {
   }
   static std::vector<int> actions_left(const std::vector<bool>& left_out) {
     std::vector<int> actions = all_actions();
-    std::erase_if(actions, [&](int action) { return left_out[static_cast<std::size_t>(Model::skill_of(action))]; });
+    std::erase_if(actions, [&](int action) { return left_out[static_cast<std::size_t>(action)]; });
     return actions;
   }
-  // For each skill whether it is left out; empty if none is.
+  // For each action whether it is left out; empty if none is.
   static std::vector<bool> left_out_by(const Command& command) {
-    const std::string_view names = command.optional_text("without").value_or(std::string_view{});
-    if (names.empty()) return {};
-    std::vector<bool> left_out(static_cast<std::size_t>(Model::skill_count), false);
-    for (const auto name : detail::parts_of(names, ',')) {
-      for (int skill = 0; skill < Model::skill_count; ++skill) {
-        if (name == Model::skill_name(skill)) left_out[static_cast<std::size_t>(skill)] = true;
+    const std::string_view skills = command.optional_text("without").value_or(std::string_view{});
+    const std::string_view numbers = command.optional_text("without_actions").value_or(std::string_view{});
+    if (skills.empty() && numbers.empty()) return {};
+    std::vector<bool> left_out(static_cast<std::size_t>(Model::action_count()), false);
+    for (const auto skill : detail::parts_of(skills, ',')) {
+      for (int action = 0; action < Model::action_count(); ++action) {
+        if (skill == Model::skill_name(Model::skill_of(action))) left_out[static_cast<std::size_t>(action)] = true;
       }
     }
+    if (numbers.empty()) return left_out;
+    for (const auto number : detail::parts_of(numbers, ',')) left_out.at(detail::number_in<std::size_t>(number)) = true;
     return left_out;
   }
 

@@ -115,12 +115,14 @@ struct ErasedModel {
     Correcting& operator=(const Correcting&) = delete;
     ~Correcting() { corrected_.reset(); }
   };
-  // As long as this object lives, the model has only the actions of the skills that are not left out: their numbers are
-  // then those in the shorter list. Searches use it, one at a time.
+  // As long as this object lives, the model has only the actions that are not left out: their numbers are then those in
+  // the shorter list. Searches use it, one at a time.
   class Without {
    public:
+    // `left_out` says of each action whether it is.
     explicit Without(const std::vector<bool>& left_out) : all_(actions()) {
-      std::erase_if(actions(), [&](const GroundedAction& action) { return left_out[static_cast<std::size_t>(action.skill)]; });
+      std::size_t number = 0;
+      std::erase_if(actions(), [&](const GroundedAction&) { return left_out[number++]; });
     }
     Without(const Without&) = delete;
     Without& operator=(const Without&) = delete;
