@@ -7,7 +7,7 @@ CHAOS :=
 COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header
 
-.PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile clean
+.PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile study clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -48,6 +48,9 @@ chaos:  ## kill, freeze and fail processes of missions, and print what became of
 
 plug:  ## measure what changes and what happens while a mission runs
 	$(BIN)/python -m tests.plug
+
+study:  ## replay missions and study decisions, and hold the answers against planning
+	$(BIN)/python -m tests.study
 
 hostile:  ## play hostile documents and strangers on the bus, and print what they were kept from
 	$(BIN)/python -m tests.hostile --times 50

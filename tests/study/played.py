@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
 
@@ -82,7 +83,6 @@ class _World(QuietPorts):
         self._disturbance = disturbance
         self._places = {action.name: index for index, action in enumerate(world.description.actions)}
         self.rows: list[JournalRow] = []
-        self.mission: Mission | None = None
         self.engine: Engine | None = None
         self.next: tuple[int, Successor] | None = None
         self.steps = 0
@@ -122,11 +122,13 @@ async def play(
     steps: int = 8,
     then: tuple[int, Files] | None = None,
     disturbance: Disturbance | None = None,
+    follower: Callable[[Played], Awaitable[None]] | None = None,
     **budget: object,
 ) -> Played:
     """Plays a mission of so many steps at most; the world is that of the documents.
 
-    With `then` other documents take over after so many steps. `budget` are settings of the search.
+    With `then` other documents take over after so many steps. A `follower` goes on beside the mission and is
+    cancelled at its end. `budget` are settings of the search.
     """
     settings = Settings(
         robot="r",
@@ -157,10 +159,28 @@ async def play(
         search = msgspec.structs.replace(msgspec.convert(settings, Search, from_attributes=True), seed=seed)
         limits = msgspec.convert(settings, MissionLimits, from_attributes=True)
         mission = Mission(Terms(name="m", search=search, limits=limits), running, around)
-        await mission.run_or_raise()
+        played = Played(around.rows, settings, [files] if then is None else [files, then[1]])
+        await _followed(mission, played, follower)
     finally:
         if around.next is not None:
             await around.next[1].close()
         await around.engine.close()
         await world.close()
-    return Played(around.rows, settings, [files] if then is None else [files, then[1]])
+    return played
+
+
+async def _followed(
+    mission: Mission, played: Played, follower: Callable[[Played], Awaitable[None]] | None
+) -> None:
+    """Runs a mission to its end, with whoever follows it."""
+    if follower is None:
+        await mission.run_or_raise()
+        return
+    following = asyncio.ensure_future(follower(played))
+    try:
+        await mission.run_or_raise()
+    finally:
+        following.cancel()
+        await asyncio.wait({following})
+    if not following.cancelled():
+        following.result()

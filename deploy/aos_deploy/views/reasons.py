@@ -74,7 +74,10 @@ def _term(term: ValueTerm) -> str:
 
 def _flips(why: Why) -> str:
     if not why.flips:
-        return "" if why.remark else f"  no probability of one value makes {why.other} better"
+        if why.remark or why.is_close:
+            return ""
+        found = "is known to make" if not why.is_exact else "makes"
+        return f"  no probability of one value {found} {why.other} better"
     flip = why.flips[0]
     return (
         f"  {why.other} is better where P({flip.variable}={flip.value}) is {_side(flip)}, now {flip.now:.4g}"
@@ -84,6 +87,8 @@ def _flips(why: Why) -> str:
 def _side(flip: Flip) -> str:
     """`below 0.412`, or the interval in which the choice changes where that is known less well."""
     rises = (flip.low + flip.high) / 2 > flip.now
+    if flip.is_checked and (flip.high >= 1 if rises else flip.low <= 0) and flip.high - flip.low <= 1e-3:
+        return "1" if rises else "0"
     if flip.high - flip.low > 1e-3:
         return f"{'above' if rises else 'below'} a value in {flip.low:.3g}-{flip.high:.3g}"
     return f"above {flip.high:.4g}" if rises else f"below {flip.low:.4g}"

@@ -46,9 +46,14 @@ def doubtful_values(belief: BeliefSummary) -> Iterator[tuple[str, str, float]]:
 
 
 async def flips_of(
-    engine: Engine, valuing: Valuing, belief: BeliefSummary, actions: tuple[str, str], until_s: float
+    engine: Engine,
+    valuing: Valuing,
+    belief: BeliefSummary,
+    actions: tuple[str, str],
+    margin: Margin,
+    until_s: float,
 ) -> tuple[Flip, ...]:
-    """The changes from the first action to the second, the nearest first.
+    """The changes from the first action to the second, the nearest first; the `margin` is that of now.
 
     The engine's belief was put aside. Exact values are computed until the monotonic time `until_s`; of
     searched ones the most doubtful value alone is moved.
@@ -63,7 +68,10 @@ async def flips_of(
             values = await valuing.values(engine, share=1 / 4, anywhere=True)
             return Margin.of(values[actions[0]], values[actions[1]])
 
-        between = await (flip_between if valuing.is_exact else _sampled_flip)(margin_at, now)
+        if valuing.is_exact:
+            between = await flip_between(margin_at, now)
+        else:
+            between = await _sampled_flip(margin_at, now, margin)
         if between is not None:
             found.append(Flip(variable, value, now, *between))
     return tuple(sorted(found, key=lambda flip: abs((flip.low + flip.high) / 2 - flip.now)))
@@ -95,13 +103,17 @@ async def flip_between(margin_at: MarginAt, now: float) -> tuple[float, float, b
     return min(near, far), max(near, far), True
 
 
-async def _sampled_flip(margin_at: MarginAt, now: float) -> tuple[float, float, bool] | None:
-    """The interval, within two standard errors, in which the margin changes its sign nearest to `now`."""
-    here = await margin_at(now)
+async def _sampled_flip(margin_at: MarginAt, now: float, here: Margin) -> tuple[float, float, bool] | None:
+    """The interval, within two standard errors, in which the margin changes its sign nearest to `now`.
+
+    None where it does not for certain: then it may not at all.
+    """
+    if here.is_close:
+        return None
     sign = 1.0 if here.value >= 0 else -1.0
     for end in sorted((0.0, 1.0), key=lambda end: abs(end - now)):
         there = await margin_at(end)
-        if sign * there.value >= 0:
+        if sign * there.value >= 0 or there.is_close:
             continue
         points = [(now, here), (end, there)]
         for _ in range(_REFINEMENTS):
@@ -112,10 +124,10 @@ async def _sampled_flip(margin_at: MarginAt, now: float) -> tuple[float, float, 
             points.sort(key=lambda point: abs(point[0] - now))
         surely = [(p, sign * m.value - 2 * m.stderr) for p, m in points]
         hardly = [(p, sign * m.value + 2 * m.stderr) for p, m in points]
-        near = now if surely[0][1] <= 0 else _crossing(surely)
-        far = _crossing(hardly)
-        ends = (now if near is None else near, end if far is None else far)
-        return min(ends), max(ends), not here.is_close and not there.is_close
+        near, far = _crossing(surely), _crossing(hardly)
+        assert near is not None
+        assert far is not None
+        return min(near, far), max(near, far), True
     return None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, DecisionTree, TreeBranch, TreeNode, TreeQuery
+from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.valuing import Value, Valuing
 
@@ -19,11 +20,8 @@ _OVER = 1e-9
 async def tree_below(replay: ReplayedMission, decision: DecisionRecord, query: TreeQuery) -> DecisionTree:
     """The tree below the decision at which a replay is; the replay stays there."""
     growing = _Growing(replay, decision, query)
-    await replay.engine.put_aside()
-    try:
+    async with put_aside(replay.engine):
         root = await growing.node((), query.depth)
-    finally:
-        await replay.engine.take_back()
     return DecisionTree(decision.mission, decision.step, root, growing.is_whole)
 
 

@@ -15,6 +15,7 @@ from aos_protocol.messages import ActionValue, DecisionRecord, WhatIf, WhatIfQue
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.past import replayed
+from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.supposing import believe_all, changed_files
 from aos_solver.study.valuing import deciding_search
@@ -39,12 +40,8 @@ async def decided_otherwise(
             "nothing is supposed",
             hint="Use --forbid, --without, --believe or --change; `aos why` explains the decision as it was",
         )
-    async with _engine(replay, query.change, documents) as (engine, said):
-        await engine.put_aside()
-        try:
-            return await _decided(replay, decision, query, engine, said)
-        finally:
-            await engine.take_back()
+    async with _engine(replay, query.change, documents) as (engine, said), put_aside(engine):
+        return await _decided(replay, decision, query, engine, said)
 
 
 async def _decided(

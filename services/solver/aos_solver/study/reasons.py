@@ -10,6 +10,7 @@ from aos_protocol.messages import Consequence, DecisionRecord, Flip, ValueTerm, 
 from aos_solver.child.answers import RewardTerms
 from aos_solver.child.engine import Engine
 from aos_solver.mission.past import updated
+from aos_solver.study.aside import put_aside
 from aos_solver.study.flips import flips_of
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.traced_engines import TracedEngine, TracedEngines
@@ -47,12 +48,9 @@ class Reasons:
         action, others = values[decision.action], values[other]
         margin = Margin.of(action, others)
         belief = await self._engine.summary()
-        await self._engine.put_aside()
-        try:
-            flips = await self._flips(other, begun_s)
+        async with put_aside(self._engine):
+            flips = await self._flips(other, margin, begun_s)
             expected = await self._consequences()
-        finally:
-            await self._engine.take_back()
         terms, rest, other_rest = await self._terms(other, action.q, others.q)
         return Why(
             mission=decision.mission,
@@ -112,14 +110,15 @@ class Reasons:
         spent = sum(made.simulations) + made.known
         return math.ceil(spent * (2 * margin.stderr / margin.value) ** 2)
 
-    async def _flips(self, other: str, begun_s: float) -> tuple[Flip, ...]:
+    async def _flips(self, other: str, margin: Margin, begun_s: float) -> tuple[Flip, ...]:
         decision, valuing = self._decision, self._valuing
         if decision.chosen_by not in ("planner", "operator", "script"):
             self._remarks.append(f"it was chosen by {decision.chosen_by}, whatever is believed")
             return ()
         until_s = begun_s + (self._flips_s if valuing.is_exact else math.inf)
         belief = await self._engine.summary()
-        return await flips_of(self._engine, valuing, belief, (decision.action, other), until_s)
+        actions = (decision.action, other)
+        return await flips_of(self._engine, valuing, belief, actions, margin, until_s)
 
     async def _consequences(self) -> tuple[Consequence, ...]:
         """The likeliest responses, and the one that came, with what would be done after each."""

@@ -1,0 +1,213 @@
+"""Questions about decisions: do they disturb, how long do they take, is what they say true?"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import statistics
+import time
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_protocol.errors import SkillError
+from aos_protocol.messages import DecisionRecord, Why, WhyQuery
+from aos_solver.child.engine import Engine
+from aos_solver.study.flips import flip_between
+from aos_solver.study.study import Study
+from aos_solver.study.valuing import Margin, Value
+
+from .played import Played, play
+from .replays import files_of
+
+__all__ = ["measure_flips", "measure_intervals", "measure_undisturbed"]
+
+_BUNDLES = ("armadillo-rough", "armadillo-finer", "armadillo-rough-enhanced", "armadillo-finer-enhanced")
+
+
+async def measure_undisturbed(runs: int, cache_dir: Path) -> bool:
+    """Plays missions twice, once while somebody asks all the time; counts the decisions that differ."""
+    compared = differing = asked = 0
+    for seed in range(1, 1 + math.ceil(runs / 6)):
+        files = files_of("armadillo-rough")
+        budget: dict[str, Any] = {"planner": "pomcp", "simulations": 5000}
+        quiet = await play(files, cache_dir, seed=seed, steps=6, **budget)
+        asking = _Asking(cache_dir)
+        loud = await play(
+            files, cache_dir, seed=seed, steps=6, follower=asking.follow, disturbance=asking.wait, **budget
+        )
+        asked += asking.asked
+        for then, now in zip(quiet.mission.decisions, loud.mission.decisions, strict=True):
+            compared += 1
+            differing += _decided(then) != _decided(now)
+    print(f"{differing} of {compared} decisions differ; {asked} questions were answered meanwhile")
+    return differing == 0 and asked > 0
+
+
+def _decided(record: DecisionRecord) -> DecisionRecord:
+    """The record without its times."""
+    return msgspec.structs.replace(record, stamp_ns=0, planning_s=0.0, preparation_s=0.0, update_s=0.0)
+
+
+class _Asking:
+    """Asks why about the newest decision of a mission, again and again."""
+
+    def __init__(self, cache_dir: Path) -> None:
+        self._cache_dir = cache_dir
+        self._answered = asyncio.Event()
+        self.asked = 0
+
+    async def wait(self, engine: Engine, step: int) -> None:
+        """Lets a skill run until a question was answered; the next one goes on beside the next decision."""
+        self._answered.clear()
+        await self._answered.wait()
+
+    async def follow(self, played: Played) -> None:
+        study = Study(played, self._cache_dir, flips_s=0.05)
+        try:
+            while True:
+                decisions = played.mission.decisions
+                if decisions:
+                    await study.why(WhyQuery(decisions[-1].step))
+                    self.asked += 1
+                    self._answered.set()
+                await asyncio.sleep(0)
+        finally:
+            await study.close()
+
+
+async def _why(played: Played, step: int, study: Study) -> tuple[Why | None, float]:
+    begun_s = time.monotonic()
+    try:
+        return await study.why(WhyQuery(step)), time.monotonic() - begun_s
+    except SkillError:
+        return None, 0.0
+
+
+async def measure_flips(runs: int, cache_dir: Path) -> bool:
+    """Holds flips of exact decisions against planning by the mission's planner on both sides."""
+    flips = right = 0
+    took: list[float] = []
+    worst_sum = 0.0
+    for seed in range(1, 1 + math.ceil(runs / len(_BUNDLES))):
+        for bundle in _BUNDLES:
+            played = await play(files_of(bundle), cache_dir, seed=seed, steps=5)
+            study = Study(played, cache_dir)
+            try:
+                for step in (made.step for made in played.mission.decisions):
+                    await study.why(WhyQuery(step))
+                    why, seconds = await _why(played, step, study)
+                    if why is None or not why.is_exact:
+                        continue
+                    took.append(seconds)
+                    worst_sum = max(
+                        worst_sum,
+                        abs(sum(term.value for term in why.terms) - why.value),
+                        abs(sum(term.other for term in why.terms) - why.other_value),
+                    )
+                    for flip in why.flips:
+                        flips += 1
+                        is_right = await _is_right(
+                            played, why, flip.variable, flip.value, flip.low, flip.high
+                        )
+                        right += is_right
+                        if not is_right:
+                            print(f"{bundle}, seed {seed}, step {step}: {why.action}, {why.other}, {flip}")
+            finally:
+                await study.close()
+    print(f"{right} of {flips} flip points right to 0.001, by planning on both sides")
+    slowest = max(took)
+    print(
+        f"why took {statistics.median(took):.2f} s, at most {slowest:.2f} s, of {len(took)} exact decisions; "
+        f"terms add up to {worst_sum:.1e}"
+    )
+    return right == flips and worst_sum < 1e-9
+
+
+async def _is_right(played: Played, why: Why, variable: str, value: str, low: float, high: float) -> bool:
+    """Says whether planning gives the one action on one side and the other on the other side."""
+    replay = played.replay()
+    try:
+        decision = await replay.go_to(why.step)
+        search = replay.search_by(decision)
+        await replay.engine.put_aside()
+        ahead = []
+        for p in (low, high):
+            await replay.engine.believe(variable, value, p, from_aside=True)
+            plan = await search.run(replay.engine, why.step)
+            worth = {each.action: each.at_least or each.q for each in plan.actions}
+            ahead.append(worth[why.action] - worth[why.other])
+        return high - low <= 1e-3 and (ahead[0] < 0) != (ahead[1] < 0)
+    finally:
+        await replay.close()
+
+
+async def measure_intervals(runs: int, cache_dir: Path) -> bool:
+    """Holds the intervals of POMCP's decisions against the exact places where the choice changes."""
+    cases = held = missing = values = within = 0
+    took: list[float] = []
+    seed = 0
+    while cases < runs and seed < 20 * runs:
+        seed += 1
+        played = await play(
+            files_of(_BUNDLES[seed % len(_BUNDLES)]),
+            cache_dir,
+            seed=seed,
+            steps=4,
+            planner="pomcp",
+            simulations=20_000,
+        )
+        study = Study(played, cache_dir)
+        try:
+            for step in (made.step for made in played.mission.decisions):
+                why, seconds = await _why(played, step, study)
+                if why is None:
+                    continue
+                took.append(seconds)
+                exact = await _exact_margin(played, why)
+                values += 1
+                within += abs(why.margin - exact.value) <= 2 * why.margin_stderr + 1e-9
+                for flip in why.flips:
+                    place = await _exact_flip(played, why, flip.variable, flip.value, flip.now)
+                    if place is None:
+                        missing += 1
+                        continue
+                    cases += 1
+                    is_held = flip.low - 1e-3 <= place <= flip.high + 1e-3
+                    held += is_held
+                    if not is_held:
+                        print(f"seed {seed}, step {step}: {why.action}, {why.other}, {place:.4f}, {flip}")
+        finally:
+            await study.close()
+    print(f"{held} of {cases} intervals hold the exact place; {missing} had none to hold")
+    print(f"{within} of {values} margins are within two standard errors of the exact one")
+    print(f"why took {statistics.median(took):.2f} s, at most {max(took):.2f} s")
+    return held >= 0.93 * cases
+
+
+async def _exact_margin(played: Played, why: Why) -> Margin:
+    replay = played.replay()
+    try:
+        await replay.go_to(why.step)
+        found = {each.action: each.q for each in (await replay.engine.exact_values(why.horizon)).actions}
+        return Margin.of(Value(found[why.action]), Value(found[why.other]))
+    finally:
+        await replay.close()
+
+
+async def _exact_flip(played: Played, why: Why, variable: str, value: str, now: float) -> float | None:
+    replay = played.replay()
+    try:
+        await replay.go_to(why.step)
+        await replay.engine.put_aside()
+
+        async def margin_at(p: float) -> Margin:
+            await replay.engine.believe(variable, value, p, from_aside=True)
+            found = {each.action: each.q for each in (await replay.engine.exact_values(why.horizon)).actions}
+            return Margin.of(Value(found[why.action]), Value(found[why.other]))
+
+        between = await flip_between(margin_at, now)
+        return None if between is None else (between[0] + between[1]) / 2
+    finally:
+        await replay.close()
