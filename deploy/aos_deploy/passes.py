@@ -64,7 +64,7 @@ class Passes:
 
     def write_dictionary(self) -> None:
         """Writes the router's file, for each start of one."""
-        lines = "".join(f"{name}:{password}\n" for name, password in self._passwords.items())
+        lines = "\n".join(f"{name}:{password}" for name, password in self._passwords.items())
         try:
             write_password(self.dictionary, lines)
         except OSError as error:

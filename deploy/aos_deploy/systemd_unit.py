@@ -62,7 +62,9 @@ RemoveIPC=yes
 CapabilityBoundingSet=
 AmbientCapabilities=
 SystemCallArchitectures=native
-SystemCallFilter=@system-service @sandbox
+SystemCallFilter=@system-service
+# The documents' code is confined by these.
+SystemCallFilter=landlock_create_ruleset landlock_add_rule landlock_restrict_self seccomp prctl
 RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6 AF_NETLINK
 
 [Install]

@@ -25,8 +25,10 @@ from aos_runtime.access_check import Access
 from aos_runtime.bus_config import LEASE_S, client_config, opened_session
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.credentials import Credential
+from aos_runtime.inbox import Inbox
 from aos_runtime.older_python import timeout
 from aos_runtime.question import RECEIPT, STRAYS_S, Question
+from aos_runtime.recurring import Recurring
 from aos_runtime.server_watch import ServerWatch
 from aos_runtime.subscription import Subscription, Undeclare
 
@@ -66,6 +68,8 @@ class Bus:
         self._session = session
         self._clock = clock
         self._loop = asyncio.get_running_loop()
+        self._inbox = Inbox(self._loop)
+        self._unread = Recurring(_log.warning)
         self._tasks: set[asyncio.Task[None]] = set()
         self._subscriptions: set[Subscription[Any]] = set()
         self._queryables: list[zenoh.Queryable[None]] = []
@@ -188,7 +192,7 @@ class Bus:
     def listen(self, key: str, kind: type[M], *, queue_size: int = 1000) -> Subscription[tuple[str, M]]:
         """The messages told on `key` (which may hold wildcards), each with its own key.
 
-        Messages that cannot be decoded are logged and left out.
+        Messages that cannot be decoded are left out, and logged unless they are many.
         """
         self._check("hears", key)
 
@@ -197,10 +201,10 @@ class Bus:
                 try:
                     subscription.push((message_key, decode(payload, kind)))
                 except BusError as error:
-                    _log.warning("on %s: %s", message_key, error)
+                    self._unread.count(message_key, f"on {message_key}: {error}")
 
             def on_sample(sample: zenoh.Sample) -> None:
-                self._loop.call_soon_threadsafe(on_payload, str(sample.key_expr), sample.payload.to_bytes())
+                self._inbox.put(partial(on_payload, str(sample.key_expr), sample.payload.to_bytes()))
 
             subscriber = self._session.declare_subscriber(key, Callback(on_sample, indirect=False))
             await self._wait_for_router()
@@ -245,7 +249,7 @@ class Bus:
 
             def on_sample(sample: zenoh.Sample) -> None:
                 is_alive = sample.kind == zenoh.SampleKind.PUT
-                self._loop.call_soon_threadsafe(on_change, str(sample.key_expr), is_alive)
+                self._inbox.put(partial(on_change, str(sample.key_expr), is_alive))
 
             subscriber = self._session.liveliness().declare_subscriber(
                 key_expression, Callback(on_sample, indirect=False), history=True
@@ -302,7 +306,7 @@ class Bus:
         done = self._loop.create_future()
         self._session.liveliness().get(
             ROUND_TRIP,
-            Callback(_ignore, partial(self._loop.call_soon_threadsafe, _settle, done), indirect=False),
+            Callback(_ignore, partial(self._inbox.put, partial(_settle, done)), indirect=False),
             timeout=_ROUND_TRIP_S,
         )
         try:

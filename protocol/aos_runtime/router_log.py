@@ -11,9 +11,10 @@ import logging
 import os
 import re
 import threading
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+
+from aos_runtime.recurring import Recurring
 
 __all__ = ["RefusalLog", "refusals_logged"]
 
@@ -32,8 +33,8 @@ _CONNECTIONS = {
     b"Invalid user": "refused: a connection with an unknown name",
     b"Invalid password": "refused: a connection with a wrong password",
 }
-_KINDS = 1000
-"""So many kinds of refusals are told apart; all others count as one."""
+_SESSIONS = 1000
+"""So many sessions are known by their names."""
 _PIPE_BYTES = 1 << 20
 _LOOKS_S = 0.02
 """The trace is read so often, and not at once: who waits for it would be woken by every message."""
@@ -67,8 +68,7 @@ class RefusalLog:
     """Takes lines of Zenoh's trace, and tells what of them is worth a line."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
-        self._tell = tell
-        self._seen: Counter[str] = Counter()
+        self._refusals = Recurring(tell)
         self._users: dict[bytes, str] = {}
         self._denied: dict[bytes, str] = {}
 
@@ -85,6 +85,10 @@ class RefusalLog:
         elif b"UsrPwd" in line:
             self._count(next((text for sign, text in _CONNECTIONS.items() if sign in line), ""))
 
+    def _count(self, text: str) -> None:
+        if text:
+            self._refusals.count(text)
+
     def _note(self, line: bytes) -> None:
         thread, denied = _thread(line), _DENIED.search(line)
         self._denied.pop(thread, None)
@@ -92,24 +96,12 @@ class RefusalLog:
             return
         session = denied["session"]
         if denied["user"] is not None:
-            if len(self._users) >= _KINDS:
+            if len(self._users) >= _SESSIONS:
                 self._users.clear()
             self._users[session] = denied["user"].decode()
         who = self._users.get(session, "somebody")
         what, key = denied["what"].decode().lower(), denied["key"].decode(errors="replace")
         self._denied[thread] = f"refused: {who} may not send {what} on {key}"
-
-    def _count(self, text: str) -> None:
-        if not text:
-            return
-        if text not in self._seen and len(self._seen) >= _KINDS:
-            text = "refused: other things"
-        self._seen[text] += 1
-        count = self._seen[text]
-        if count == 1:
-            self._tell(text)
-        elif str(count).strip("0") == "1":
-            self._tell(f"{text}, {count} times by now")
 
 
 def _thread(line: bytes) -> bytes:

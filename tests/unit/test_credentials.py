@@ -1,0 +1,120 @@
+"""Names and passwords of a run, the place of its bus, and the systemd unit that starts one."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from aos_deploy.bus_socket import place_of_socket, remove_socket
+from aos_deploy.cli import aos_app
+from aos_deploy.passes import Outsider, Passes
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.access import ADAPTER, OPERATOR, SOLVER, WATCHER, Party
+from aos_protocol.errors import BusError, DeployError
+from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
+
+ARM = Party(name="arm", role=ADAPTER, paths=("/pick",))
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> RunDirectory:
+    return RunDirectory.create(tmp_path, "r", 0)
+
+
+def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory) -> None:
+    passes = Passes(run, [Party(name=SOLVER, role=SOLVER), ARM])
+    names = (SOLVER, "arm", OPERATOR, WATCHER)
+    credentials = [credential_of_run(run.path, name) for name in names]
+    assert credentials == [passes.credential(name) for name in names]
+    assert len({credential.password for credential in credentials if credential}) == 4
+    assert {passes.file(name).stat().st_mode & 0o777 for name in names} == {0o600}
+    assert passes.file("arm").parent.stat().st_mode & 0o777 == 0o700
+    passes.write_dictionary()
+    assert passes.dictionary.read_text().splitlines() == [
+        f"{name}:{passes.credential(name).password}" for name in names
+    ]
+    assert passes.dictionary.stat().st_mode & 0o777 == 0o600
+
+
+def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path: Path) -> None:
+    file = tmp_path / "arm.password"
+    first, second = (
+        Passes(RunDirectory.create(tmp_path, "r", 0), [], [Outsider(ARM, file)]) for _ in range(2)
+    )
+    assert first.credential("arm") == second.credential("arm")
+    assert first.credential(OPERATOR) != second.credential(OPERATOR)
+    assert file.stat().st_mode & 0o777 == 0o600
+    file.chmod(0o640)
+    with pytest.raises(DeployError, match=r"others can read the credential .*Run chmod 600"):
+        Passes(RunDirectory.create(tmp_path, "r", 0), [], [Outsider(ARM, file)])
+
+
+def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path) -> None:
+    (tmp_path / "password").write_text("secret\n")
+    variables = {"AOS_USER": "arm", "AOS_PASSWORD_FILE": str(tmp_path / "password")}
+    credential = credential_of_environment(variables)
+    assert credential == Credential("arm", "secret")
+    assert "secret" not in repr(credential)
+    assert credential_of_environment({"AOS_USER": "arm"}) is None
+    with pytest.raises(BusError, match="cannot be read"):
+        credential_of_environment({**variables, "AOS_PASSWORD_FILE": str(tmp_path / "none")})
+
+
+def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    short = tmp_path / "x"
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(short))
+    short.mkdir()
+    assert place_of_socket(short) == short / "bus"
+    for folder in (tmp_path / ("long" * 30), tmp_path / "with space", tmp_path / "with?mark"):
+        socket = place_of_socket(folder)
+        assert socket.parent.parent == short
+        assert socket.parent.stat().st_mode & 0o777 == 0o700
+        socket.touch()
+        remove_socket(socket)
+        assert not socket.parent.exists()
+
+
+@pytest.mark.parametrize("written", ["{command: [python], credential: x}", "{external: '', credential: 3}"])
+def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Path, written: str) -> None:
+    deploy = tmp_path / "r.yaml"
+    deploy.write_text(
+        f"aos: 1\nrobot: r\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
+        f"adapters:\n  arm: {written}\nbind: {{'*': arm}}\n"
+    )
+    result = CliRunner().invoke(aos_app(), ["doctor", str(deploy)])
+    assert result.exit_code != 0
+    assert "credential" in f"{result.output}{result.exception}"
+
+
+def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path: Path) -> None:
+    deploy = tmp_path / "r.yaml"
+    deploy.write_text(
+        f"aos: 1\nrobot: r\nproject: armadillo\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
+        "bind: {'*': model}\n"
+    )
+    result = CliRunner().invoke(
+        aos_app(), ["new", "unit", str(deploy), "--to", str(tmp_path), "--user", "robot"]
+    )
+    assert result.exit_code == 0, result.output
+    unit = tmp_path / "aos-r.service"
+    lines = unit.read_text().splitlines()
+    for line in (
+        "User=robot",
+        "NoNewPrivileges=yes",
+        "ProtectSystem=strict",
+        f"ReadWritePaths={tmp_path}/runs",
+    ):
+        assert line in lines
+    assert any(line.startswith("ExecStart=") and line.endswith(f"aos-up {deploy} --plain") for line in lines)
+    again = CliRunner().invoke(aos_app(), ["new", "unit", str(deploy), "--to", str(tmp_path)])
+    assert again.exit_code != 0
+    if shutil.which("systemd-analyze") is None:
+        pytest.skip("needs systemd-analyze, which reads the unit as systemd does")
+    done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
+    assert unit.name not in done.stderr.replace("Failed to prepare filename", ""), done.stderr
