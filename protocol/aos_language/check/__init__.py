@@ -4,6 +4,7 @@
 a mission may set, `model_code` at the C++ of environment and skills, `responses` at what the two halves of a
 skill say to each other, `mapping_code` at the Python of the mappings, `stop_when` at what stops a skill and
 `python_names` at the names in it, `monitors` at mappings without a skill, `endings` at what ends a mission,
+`preconditions` at those that nothing keeps,
 `observed_numbers` at numbers beside responses, `shared_code` at what all model code shares and
 `shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
 """
@@ -28,6 +29,7 @@ from aos_language.check.observed_numbers import (
     check_observed_numbers,
     check_reports,
 )
+from aos_language.check.preconditions import check_precondition
 from aos_language.check.responses import check_responses
 from aos_language.check.scope import Scope
 from aos_language.check.shared_code import check_shared_code, check_shared_names_are_used
@@ -59,6 +61,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
             check_skill_declarations(model, scope, findings)
         check_skill_code(model, scope, findings)
         check_reports(model, findings)
+        check_precondition(model, findings)
         if name in assembly.mappings:
             check_responses(model, assembly.mappings[name], scope, findings, is_whole=is_whole)
             check_given_observation(model, assembly.mappings[name], findings)

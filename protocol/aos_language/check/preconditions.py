@@ -1,0 +1,31 @@
+"""Preconditions that nothing keeps: a skill runs also where its precondition does not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from aos_language.document_code import snippets_of
+from aos_language.findings import Findings
+from aos_protocol.documents import Assignment, SkillModel
+
+__all__ = ["check_precondition"]
+
+_MEETS = "__meetPrecondition"
+
+
+def check_precondition(model: SkillModel, findings: Findings) -> None:
+    """Remarks on a precondition whose violation costs nothing and changes nothing in the model."""
+    if model.violation_penalty or not _mentions(model.precondition) or _mentions(model.dynamic_model):
+        return
+    block = model.precondition[0]
+    findings.remark(
+        "AOS147",
+        f"nothing keeps the planner from using {model.name} where this does not hold",
+        block.code.span if block.code is not None else block.span,
+        f"Add `violate_penalty: -10`, or say in the dynamic model what happens where {_MEETS} is false",
+    )
+
+
+def _mentions(block: Iterable[Assignment]) -> bool:
+    """Says whether code reads or sets whether the precondition holds."""
+    return any(mention.path[0] == _MEETS for _, cpp in snippets_of(block) for mention in cpp.mentions)
