@@ -18,7 +18,6 @@ __all__ = ["Answer", "Gateway", "environment", "gateway", "played", "slow_system
 
 BIN = Path(sys.executable).parent
 ROOT = Path(__file__).resolve().parents[1]
-ANY_PORT = "tcp/127.0.0.1:0"
 SLOW = """\
 aos: 1
 robot: tiger
@@ -72,6 +71,7 @@ class Gateway(NamedTuple):
     port: int
     token: str
     process: subprocess.Popen[str]
+    folder: Path
 
     def ask(
         self,
@@ -133,7 +133,7 @@ def environment(folder: Path, cache: Path) -> dict[str, str]:
 def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
     """A gateway of the runs and deploy files in a folder."""
     process = subprocess.Popen(
-        [BIN / "aos", "serve", "--port", "0", *options],
+        [BIN / "aos", "serve", *(options or ("--port", "0"))],
         cwd=folder,
         env=environment(folder, cache),
         stdout=subprocess.PIPE,
@@ -143,29 +143,24 @@ def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
         assert process.stdout is not None
         address = process.stdout.readline()
         port, _, token = address.rpartition("#/?token=")
-        yield Gateway(int(port.rstrip("/").rpartition(":")[2]), token.strip(), process)
+        yield Gateway(int(port.rstrip("/").rpartition(":")[2]), token.strip(), process, folder)
     finally:
         process.terminate()
         process.communicate(timeout=HANG_S)
 
 
-def played(folder: Path, cache: Path, *options: str, deploy: Path = ROOT / "deploy/errand.yaml") -> Path:
-    """The directory of a mission that has run to its end, each skill played by its document."""
-    command = [
-        BIN / "aos-up",
-        deploy,
-        "--model",
-        "--plain",
-        "--runs",
-        folder / "runs",
-        "--listen",
-        ANY_PORT,
-        *options,
-    ]
-    subprocess.run(
-        command, cwd=folder, env=environment(folder, cache), capture_output=True, timeout=HANG_S, check=False
-    )
-    return (folder / "runs/latest").resolve()
+def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -> Path:
+    """The directory of a mission that has run to its end, each skill played by its document.
+
+    A file gets what was `said`; gateways that it starts write there as well.
+    """
+    runs = folder / "runs"
+    command = [BIN / "aos-up", ROOT / "deploy/errand.yaml", "--model", "--plain", "--runs", runs, *options]
+    with (said or folder / "said").open("wb") as out:
+        subprocess.run(
+            command, cwd=folder, env=environment(folder, cache), stdout=out, timeout=HANG_S, check=False
+        )
+    return (runs / "latest").resolve()
 
 
 @contextmanager
@@ -175,7 +170,7 @@ def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
     (folder / "tiger.yaml").write_text(SLOW.format(root=ROOT))
     (folder / "robot.py").write_text(SLOW_ROBOT)
     process = subprocess.Popen(
-        [BIN / "aos-up", "tiger.yaml", "--json", "--listen", ANY_PORT, *options],
+        [BIN / "aos-up", "tiger.yaml", "--json", *options],
         cwd=folder,
         env=environment(folder, cache),
         stdout=subprocess.PIPE,

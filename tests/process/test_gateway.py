@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import io
+import json
+import os
+import re
+import signal
 import zipfile
 from collections.abc import Iterator
+from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
 
 import pytest
 from gateway import Gateway, gateway, played, slow_system
+from processes import HANG_S
 
 ERRAND = "deploy/bundles/errand"
 
@@ -63,6 +69,40 @@ def test_decisions_beliefs_activations_and_trace_tell_of_the_same_steps(past: tu
     assert [each["outcome"] for each in activations] == [record["outcome"] for record in records[1::2]]
     last = served.ask(f"{path}/decisions/{len(activations)}").json
     assert (last["decided"], last["observed"]) == (records[-2], records[-1])
+
+
+def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(
+    past: tuple[Gateway, str],
+) -> None:
+    served, name = past
+    path = f"/v1/missions/{name}/decisions/2"
+    decided = served.ask(path).json["decided"]
+    why = served.ask(f"{path}/why").json
+    assert (why["action"], why["step"]) == (decided["action"], 2)
+    assert sum(each["probability"] for each in why["expected"]) == pytest.approx(1)
+    other = served.post(f"{path}/whatif", {"forbid": [decided["action"]]}).json
+    assert other["before"] == decided["action"] != other["action"]
+    unknown = served.ask(f"{path}/why?instead=fly")
+    assert (unknown.status, unknown.json["code"]) == (404, "AOS501")
+
+
+def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path) -> None:
+    said = tmp_path / "said"
+    run = played(tmp_path, cache_dir, "--page", said=said)
+    note = json.loads((tmp_path / "gateway/gateway.json").read_text())
+    try:
+        found = re.search(
+            r"^page (http://127\.0\.0\.1:\d+/)#/runs/(.+)\?token=(\S+)$", said.read_text(), re.M
+        )
+        assert found is not None
+        assert (found[1], found[2]) == (note["address"], run.name)
+        port = int(found[1].rstrip("/").rpartition(":")[2])
+        connection = HTTPConnection("127.0.0.1", port, timeout=HANG_S)
+        connection.request("GET", f"/v1/missions/{run.name}")
+        assert json.loads(connection.getresponse().read())["state"]["ending"] == "goal"
+        connection.close()
+    finally:
+        os.kill(note["pid"], signal.SIGTERM)
 
 
 def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]) -> None:
@@ -228,6 +268,23 @@ def test_whoever_views_a_living_mission_is_told_what_happens_and_can_stop_it(
         assert (stopped.status, stopped.json["ending"]) == (200, "cancelled")
         end = next(data for _, kind, data in events if kind == "state" and data["phase"] == "ended")
     assert end["ending"] == "cancelled"
+
+
+def test_a_mission_is_held_and_does_what_a_person_asks_for(living: tuple[Gateway, Path]) -> None:
+    served, run = living
+    path = f"/v1/missions/{run.name}"
+    held = served.post(f"{path}/steering", {"verb": "hold", "by": "ada"})
+    assert (held.status, held.json["held_by"]) == (200, "ada")
+    with served.events(f"/v1/events?mission={run.name}") as events:
+        (run.parents[1] / "turns").write_bytes(b".")
+        next(data for _, kind, data in events if kind == "state" and data["phase"] == "holding")
+        asked = served.post(f"{path}/steering", {"verb": "act", "actions": ["listen"]})
+        assert asked.status == 200
+        row = next(data["row"] for _, kind, data in events if kind == "decision" and data["row"]["step"] == 2)
+    assert row["chosen_by"] == "operator"
+    refused = served.post(f"{path}/steering", {"verb": "act", "actions": ["fly"]})
+    assert (refused.status, refused.json["code"]) == (409, "AOS517")
+    assert served.post(f"{path}/steering", {"verb": "dance"}).status == 400
 
 
 def test_a_stream_that_comes_back_gets_each_record_once_from_a_gateway_that_was_started_again(

@@ -38,6 +38,7 @@ __all__ = [
     "log",
     "mission",
     "missions",
+    "number_of_step",
     "picture",
     "pictures",
     "run",
@@ -255,7 +256,7 @@ async def decisions(gateway: Gateway, mission: str, query: Paging) -> History:
 
 async def decision(gateway: Gateway, mission: str, step: str) -> DecisionView:
     """One step of a mission: what was decided, and what came of it."""
-    number = _number(step)
+    number = number_of_step(step)
     found = await gateway.shelf.run_of_mission(mission)
     decided = observed = None
     since, has_more = max(0, 2 * (number - 1) - 2), True
@@ -318,7 +319,7 @@ async def pictures(gateway: Gateway, mission: str) -> Pictures:
 async def picture(gateway: Gateway, mission: str, step: str) -> Content:
     """The picture of the world at a step."""
     found = await gateway.shelf.run_of_mission(mission)
-    path = _pictures(found).get(_number(step)) if isinstance(found, KeptRun) else None
+    path = _pictures(found).get(number_of_step(step)) if isinstance(found, KeptRun) else None
     if path is None:
         raise GatewayError(f"there is no picture of step {step}", code="AOS902")
     media = "image/png" if path.suffix == ".png" else "image/jpeg"
@@ -344,7 +345,8 @@ def _kept(gateway: Gateway, name: str) -> KeptRun:
     return found
 
 
-def _number(step: str) -> int:
+def number_of_step(step: str) -> int:
+    """The number in a path; GatewayError AOS901 if it is none."""
     if not (step.isascii() and step.isdigit() and len(step) < 16):
         raise GatewayError(f"{step} is no number of a step", code="AOS901")
     return int(step)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import time
 from abc import ABC, abstractmethod
-from collections.abc import AsyncIterator, Iterable
-from contextlib import asynccontextmanager
+from collections.abc import Iterable
+from contextlib import AbstractAsyncContextManager
 from pathlib import Path
 
 import msgspec
@@ -15,11 +15,10 @@ from aos_deploy.living_runs import living_runs
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import message_of_row
-from aos_protocol.access import OPERATOR
+from aos_protocol.access import WATCHER
 from aos_protocol.errors import AosError, BusError, DeployError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionEntry, MissionState
 from aos_runtime.client import AosClient
-from aos_runtime.credentials import Credential, credential_of_run
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder, mission_folders, number_of
 from aos_solver.mission.history import history_page
@@ -83,20 +82,17 @@ class Run(ABC):
         newest of a system elsewhere.
         """
 
-    @asynccontextmanager
-    async def client(self) -> AsyncIterator[AosClient]:
-        """A client of the system; BusError AOS605 if it does not run."""
+    def client(self, user: str = WATCHER) -> AbstractAsyncContextManager[AosClient]:
+        """A client of the system, as its watcher or its operator; BusError AOS605 if it does not run."""
         if not self.is_running:
             raise BusError(
                 f"the run {self.name} is over", code="AOS605", hint="Start a system, or look at its records"
             )
-        async with AosClient.connect(self.endpoint, self.robot, credential=self.credential) as client:
-            yield client
+        return self._client(user)
 
-    @property
-    def credential(self) -> Credential | None:
-        """The operator's; None where the gateway's environment says who it is."""
-        return None
+    @abstractmethod
+    def _client(self, user: str) -> AbstractAsyncContextManager[AosClient]:
+        """The same of a system that runs."""
 
 
 class KeptRun(Run):
@@ -113,10 +109,6 @@ class KeptRun(Run):
     @property
     def is_running(self) -> bool:
         return self.directory.is_running
-
-    @property
-    def credential(self) -> Credential | None:
-        return credential_of_run(self.directory.path, OPERATOR)
 
     async def entry(self) -> RunEntry:
         if self._last is None or self._last.is_running:
@@ -144,6 +136,9 @@ class KeptRun(Run):
             stays=bool(numbers),
             missions=names,
         )
+
+    def _client(self, user: str) -> AbstractAsyncContextManager[AosClient]:
+        return AosClient.of_run(self.directory.path, user)
 
     async def missions(self) -> tuple[MissionEntry, ...]:
         return await asyncio.to_thread(entries_of, self.directory.path)
@@ -184,7 +179,10 @@ class KeptRun(Run):
 
 
 class RemoteRun(Run):
-    """A system at an endpoint, of which nothing but its bus is known."""
+    """A system at an endpoint, of which nothing but its bus is known.
+
+    The gateway is there who AOS_USER and AOS_PASSWORD_FILE say.
+    """
 
     is_running = True
 
@@ -204,6 +202,9 @@ class RemoteRun(Run):
         return RunEntry(
             self.name, self.robot, is_running=True, ending="running", endpoint=self.endpoint, missions=names
         )
+
+    def _client(self, user: str) -> AbstractAsyncContextManager[AosClient]:
+        return AosClient.connect(self.endpoint, self.robot)
 
     async def missions(self) -> tuple[MissionEntry, ...]:
         async with self.client() as client:

@@ -60,6 +60,7 @@ async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -
                 projects=tuple(path.resolve() for path in settings.projects),
                 folder=folder,
                 runs=settings.runs[0].resolve(),
+                studying=asyncio.Semaphore(1),
             )
             config = uvicorn.Config(
                 make_app(gateway, access),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 
 import msgspec
@@ -14,11 +15,15 @@ __all__ = ["Gateway"]
 
 
 class Gateway(msgspec.Struct, frozen=True, kw_only=True):
-    """The runs, who watches them, and the folders: of `projects` to start, and of the gateway's own files."""
+    """The runs, who watches them, and the folders: of `projects` to start, and of the gateway's own files.
+
+    Studies of missions that are over take turns (`studying`): each has engines of its own.
+    """
 
     shelf: RunShelf
     watches: Watches
     projects: tuple[Path, ...]
     folder: Path
     runs: Path
+    studying: asyncio.Semaphore
     max_body_bytes: int = 2 * MAX_BUNDLE_BYTES

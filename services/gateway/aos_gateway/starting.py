@@ -21,8 +21,6 @@ from aos_protocol.errors import AosError, error_from_code
 __all__ = ["StartedRun", "start_system"]
 
 _UP = (sys.executable, "-c", "from aos_deploy.cli import up_main; up_main()")
-_ANY_PORT = "tcp/127.0.0.1:0"
-"""Systems that are started side by side must not want one port."""
 _LOOK_S = 0.05
 _SAID_BYTES = 4000
 
@@ -41,9 +39,7 @@ async def start_system(shelf: RunShelf, deploy_file: Path, runs: Path, options: 
     `runs` is the folder of its run directory.
     """
     with tempfile.TemporaryFile() as said:
-        process = _started(
-            [*_UP, str(deploy_file), "--plain", "--runs", str(runs), "--listen", _ANY_PORT, *options], said
-        )
+        process = _started([*_UP, str(deploy_file), "--plain", "--runs", str(runs), *options], said)
         _reap(process)
         while process.returncode is None:
             for run in await asyncio.to_thread(living_runs):

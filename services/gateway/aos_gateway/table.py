@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aos_gateway import documents, reading, writing
+from aos_gateway import documents, reading, study, writing
 from aos_gateway.operations import Operation, operation
 
 __all__ = ["OPERATIONS"]
@@ -25,7 +25,7 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/missions", reading.missions),
     operation("GET", "/v1/missions/{mission}", reading.mission),
     operation("POST", "/v1/missions/{mission}/stop", writing.stop),
-    operation("POST", "/v1/missions/{mission}/resume", writing.resume),
+    operation("POST", "/v1/missions/{mission}/steering", writing.steer),
     operation("GET", "/v1/missions/{mission}/trace", reading.trace),
     operation("GET", "/v1/missions/{mission}/decisions", reading.decisions),
     operation("GET", "/v1/missions/{mission}/decisions/{step}", reading.decision),
@@ -34,5 +34,8 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/missions/{mission}/world", reading.pictures),
     operation("GET", "/v1/missions/{mission}/world/{step}", reading.picture, media="image/png"),
     operation("GET", "/v1/missions/{mission}/documents", documents.documents),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}/why", study.why),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}/tree", study.tree),
+    operation("POST", "/v1/missions/{mission}/decisions/{step}/whatif", study.what_if),
     operation("GET", "/v1/events", reading.events, media="text/event-stream", gives=None),
 )

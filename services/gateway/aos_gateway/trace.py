@@ -55,6 +55,7 @@ class Step(msgspec.Struct, omit_defaults=True):
     simulations: int = 0
     planning_s: float = 0.0
     revision: int = 0
+    chosen_by: str = ""
     adopted: str = ""
     predicted: dict[str, float] = {}
     endings: Endings | None = None
@@ -118,6 +119,7 @@ class Steps:
             simulations=record.simulations,
             planning_s=_short(record.planning_s) or 0.0,
             revision=record.revision,
+            chosen_by="" if record.chosen_by == "planner" else record.chosen_by,
             predicted={seen.response: _probability(seen.probability) for seen in record.predicted},
         )
         if chosen is not None:

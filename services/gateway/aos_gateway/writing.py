@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import uuid
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -15,23 +16,25 @@ from aos_gateway.shared import Gateway
 from aos_gateway.starting import StartedRun, start_system
 from aos_gateway.uploads import ProjectEntry, files_of_upload, keep_project, kept_projects
 from aos_language.load import load_files, with_excerpts
+from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import DocumentError, GatewayError
-from aos_protocol.messages import BundleReport, MissionState, PushBundle, ResumeMission
+from aos_protocol.messages import BundleReport, MissionState, PushBundle, Steer, SteeringVerb
+from aos_runtime.asking import ask_until_answered
+from aos_runtime.steering import STEER_TIMEOUT_S
 
 __all__ = [
     "check",
     "projects",
     "push",
-    "resume",
     "start",
     "start_next",
+    "steer",
     "stop",
     "upload",
 ]
 
 _PUSH_S = 200.0
-_ANSWER_S = 10.0
 
 
 class Report(msgspec.Struct, frozen=True):
@@ -77,6 +80,16 @@ class NextMission(msgspec.Struct, frozen=True, kw_only=True):
     given: tuple[str, ...] = ()
     idle: Annotated[int, msgspec.Meta(ge=0, le=10_000)] = 0
     values: dict[str, str] = {}
+
+
+class Steering(msgspec.Struct, frozen=True, kw_only=True):
+    """The wish of an operator, as in Steer. Without `by` it is the user of the gateway."""
+
+    verb: SteeringVerb
+    actions: tuple[str, ...] = ()
+    name: str = ""
+    by: str = ""
+    reason: str = ""
 
 
 async def projects(gateway: Gateway) -> Projects:
@@ -135,7 +148,7 @@ async def start(gateway: Gateway, body: StartSystem) -> StartedRun:
 
 async def start_next(gateway: Gateway, run: str, body: NextMission) -> MissionState:
     """Begin the next mission of a system that stays."""
-    async with gateway.shelf.run(run).client() as client:
+    async with gateway.shelf.run(run).client(OPERATOR) as client:
         return await client.start_mission(
             belief=body.belief, given=body.given, idle=body.idle, values=body.values
         )
@@ -144,16 +157,24 @@ async def start_next(gateway: Gateway, run: str, body: NextMission) -> MissionSt
 async def stop(gateway: Gateway, mission: str) -> MissionState:
     """Cancel what moves and end a mission as `cancelled`. Answered when it has ended."""
     found = await gateway.shelf.run_of_mission(mission)
-    async with found.client() as client:
+    async with found.client(OPERATOR) as client:
         return await client.stop_mission(mission)
 
 
-async def resume(gateway: Gateway, mission: str) -> MissionState:
-    """Let a mission go on that holds."""
+async def steer(gateway: Gateway, mission: str, body: Steering) -> MissionState:
+    """Steer a mission that runs: hold, step, resume, stop, act, script, leave_out, take_back."""
     found = await gateway.shelf.run_of_mission(mission)
-    async with found.client() as client:
-        return await client.bus.ask(
-            client.keys.resume_mission, ResumeMission(), MissionState, timeout_s=_ANSWER_S
+    async with found.client(OPERATOR) as client:
+        wish = Steer(
+            body.verb, body.actions, body.name, body.by or client.by, mission, uuid.uuid4().hex, body.reason
+        )
+        return await ask_until_answered(
+            client.bus,
+            client.keys.steer_mission,
+            wish,
+            MissionState,
+            server=client.keys.live("solver"),
+            timeout_s=STEER_TIMEOUT_S,
         )
 
 
@@ -163,7 +184,7 @@ async def push(gateway: Gateway, run: str, query: Named, body: bytes) -> BundleR
     files, remarks = await asyncio.to_thread(files_of_upload, query.name, body)
     if has_errors(remarks) or not files:
         raise _refused(query.name, tuple(remarks))
-    async with found.client() as client:
+    async with found.client(OPERATOR) as client:
         report = await client.bus.ask(
             client.keys.push_bundle, PushBundle(files, query.name), BundleReport, timeout_s=_PUSH_S
         )

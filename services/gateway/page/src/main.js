@@ -24,13 +24,13 @@ function Page() {
   }, [kind, name]);
   return html`
     <a class="skip" href="#main" onClick=${(event) => { event.preventDefault(); document.getElementById("main")?.focus(); }}>To the content</a>
-    <div class="bar">
+    <header class="bar">
       <a class="brand" href="#/" aria-label="AOS, all missions"><svg viewBox="0 0 32 32" width="22" height="22" aria-hidden="true"><rect width="32" height="32" rx="8" /><path d="M6 21c5 0 5-10 10-10s5 10 10 10" /><circle cx="16" cy="11" r="3.2" /></svg><span>AOS</span></a>
       ${isMission && html`<nav aria-label="Place"><a href="#/">Missions</a></nav>`}
       <span class="room"></span>
       <span class=${`connection is-${connection.value}`} role="status"><i></i>${isMission || connection.value === "lost" ? CONNECTIONS[connection.value] : ""}</span>
       <${Theme} />
-    </div>
+    </header>
     ${isMission ? html`<${Mission} key=${name} />` : html`<${Home} />`}`;
 }
 

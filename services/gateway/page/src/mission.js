@@ -1,20 +1,21 @@
 // One mission: where it is, what was decided, and the views below.
-import { Card, Findings, html, useEffect, useState } from "./ui.js";
-import { hasToken, write } from "./api.js";
+import { Card, Findings, html, useEffect } from "./ui.js";
 import { addressOf, route, VIEWS } from "./route.js";
-import { at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps, successor } from "./store.js";
+import { at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
 import { chance, ending, phase } from "./format.js";
+import { Controls, LeftOut } from "./steering.js";
 import { Sentence } from "./sentence.js";
 import { Timeline } from "./timeline.js";
 import { Ribbons } from "./ribbons.js";
 import { Values } from "./values.js";
+import { Why } from "./why.js";
 import { Model } from "./model.js";
 import { Steps, Table } from "./steps.js";
 import { Documents } from "./documents.js";
 import { System } from "./system.js";
 
-const TITLES = { overview: "Overview", steps: "Steps", model: "Model", documents: "Documents", system: "System" };
-const PAGES = { overview: Overview, steps: Steps, model: Model, documents: Documents, system: System };
+const TITLES = { overview: "Overview", why: "Why", steps: "Steps", model: "Model", documents: "Documents", system: "System" };
+const PAGES = { overview: Overview, why: Why, steps: Steps, model: Model, documents: Documents, system: System };
 
 export function Mission() {
   const { name, view } = route.value;
@@ -73,33 +74,6 @@ function Head() {
   </header>`;
 }
 
-function Controls() {
-  const [failed, setFailed] = useState(null);
-  const [busy, setBusy] = useState(false);
-  const view = mission.value;
-  const now = state.value;
-  const name = route.value.name;
-  const canStop = view?.is_running && now?.phase !== "ended";
-  async function ask(what) {
-    setBusy(true);
-    setFailed(null);
-    try {
-      state.value = await write(`/v1/missions/${encodeURIComponent(name)}/${what}`);
-    } catch (error) {
-      setFailed(error);
-    }
-    setBusy(false);
-  }
-  if (successor.value) return html`<a class="button primary" href=${addressOf(successor.value)}>To the next mission</a>`;
-  if (!canStop) return null;
-  if (!hasToken()) return html`<p class="controls note">Read only</p>`;
-  return html`<div class="controls">
-    ${now?.phase === "holding" && html`<button class="primary" disabled=${busy} onClick=${() => ask("resume")}>Go on</button>`}
-    <button class="stop" disabled=${busy} onClick=${() => ask("stop")}>${busy ? "Stopping…" : "Stop"}</button>
-    <${Findings} problem=${failed} />
-  </div>`;
-}
-
 function Overview() {
   return html`<div class="columns overview">
     <div class="stack">
@@ -107,7 +81,7 @@ function Overview() {
       <${Card} id="all-steps" title="Steps"><${Table} /><//>
     </div>
     <div class="stack">
-      <${Card} id="values" title="Values of the actions"><${Values} /><//>
+      <${Card} id="values" title="Values of the actions"><${Values} /><${LeftOut} /><//>
       ${pictures.value.length > 0 && html`<${Card} id="world" title="World"><${Picture} /><//>`}
     </div>
   </div>`;

@@ -39,7 +39,7 @@ function Ribbon({ row, all, size, now }) {
   const words = likely.slice(0, 2).map(([value, each]) => `${value} ${chance(each)}`).join(", ");
   return html`<div class="ribbon">
     <h3 class="ribbon-name">${row.name}</h3>
-    <svg class="ribbon-plot" width=${room} height=${HEIGHT} role="img" aria-label=${`${row.name}: ${words}`}
+    <svg class=${room > 4 * all.length ? "ribbon-plot" : "ribbon-plot is-dense"} width=${room} height=${HEIGHT} role="img" aria-label=${`${row.name}: ${words}`}
       onClick=${(event) => selectStep(stepAt(event, room))}>
       ${areas(row, all, room, colours)}
       ${row.moves.length <= MARKED && row.moves.map((i) => html`<path class="moved" d=${`M${placeOf(i - 1, room, head)} ${HEIGHT} l-3.5 5 h7 z`} />`)}

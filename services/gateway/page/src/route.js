@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { takeToken } from "./api.js";
 
-export const VIEWS = ["overview", "steps", "model", "documents", "system"];
+export const VIEWS = ["overview", "why", "steps", "model", "documents", "system"];
 
 const parse = () => {
   const [path, query = ""] = location.hash.replace(/^#/, "").split("?");

@@ -2,6 +2,7 @@
 import { html } from "./ui.js";
 import { chance, isNumber, percent, plain, seconds, signed } from "./format.js";
 import { at, progress, state } from "./store.js";
+import { isAsked } from "./timeline.js";
 
 export function Sentence() {
   const step = at.value;
@@ -18,6 +19,7 @@ export function Sentence() {
 function worth(step) {
   const by = [step.planner, step.simulations ? `${step.simulations.toLocaleString("en")} simulations` : "", seconds(step.planning_s)].filter(Boolean).join(", ");
   const note = by && html`<span class="by">${by}</span>`;
+  if (isAsked(step)) return step.chosen_by === "script" ? html`comes from a script of a person.` : html`was asked for by a person.`;
   if (!isNumber(step.value)) return html`was chosen. ${note}`;
   const value = html`is worth <b>${signed(step.value)}</b>${step.error >= 0.005 ? ` ± ${plain(step.error)}` : ""}`;
   if (!step.second) return html`${value}; nothing else can be done. ${note}`;

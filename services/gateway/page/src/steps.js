@@ -18,7 +18,7 @@ export function Table() {
     if (row && box && (row.offsetTop < box.scrollTop + 30 || row.offsetTop + row.offsetHeight > box.scrollTop + box.clientHeight))
       box.scrollTop = row.offsetTop - box.clientHeight / 2;
   }, [now]);
-  return html`<div class="scroll" tabindex="0" role="region" aria-label="Steps">
+  return html`<div class="scroll" tabindex="0" role="region" aria-label="Table of steps">
     <table class="steps">
       <thead><tr><th>Step</th><th>Action</th><th class="num wide-only">Value</th><th>Seen</th><th class="num wide-only">Expected</th><th class="num">Surprise</th><th class="num wide-only">Goal</th></tr></thead>
       <tbody ref=${body}>${steps.value.map((step) => html`<${Row} key=${step.step} step=${step} isNow=${step.step === now} />`)}</tbody>

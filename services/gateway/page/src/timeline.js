@@ -10,6 +10,7 @@ const SURPRISING = 2.0; // nats: less probable than one in seven
 export const placeOf = (i, room, head = 0) => head + (i / Math.max(1, steps.value.length)) * (room - head);
 
 export const isSurprising = (step) => step.impossible || step.surprise >= SURPRISING;
+export const isAsked = (step) => step.chosen_by === "operator" || step.chosen_by === "script";
 export const hasFailed = (step) => Boolean(step.status) && step.status !== "observed";
 
 export const skillColours = () => {
@@ -51,6 +52,7 @@ export function Timeline() {
         ${[...skills].map(([name, fill]) => html`<li><i style=${{ background: fill }}></i>${name}</li>`)}
         ${all.some(isSurprising) && html`<li><svg width="10" height="9" aria-hidden="true"><path class="surprise" d="M5 0 l5 9 h-10z" /></svg>surprise</li>`}
         ${all.some(hasFailed) && html`<li><svg width="9" height="9" aria-hidden="true"><path class="failed" d="M1 1 l7 7 M8 1 l-7 7" /></svg>not observed</li>`}
+        ${all.some(isAsked) && html`<li><svg width="9" height="9" aria-hidden="true"><rect class="asked" x="1" y="1" width="7" height="7" rx="1" /></svg>asked for by a person</li>`}
         ${all.some((step) => step.adopted) && html`<li><svg width="9" height="9" aria-hidden="true"><path class="adopted" d="M4.5 0 l4.5 4.5 l-4.5 4.5 l-4.5 -4.5z" /></svg>new model</li>`}
       </ul>
       <div class="stepper">
@@ -90,6 +92,7 @@ function marks(all, room) {
     return [
       isSurprising(step) && html`<path class="surprise" d=${`M${x} 1 l4.5 8 h-9z`}><title>${`step ${step.step}: surprise ${step.impossible ? "without end" : plain(step.surprise)}, expected with ${chance(step.expected)}`}</title></path>`,
       hasFailed(step) && html`<path class="failed" d=${`M${x - 3.5} 2 l7 7 M${x + 3.5} 2 l-7 7`} />`,
+      isAsked(step) && html`<rect class="asked" x=${placeOf(i + 0.5, room) - (isSurprising(step) || hasFailed(step) ? 12 : 3.5)} y="2" width="7" height="7" rx="1" />`,
       step.adopted && html`<path class="adopted" d=${`M${placeOf(i, room)} 1 l4 4 l-4 4 l-4 -4z`} />`,
     ];
   });

@@ -2,6 +2,7 @@
 import { html, useState, useWidth, width } from "./ui.js";
 import { briefAction, isNumber, signed } from "./format.js";
 import { at, record } from "./store.js";
+import { OfAction } from "./steering.js";
 
 const SHOWN = 8;
 const ROW = 30;
@@ -34,7 +35,7 @@ function Row({ each, scale, size, found }) {
   const error = each.stderr ?? 0;
   const words = `${each.action}: ${signed(each.q)}${error >= 0.005 ? ` ± ${error.toFixed(2)}` : ""}${isChosen ? ", chosen" : ""}`;
   return html`<li class=${isChosen ? "value is-chosen" : "value"} aria-label=${words}>
-    <span class="value-name" title=${each.action}>${isChosen && html`<span class="chosen-mark" aria-hidden="true">▸</span>`}${briefAction(each.action)}</span>
+    <span class="value-head"><span class="value-name" title=${each.action}>${isChosen && html`<span class="chosen-mark" aria-hidden="true">▸</span>`}${briefAction(each.action)}</span><${OfAction} action=${each.action} /></span>
     <span class="value-plot">
       <svg width=${room} height=${ROW - 12} aria-hidden="true">
         <line class="rail" x1="8" x2=${room - 8} y1="9" y2="9" />

@@ -1,0 +1,72 @@
+"""The directory of a run with a journal of any length, as a mission of many steps leaves it."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+from decision_records import decision_record
+
+from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_protocol.messages import (
+    ActionValue,
+    ActivationId,
+    BeliefSummary,
+    Marginal,
+    MissionBegun,
+    MissionState,
+    Outcome,
+    PredictedObservation,
+)
+from aos_runtime.journal import Journal
+
+__all__ = ["write_long_run"]
+
+SKILLS = ("look", "go(to=hall)", "go(to=lab)", "pick", "put", "wait")
+PLACES = ("hall", "lab", "yard", "office")
+
+
+def write_long_run(runs: Path, steps: int) -> str:
+    """Writes the run of a mission with so many steps, and returns its name."""
+    draws = random.Random(7)
+    run = RunDirectory.create(runs, "marathon", now_ns=1_700_000_000 * 10**9)
+    name = run.path.name
+    run.write_record(
+        RunRecord(
+            robot="marathon", endpoint="tcp/127.0.0.1:1", deploy_file="m.yaml", seed=1, started="", pid=1
+        )
+    )
+    with Journal.open(run.path / "journal.db", survives_power_loss=False) as journal:
+        journal.append("begun", MissionBegun(name, 1, 1, 1, "digest"))
+        for step in range(1, steps + 1):
+            action = draws.choice(SKILLS)
+            common = {
+                "action": action,
+                "actions": tuple(
+                    ActionValue(each, draws.gauss(4, 3), draws.randrange(2000), 0.1 * draws.random())
+                    for each in SKILLS
+                ),
+                "predicted": (PredictedObservation("seen", 0.8), PredictedObservation("unseen", 0.2)),
+                "planner": "pomcp",
+            }
+            skill = action.partition("(")[0]
+            journal.append(
+                "decision", decision_record(2 * step - 2, name, skill, belief=_belief(draws), **common)
+            )
+            outcome = Outcome(ActivationId(name, step), skill, "observed", draws.choice(("seen", "unseen")))
+            journal.append(
+                "decision",
+                decision_record(2 * step - 1, name, skill, belief=_belief(draws), outcome=outcome, **common),
+            )
+        journal.append("mission", MissionState(name, "ended", steps, 0.0, "step_limit", "the step limit"))
+    run.close()
+    return name
+
+
+def _belief(draws: random.Random) -> BeliefSummary:
+    marginals = []
+    for number in range(8):
+        weights = [draws.random() for _ in PLACES]
+        values = {place: weight / sum(weights) for place, weight in zip(PLACES, weights, strict=True)}
+        marginals.append(Marginal(f"thing_{number}_at", values))
+    return BeliefSummary(tuple(marginals), 1.0, draws.random(), 0.0, 64, True)

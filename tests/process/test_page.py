@@ -1,0 +1,177 @@
+"""The page in a browser: missions that are over and that run, all views, narrow screens, lost connections."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from gateway import Gateway, gateway, played, slow_system
+from long_run import write_long_run
+from page_sources import installed_sources
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+from processes import HANG_S
+
+ROOT = Path(__file__).resolve().parents[2]
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+VIEWS = ("", "/why", "/steps", "/model", "/documents", "/system")
+MOST_BYTES = 400_000
+AXE = "node_modules/axe-core/axe.min.js"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """A browser without a window; tests skip where the machine has none."""
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if program is None:
+        pytest.skip(f"needs a browser: none of {', '.join(BROWSERS)} is there")
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield found
+        found.close()
+
+
+def opened(browser: Browser, served: Gateway, width: int = 1440, theme: str = "light") -> Page:
+    """A page that has the token. An error in its scripts fails the test."""
+    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=theme)  # type: ignore[arg-type]
+    page.set_default_timeout(HANG_S * 1000)
+    expect.set_options(timeout=HANG_S * 1000)
+    page.on("pageerror", lambda error: pytest.fail(f"a script failed: {error}"))
+    page.goto(f"http://127.0.0.1:{served.port}/#/?token={served.token}")
+    expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
+    return page
+
+
+def kept(page: Page, name: str, pictures: Path) -> None:
+    """Keeps a picture of the page, for people to look at."""
+    pictures.mkdir(parents=True, exist_ok=True)
+    page.screenshot(path=pictures / f"{name}.png", full_page=True)
+
+
+@pytest.fixture(scope="module")
+def pictures(cache_dir: Path) -> Path:
+    return cache_dir / "page-pictures"
+
+
+@pytest.fixture(scope="module")
+def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+    """A gateway, and a mission that has run to its end."""
+    folder = tmp_path_factory.mktemp("page")
+    run = played(folder, cache_dir)
+    with gateway(folder, cache_dir) as served:
+        yield served, run.name
+
+
+@pytest.fixture
+def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
+    """A gateway, and the directory of a mission that goes on."""
+    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+        yield served, run
+
+
+def test_slider_and_keys_move_all_views_and_the_address(browser: Browser, past: tuple[Gateway, str]) -> None:
+    served, name = past
+    steps = served.ask(f"/v1/missions/{name}/trace").json["steps"]
+    page = opened(browser, served)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+    expect(page.locator(".decision .action")).to_have_text(steps[-1]["action"])
+    page.keyboard.press("ArrowLeft")
+    expect(page).to_have_url(re.compile(rf"\?step={len(steps) - 1}$"))
+    page.reload()
+    expect(page.locator("tr[aria-selected=true] .row-step")).to_have_text(str(len(steps) - 1))
+    page.get_by_role("slider", name="Step").fill("1")
+    expect(page.locator(".decision .action")).to_have_text(steps[0]["action"])
+    expect(page.locator(".value.is-chosen")).to_have_attribute("aria-label", re.compile("chosen"))
+    page.keyboard.press("Tab")
+    page.locator("h1").click()
+    page.keyboard.press("End")
+    expect(page).to_have_url(re.compile(rf"/missions/{name}$"))
+
+
+def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
+    browser: Browser, living: tuple[Gateway, Path], pictures: Path
+) -> None:
+    served, run = living
+    (run.parents[1] / "turns").write_bytes(b".")
+    page = opened(browser, served)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}")
+    expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+    expect(page.locator(".connection")).to_have_text("Live")
+    (run.parents[1] / "turns").write_bytes(b".")
+    expect(page.locator(".stepper-place")).to_have_text("3 of 3")
+    kept(page, "living", pictures)
+    page.get_by_role("button", name="Hold").click()
+    (run.parents[1] / "turns").write_bytes(b".")
+    expect(page.locator(".phase")).to_contain_text("Holding")
+    page.get_by_role("button", name="Do listen").click()
+    expect(page.locator(".decision .sentence")).to_contain_text("was asked for by a person")
+    page.get_by_role("button", name="Stop").click()
+    expect(page.locator(".phase")).to_contain_text("Cancelled")
+    expect(page.get_by_role("button", name="Stop")).to_have_count(0)
+
+
+def test_a_lost_connection_is_told_and_what_was_missed_comes_when_it_is_back(
+    browser: Browser, living: tuple[Gateway, Path], tmp_path: Path, cache_dir: Path
+) -> None:
+    served, run = living
+    page = opened(browser, served)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}")
+    expect(page.locator(".connection")).to_have_text("Live")
+    served.process.terminate()
+    served.process.wait(HANG_S)
+    expect(page.locator(".connection")).to_contain_text("Connection lost")
+    (run.parents[1] / "turns").write_bytes(b".")
+    with gateway(tmp_path, cache_dir, "--port", str(served.port)):
+        expect(page.locator(".connection")).to_have_text("Live")
+        expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+
+
+def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gateway, str], root: Path) -> None:
+    served, _ = past
+    page = opened(browser, served)
+    bundle = shutil.make_archive(str(Path(served.folder) / "errand"), "zip", root / "deploy/bundles/errand")
+    page.locator("input[type=file]").set_input_files(bundle)
+    expect(page.get_by_label("Project")).to_have_value(re.compile(r"errand\.yaml$"))
+    page.get_by_role("button", name="Start mission").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("errand")
+    expect(page.locator(".phase, .problem").first).to_be_visible()
+
+
+@pytest.mark.parametrize(("width", "theme"), [(390, "dark"), (1440, "light")])
+def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
+    browser: Browser, past: tuple[Gateway, str], width: int, theme: str, pictures: Path, cache_dir: Path
+) -> None:
+    served, name = past
+    action = served.ask(f"/v1/missions/{name}/trace").json["steps"][1]["action"]
+    axe = (installed_sources(ROOT, cache_dir) / AXE).read_text()
+    page = opened(browser, served, width, theme)
+    for view in ("list", *VIEWS):
+        if view != "list":
+            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=2")
+            expect(page.locator(".decision .action")).to_have_text(action)
+            expect(page.locator(".stepper-place")).to_have_text(re.compile(r"^2 of \d+$"))
+        expect(page.locator("main .card").last).to_be_visible()
+        expect(page.locator("[aria-busy=true]")).to_have_count(0)
+        kept(page, f"{width}-{theme}{view.replace('/', '-')}", pictures)
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
+        page.evaluate(axe)
+        found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
+        assert [(each["id"], [node["target"] for node in each["nodes"]]) for each in found] == [], view
+    page.close()
+
+
+def test_a_thousand_steps_are_loaded_with_little(
+    browser: Browser, tmp_path: Path, cache_dir: Path, pictures: Path
+) -> None:
+    name = write_long_run(tmp_path / "runs", 1000)
+    with gateway(tmp_path, cache_dir) as served:
+        page = opened(browser, served)
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+        page.reload()
+        expect(page.locator(".stepper-place")).to_have_text("1000 of 1000")
+        expect(page.locator("[aria-busy=true]")).to_have_count(0)
+        sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
+        assert page.evaluate(sizes) <= MOST_BYTES
+        kept(page, "thousand", pictures)
