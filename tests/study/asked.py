@@ -176,6 +176,8 @@ async def measure_intervals(runs: int, cache_dir: Path) -> bool:
                     cases += 1
                     is_held = flip.low - 1e-3 <= place <= flip.high + 1e-3
                     held += is_held
+                    if cases % 10 == 0:
+                        print(f"{held} of {cases} so far, seed {seed}", flush=True)
                     if not is_held:
                         print(f"seed {seed}, step {step}: {why.action}, {why.other}, {place:.4f}, {flip}")
         finally:

@@ -26,13 +26,16 @@ from aos_solver.study.study import Study
 
 __all__ = ["StudyDesk"]
 
+_PATIENCE_S = 0.5
+"""Whoever asks in a mission is not to wait for a compiler that gives way to everything else."""
+
 
 class StudyDesk:
     """Answers questions about the missions in the logbooks, one after the other."""
 
     def __init__(self, settings: Settings, books: Logbooks, registry: RegistryWatch) -> None:
         source = _Logged(settings, books, registry)
-        self._study = Study(source, Path(settings.cache_dir), NICENESS)
+        self._study = Study(source, Path(settings.cache_dir), NICENESS, patience_s=_PATIENCE_S)
 
     async def answer(self, bus: Bus, keys: Keys) -> None:
         """Answers from now on."""

@@ -6,6 +6,7 @@ Live and offline are the same code: only where journal and documents come from d
 from __future__ import annotations
 
 import asyncio
+import math
 from pathlib import Path
 from typing import Protocol
 
@@ -52,18 +53,24 @@ class Study:
     """Answers one question after the other. Its engines are started when they are needed.
 
     With a `niceness` engines and compilers give way to whatever else runs. Other beliefs of an exact decision
-    are valued for `flips_s` at most.
+    are valued for `flips_s` at most, and a model that is compiled for its rewards is waited for `patience_s`.
     """
 
     def __init__(
-        self, source: Source, cache_dir: Path, niceness: int = 0, *, flips_s: float = FLIPS_S
+        self,
+        source: Source,
+        cache_dir: Path,
+        niceness: int = 0,
+        *,
+        flips_s: float = FLIPS_S,
+        patience_s: float = math.inf,
     ) -> None:
         self._source = source
         self._niceness = niceness
         self._flips_s = flips_s
         self._cache_dir = cache_dir
         self._replay: ReplayedMission | None = None
-        self._traced = TracedEngines(cache_dir, niceness)
+        self._traced = TracedEngines(cache_dir, niceness, patience_s)
         self._asking = asyncio.Lock()
 
     async def why(self, query: WhyQuery) -> Why:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+import math
 from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
 
+from aos_protocol.errors import StudyError
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.answers import RewardTerm
 from aos_solver.child.engine import Engine
@@ -33,28 +36,51 @@ class TracedEngine(NamedTuple):
 
 
 class TracedEngines:
-    """Keeps the engine of the model that was asked for last. With a `niceness` it gives way to others."""
+    """Keeps the engine of the model that was asked for last.
 
-    def __init__(self, cache_dir: Path, niceness: int) -> None:
+    With a `niceness` engine and compiler give way to others. An engine that takes longer than `patience_s` is
+    got ready beside other questions.
+    """
+
+    def __init__(self, cache_dir: Path, niceness: int, patience_s: float) -> None:
         self._cache_dir = cache_dir
         self._niceness = niceness
-        self._kept: TracedEngine | None = None
+        self._patience_s = patience_s
+        self._starting: asyncio.Task[TracedEngine] | None = None
         self._digest = ""
 
     async def of(self, model: BuiltModel) -> TracedEngine:
-        """The traced engine of a model, compiled if it is not in the cache; its belief is the initial one."""
+        """The traced engine of a model, whatever it believes; StudyError AOS530 while it is not ready.
+
+        ModelError where it cannot be compiled or started; then the next question tries again.
+        """
         digest = f"{model.digest} {sorted(model.mission_values.items())}"
-        if self._kept is None or self._digest != digest:
+        if self._starting is None or self._digest != digest:
             await self.close()
-            emitted = traced(model.emitted).emitted
-            built = await build(emitted, cache_dir=self._cache_dir, niceness=self._niceness)
-            built = msgspec.structs.replace(built, mission_values=model.mission_values)
-            self._kept = TracedEngine(await Engine.start(built, seed=1, niceness=self._niceness), built)
+            self._starting = asyncio.create_task(self._start(model))
             self._digest = digest
-        return self._kept
+        starting = self._starting
+        wait_s = None if self._patience_s == math.inf else self._patience_s
+        if not (await asyncio.wait({starting}, timeout=wait_s))[0]:
+            raise StudyError(
+                "the model is still compiled with marks at its statements", hint="Ask again in some seconds"
+            )
+        if starting.exception() is not None:
+            self._starting = None
+        return starting.result()
+
+    async def _start(self, model: BuiltModel) -> TracedEngine:
+        emitted = traced(model.emitted).emitted
+        built = await build(emitted, cache_dir=self._cache_dir, niceness=self._niceness)
+        built = msgspec.structs.replace(built, mission_values=model.mission_values)
+        return TracedEngine(await Engine.start(built, seed=1, niceness=self._niceness), built)
 
     async def close(self) -> None:
-        """Ends the engine."""
-        kept, self._kept = self._kept, None
-        if kept is not None:
-            await kept.engine.close()
+        """Ends the engine, or what gets it ready."""
+        starting, self._starting = self._starting, None
+        if starting is None:
+            return
+        starting.cancel()
+        await asyncio.wait({starting})
+        if not starting.cancelled() and starting.exception() is None:
+            await starting.result().engine.close()

@@ -1,0 +1,59 @@
+"""A decision explained in lines: what they say, and that they are eight at most."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_deploy.views.reasons import why_lines
+from aos_protocol.messages import BeliefSummary, Consequence, Flip, ValueTerm, Why
+
+WHY = Why(
+    mission="m",
+    step=3,
+    action="look",
+    value=1.46,
+    stderr=0.0,
+    other="pick",
+    other_value=0.63,
+    other_stderr=0.0,
+    margin=0.83,
+    margin_stderr=0.0,
+    is_exact=True,
+    is_close=False,
+    simulations_to_tell=0,
+    horizon=10,
+    planner="exact",
+    chosen_by="planner",
+    belief=BeliefSummary((), 0.0, 0.0, 0.0, 1, True),
+    expected=tuple(Consequence(f"r{n}", 0.25, n == 1, 0.1, "pick", 1.0) for n in range(4)),
+    terms=tuple(ValueTerm(f"pick.sd:{n}", 1.0 / n, 0.0) for n in range(1, 8)),
+    flips=(Flip("holding", "true", 0.17, 0.0356, 0.0357, True),),
+    remark="something",
+)
+
+
+def test_a_decision_is_explained_in_eight_lines_at_most() -> None:
+    lines = why_lines(WHY)
+    assert len(lines) <= 8
+    assert lines[0] == "step 3: look is worth exactly +1.46, pick +0.63: margin +0.83"
+    assert lines[1].endswith("; r1 was seen")
+    assert "+1 from pick.sd:1" in lines[-3]
+    assert "from 3 other lines" in lines[-3]
+    assert lines[-2] == "  pick is better where P(holding=true) is below 0.0356, now 0.17"
+
+
+def test_a_close_decision_says_how_many_simulations_would_tell() -> None:
+    close = msgspec.structs.replace(
+        WHY, is_exact=False, is_close=True, margin_stderr=0.6, simulations_to_tell=12000, flips=(), remark=""
+    )
+    lines = why_lines(close)
+    assert "too close to call, about 12,000 simulations would tell" in lines[0]
+    assert not any("better where" in line or "no probability" in line for line in lines)
+
+
+def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart() -> None:
+    certain = Flip("holding", "true", 0.5, 0.9999, 1.0, True)
+    assert "P(holding=true) is 1, now 0.5" in why_lines(msgspec.structs.replace(WHY, flips=(certain,)))[-2]
+    wide = Flip("holding", "true", 0.5, 0.1, 0.3, True)
+    lines = why_lines(msgspec.structs.replace(WHY, flips=(wide,), is_exact=False))
+    assert "below a value in 0.1-0.3, now 0.5" in lines[-2]
