@@ -22,6 +22,7 @@ _COMMANDS = {
     "aos_deploy.commands.mission": ("mission",),
     "aos_deploy.commands.decisions": ("decisions",),
     "aos_deploy.commands.runs": ("runs",),
+    "aos_deploy.commands.export": ("export",),
     "aos_gateway.command": ("serve",),
     "aos_deploy.commands.check": ("check",),
     "aos_deploy.commands.replay": ("replay", "diff"),

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.program import cache_dir
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import BusError, DeployError
@@ -51,11 +52,12 @@ def living_runs() -> list[RunDirectory]:
 def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     """The run that a command means: the one named, else the one that goes on, else the last one.
 
+    What is named may also be a file of runs, as `aos export --format bundle` writes one, with one run.
     `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere.
     DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
     """
     if run is not None:
-        named = RunDirectory(run)
+        named = RunDirectory(_opened(run) if run.is_file() else run)
         named.read_record()
         return named
     here, elsewhere = _living(runs)
@@ -76,6 +78,16 @@ def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
         hint = "Start a system with aos-up, or name a running one with --run or --connect"
         raise BusError(f"the last run, {chosen.path.name}, is over", code="AOS605", hint=hint)
     return chosen
+
+
+def _opened(file: Path) -> Path:
+    """The directory of the run in a file, unpacked."""
+    runs = opened_bundle(file)
+    if len(runs) > 1:
+        raise DeployError(
+            f"{file} has {len(runs)} runs", code="AOS801", hint=f"Name one of {', '.join(map(str, runs))}"
+        )
+    return runs[0]
 
 
 def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:

@@ -55,7 +55,9 @@ Connect = Annotated[
 Robot = Annotated[str, typer.Option("--robot", help="The robot's name, with --connect")]
 Run = Annotated[
     Path | None,
-    typer.Option("--run", metavar="DIR", help="A run directory; else the mission that runs, or the last"),
+    typer.Option(
+        "--run", metavar="DIR", help="A run directory, or a file of one; else what runs, or the last"
+    ),
 ]
 Runs = Annotated[
     Path | None,

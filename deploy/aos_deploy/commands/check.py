@@ -27,7 +27,9 @@ def register(app: typer.Typer) -> None:
 
 
 def check(
-    run: Annotated[Path | None, typer.Argument(metavar="RUN", help="A run directory; else the last")] = None,
+    run: Annotated[
+        Path | None, typer.Argument(metavar="RUN", help="A run directory, or a file of one; else the last")
+    ] = None,
     runs: Runs = None,
     replay: Annotated[
         bool, typer.Option("--replay/--no-replay", help="Replay the outcomes through the run's model")

@@ -1,0 +1,104 @@
+"""`aos export`: the records of runs to take home."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import AsJson, Runs
+from aos_deploy.printing import count, from_here, print_json
+from aos_protocol.errors import DeployError
+
+__all__ = ["register"]
+
+Format = Literal["mcap", "csv", "parquet", "bundle"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos export runs/latest --format mcap")(export)
+
+
+def export(
+    run: Annotated[
+        list[Path] | None, typer.Argument(metavar="RUN...", help="Run directories; else the last run")
+    ] = None,
+    format: Annotated[Format, typer.Option("--format", help="What is written")] = "mcap",
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="PATH", help="Instead of a name here after the run's"),
+    ] = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write the records of runs to files to take home.
+
+    mcap: a file for Foxglove, Lichtblick and PlotJuggler for each run, with a layout for each of them. csv,
+    parquet: a folder of tables of all runs together. bundle: one file with whole runs, which `aos decisions`,
+    `aos check` and `aos serve` open. A run that goes on is exported as far as it is.
+    """
+    chosen = [chosen_run(each, runs).path for each in run] if run else [chosen_run(None, runs).path]
+    written = _WRITERS[format](chosen, output)
+    if as_json:
+        print_json({"files": {str(from_here(path)): said for path, said in written.items()}})
+        return
+    for path, said in written.items():
+        typer.echo(f"{from_here(path)}: {said}")
+
+
+def _mcap(runs: list[Path], output: Path | None) -> dict[Path, str]:
+    from aos_deploy.export.kept_missions import kept_missions
+    from aos_deploy.export.layouts import curves_of, foxglove_layout, plotjuggler_layout
+    from aos_deploy.export.mcap_file import write_mcap
+
+    if output is not None and len(runs) > 1 and output.suffix:
+        raise DeployError("one MCAP file holds one run", hint="Name a folder with --output")
+    written: dict[Path, str] = {}
+    for run in runs:
+        name = run.resolve().name
+        target = Path(f"{name}.mcap") if output is None else output
+        if target.is_dir() or not target.suffix:
+            target.mkdir(parents=True, exist_ok=True)
+            target = target / f"{name}.mcap"
+        target.parent.mkdir(parents=True, exist_ok=True)
+        written[target] = count(write_mcap(run, target), "message")
+        curves = curves_of(record for mission in kept_missions(run) for record in mission.decisions())
+        has_pictures = any((run / "pictures").glob("step-*.png"))
+        foxglove = target.with_suffix(".foxglove.json")
+        foxglove.write_text(json.dumps(foxglove_layout(curves, has_pictures=has_pictures), indent=2) + "\n")
+        plotjuggler = target.with_suffix(".plotjuggler.xml")
+        plotjuggler.write_text(plotjuggler_layout(curves))
+        written[foxglove] = "a layout for Foxglove and Lichtblick"
+        written[plotjuggler] = "a layout for PlotJuggler"
+    return written
+
+
+def _tables(runs: list[Path], output: Path | None, kind: str) -> dict[Path, str]:
+    from aos_deploy.export.table_files import write_csv, write_parquet
+    from aos_deploy.export.tables import rows_of_runs
+
+    folder = output or Path(f"{runs[0].resolve().name}-{kind}")
+    folder.mkdir(parents=True, exist_ok=True)
+    counts = (write_csv if kind == "csv" else write_parquet)(rows_of_runs(runs), folder)
+    return {folder / f"{table}.{kind}": count(number, "row") for table, number in counts.items()}
+
+
+def _bundle(runs: list[Path], output: Path | None) -> dict[Path, str]:
+    from aos_deploy.export.run_bundle import SUFFIX, write_bundle
+
+    target = output or Path(f"{runs[0].resolve().name}{SUFFIX}")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    files = write_bundle(runs, target)
+    return {target: f"{count(len(runs), 'run')}, {count(files, 'file')}"}
+
+
+_WRITERS = {
+    "mcap": _mcap,
+    "csv": lambda runs, output: _tables(runs, output, "csv"),
+    "parquet": lambda runs, output: _tables(runs, output, "parquet"),
+    "bundle": _bundle,
+}

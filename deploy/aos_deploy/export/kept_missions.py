@@ -1,0 +1,67 @@
+"""The missions of a run as they are kept: each row of their journals, with its message."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+
+from aos_protocol.errors import StorageError
+from aos_protocol.messages import (
+    ActionRefused,
+    Activate,
+    DecisionRecord,
+    MissionBegun,
+    MissionState,
+    ModelAdopted,
+    Outcome,
+    Steer,
+)
+from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.mission_folders import mission_folders, mission_name
+
+__all__ = ["KINDS", "KeptMission", "kept_missions"]
+
+KINDS: dict[str, type[Any]] = {
+    "begun": MissionBegun,
+    "decision": DecisionRecord,
+    "intended": Activate,
+    "outcome": Outcome,
+    "mission": MissionState,
+    "adopted": ModelAdopted,
+    "steered": Steer,
+    "refused": ActionRefused,
+}
+"""The kinds of a journal's rows whose messages have a type; others are exported as they are."""
+
+
+class KeptMission(NamedTuple):
+    """A mission's name and its journal."""
+
+    name: str
+    journal: Path
+
+    def rows(self) -> Iterator[JournalRow]:
+        """The rows in their order; StorageError AOS702 at one that is damaged."""
+        with Journal.read(self.journal) as journal:
+            yield from journal.walk()
+
+    def decisions(self) -> Iterator[DecisionRecord]:
+        """The decision records in their order; StorageError AOS702 at a row that is damaged."""
+        with Journal.read(self.journal) as journal:
+            for row in journal.walk("decision"):
+                try:
+                    yield msgspec.json.decode(row.payload, type=DecisionRecord)
+                except msgspec.MsgspecError as error:
+                    raise StorageError(f"row {row.seq} of {self.journal}: {error}", code="AOS702") from error
+
+
+def kept_missions(run: Path) -> list[KeptMission]:
+    """The missions of a run that have a journal, the oldest first."""
+    run = run.resolve()
+    folders = mission_folders(run)
+    places = [(mission_name(run, number), folder) for number, folder in folders.items()]
+    found = [KeptMission(name, folder / "journal.db") for name, folder in places or [(run.name, run)]]
+    return [mission for mission in found if mission.journal.is_file()]

@@ -1,0 +1,273 @@
+"""Records of runs to take home: MCAP files, tables and files of whole runs, each read back."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import jsonschema
+import msgspec
+import pytest
+from decision_records import decision_record
+
+from aos_deploy.commands.export import export
+from aos_deploy.export.kept_missions import kept_missions
+from aos_deploy.export.layouts import curves_of, foxglove_layout, plotjuggler_layout
+from aos_deploy.export.run_bundle import opened_bundle, write_bundle
+from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.living_runs import chosen_run
+from aos_protocol.errors import DeployError
+from aos_protocol.messages import (
+    ActionValue,
+    Activate,
+    ActivationId,
+    BeliefSummary,
+    DecisionRecord,
+    Marginal,
+    MissionState,
+    Outcome,
+    PredictedObservation,
+    Steer,
+)
+from aos_runtime.journal import Journal
+
+replace = msgspec.structs.replace
+STEPS = 3
+PICTURE = b"\x89PNG\r\n\x1a\n of step 2"
+PASSWORD = "kf83jd92kd03"
+
+
+def belief(step: int) -> BeliefSummary:
+    marginal = Marginal("cans[0].where", {"Left": step / 10, "Right": 1 - step / 10})
+    return BeliefSummary((marginal,), 0.5, step / 10, 0.0, 2, True)
+
+
+def decided(step: int) -> DecisionRecord:
+    return decision_record(
+        2 * step - 2,
+        "a-run",
+        "go",
+        step=step,
+        action="go(to=a)",
+        parameters={"to": "a"},
+        actions=(
+            ActionValue("go(to=a)", 1.5 * step, 100, 0.1, at_most=float("inf")),
+            ActionValue("look", -1.0, 50, 0.2),
+        ),
+        predicted=(PredictedObservation("arrived", 0.75), PredictedObservation("lost", 0.25)),
+        belief=belief(step - 1),
+        stamp_ns=1_000_000_000 * step,
+    )
+
+
+def make_run(folder: Path) -> Path:
+    """A run of three steps, as aos-up leaves it."""
+    run = folder / "a-run"
+    for inner in ("logs", "pictures", "credentials", "settings"):
+        (run / inner).mkdir(parents=True)
+    record = {"robot": "r", "endpoint": "e", "deploy_file": "d", "seed": 1, "started": "", "pid": 1}
+    (run / "run.json").write_text(json.dumps(record))
+    (run / "pictures" / "step-002.png").write_bytes(PICTURE)
+    (run / "credentials" / "solver").write_text(PASSWORD)
+    (run / "settings" / "other.json").write_text(json.dumps({"with": PASSWORD}))
+    (run / "logs" / "solver.log").write_text("it has begun\n")
+    (run / "bus").symlink_to("/dev/null")
+    with Journal.open(run / "journal.db") as journal:
+        for step in range(1, STEPS + 1):
+            outcome = Outcome(
+                ActivationId("a-run", step), "go", "observed", "arrived", ended_ns=step * 10**9 + 5
+            )
+            journal.append("decision", decided(step))
+            journal.append("intended", Activate(outcome.id, "go", {"to": "a"}, 10.0, 1))
+            journal.append("outcome", outcome)
+            done = replace(
+                decided(step), sequence=2 * step - 1, outcome=outcome, belief=belief(step), surprise=0.29
+            )
+            journal.append("decision", done)
+        journal.append("steered", Steer("hold", by="ana", request="1"))
+        journal.append("of_a_later_version", Steer("hold"))
+        end = MissionState("a-run", "ended", STEPS, 0.3, "goal", revision=1, epoch=1)
+        journal.append("mission", end)
+    return run
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    return make_run(tmp_path)
+
+
+def messages_of(file: Path) -> list[tuple[str, dict[str, Any], Any, int]]:
+    """Topic, schema, content and time of each message."""
+    reader = pytest.importorskip("mcap.reader", reason="set up before mcap was among the dependencies")
+    with file.open("rb") as stream:
+        return [
+            (channel.topic, json.loads(schema.data), json.loads(message.data), message.log_time)
+            for schema, channel, message in reader.make_reader(stream).iter_messages()
+        ]
+
+
+def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path: Path) -> None:
+    target = tmp_path / "out.mcap"
+    pytest.importorskip("mcap", reason="set up before mcap was among the dependencies")
+    export([run], "mcap", target)
+    messages = messages_of(target)
+    by_topic: dict[str, list[Any]] = {}
+    for topic, schema, content, _ in messages:
+        jsonschema.validate(content, schema)
+        assert schema["type"] == "object"
+        assert "$ref" not in json.dumps(schema)
+        by_topic.setdefault(topic, []).append(content)
+    rows = list(kept_missions(run)[0].rows())
+    assert len(by_topic["/aos/decision"]) == 2 * STEPS
+    assert {topic for topic in by_topic if len(by_topic[topic]) == 1} == {
+        *("/aos/mission", "/aos/steered", "/aos/of_a_later_version", "/aos/picture")
+    }
+    plain = len(
+        [
+            topic
+            for topic, *_ in messages
+            if topic not in ("/aos/plot/belief", "/aos/plot/values", "/aos/picture")
+        ]
+    )
+    assert plain == len(rows)
+    first = msgspec.convert(by_topic["/aos/decision"][0], DecisionRecord)
+    assert (first.action, first.belief) == ("go(to=a)", belief(0))
+    assert by_topic["/aos/plot/values"][1]["q"] == {"go_to_a": 3.0, "look": -1.0}
+    assert by_topic["/aos/plot/belief"][-1]["probability"] == {"cans_0_where": {"Left": 0.3, "Right": 0.7}}
+    (picture,) = by_topic["/aos/picture"]
+    assert base64.b64decode(picture["data"]) == PICTURE
+    assert [stamp for topic, _, _, stamp in messages if topic == "/aos/picture"] == [2 * 10**9 + 5]
+
+
+def test_layouts_show_only_what_is_in_the_file(run: Path, tmp_path: Path) -> None:
+    pytest.importorskip("mcap", reason="set up before mcap was among the dependencies")
+    export([run], "mcap", tmp_path)
+    messages = messages_of(tmp_path / "a-run.mcap")
+    fields = {topic for topic, *_ in messages}
+    for topic, _, content, _ in messages:
+        fields |= set(paths_in(topic, content))
+    layout = json.loads((tmp_path / "a-run.foxglove.json").read_text())
+    shown = [path["value"] for panel in layout["configById"].values() for path in panel.get("paths", ())]
+    assert {path for path in shown if path.startswith("/aos/plot/belief.probability")} == {
+        *("/aos/plot/belief.probability.cans_0_where.Left", "/aos/plot/belief.probability.cans_0_where.Right")
+    }
+    assert set(shown) <= fields
+    assert set(panels_in(layout["layout"])) == layout["configById"].keys()
+    assert layout["configById"]["Image!aos"]["imageMode"]["imageTopic"] in fields
+    curves = ET.parse(tmp_path / "a-run.plotjuggler.xml").getroot().iter("curve")
+    names = [curve.get("name", "") for curve in curves]
+    assert len(names) > 5
+    assert {name.replace("/", ".") for name in names} <= {field.replace("/", ".") for field in fields}
+
+
+def paths_in(prefix: str, content: Any) -> list[str]:
+    if not isinstance(content, dict):
+        return [prefix]
+    return [path for name, value in content.items() for path in paths_in(f"{prefix}.{name}", value)]
+
+
+def panels_in(layout: Any) -> list[str]:
+    if isinstance(layout, str):
+        return [layout]
+    return [*panels_in(layout["first"]), *panels_in(layout["second"])]
+
+
+def test_a_run_without_steps_has_layouts() -> None:
+    curves = curves_of([])
+    assert foxglove_layout(curves, has_pictures=False)["layout"]
+    assert plotjuggler_layout(curves).startswith("<?xml")
+
+
+def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path: Path) -> None:
+    export([run], "csv", tmp_path / "tables")
+    tables = {
+        path.stem: list(csv.DictReader(path.read_text().splitlines()))
+        for path in (tmp_path / "tables").glob("*.csv")
+    }
+    assert {name: len(rows) for name, rows in tables.items()} == {
+        "missions": 1,
+        "steps": STEPS,
+        "values": 2 * STEPS,
+        "predictions": 2 * STEPS,
+        "beliefs": 4 * STEPS,
+    }
+    step = tables["steps"][1]
+    told = [step[name] for name in ("step", "action", "response", "chosen_by")]
+    assert told == ["2", "go(to=a)", "arrived", "planner"]
+    assert json.loads(step["parameters"]) == {"to": "a"}
+    assert (tables["missions"][0]["ending"], tables["missions"][0]["steps"]) == ("goal", "3")
+    assert [(row["response"], row["is_seen"]) for row in tables["predictions"][:2]] == [
+        ("arrived", "True"),
+        ("lost", "False"),
+    ]
+
+
+def test_parquet_has_the_same_tables_with_types(run: Path, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet", reason="the extra `parquet` is not installed")
+    export([run, run], "parquet", tmp_path / "tables")
+    steps = parquet.read_table(tmp_path / "tables" / "steps.parquet").to_pylist()
+    assert [row["step"] for row in steps] == [1, 2, 3, 1, 2, 3]
+    assert steps[0]["surprise"] == pytest.approx(0.29)
+    assert steps[0]["is_impossible"] is False
+    values = parquet.read_table(tmp_path / "tables" / "values.parquet")
+    assert str(values.schema.field("q").type) == "double"
+
+
+def test_a_file_of_a_run_is_opened_like_its_directory_and_lets_nobody_in(run: Path, tmp_path: Path) -> None:
+    target = tmp_path / "sent.aosrun"
+    export([run], "bundle", target)
+    with zipfile.ZipFile(target) as archive:
+        names = archive.namelist()
+        assert PASSWORD.encode() not in b"".join(archive.read(name) for name in names)
+    assert {name.removeprefix("a-run/") for name in names} == {
+        *("run.json", "journal.db", "logs/solver.log", "pictures/step-002.png")
+    }
+    opened = chosen_run(target, None)
+    assert opened.path.name == "a-run"
+    assert not opened.is_running
+    assert violations_of_run(opened.path) == violations_of_run(run)
+    before = [row.payload for row in kept_missions(run)[0].rows()]
+    assert [row.payload for row in kept_missions(opened.path)[0].rows()] == before
+
+
+def test_a_file_of_several_runs_names_them(run: Path, tmp_path: Path) -> None:
+    other = make_run(tmp_path / "other")
+    other = other.rename(other.with_name("b-run"))
+    target = tmp_path / "sent.aosrun"
+    write_bundle([run, other], target)
+    assert [path.name for path in opened_bundle(target)] == ["a-run", "b-run"]
+    with pytest.raises(DeployError, match="has 2 runs"):
+        chosen_run(target, None)
+
+
+@pytest.mark.parametrize("name", ["../out/run.json", "/run.json", "a/../../run.json"])
+def test_a_file_with_ways_out_of_it_is_refused(name: str, tmp_path: Path) -> None:
+    target = tmp_path / "bad.aosrun"
+    with zipfile.ZipFile(target, "w") as archive:
+        archive.writestr(name, "{}")
+    with pytest.raises(DeployError, match="is not a plain file within it"):
+        opened_bundle(target)
+    assert not (tmp_path / "run.json").exists()
+
+
+def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path: Path) -> None:
+    target = tmp_path / "bad.aosrun"
+    link = zipfile.ZipInfo("a-run/run.json")
+    link.external_attr = 0o120777 << 16
+    with zipfile.ZipFile(target, "w") as archive:
+        archive.writestr(link, "/etc/passwd")
+    with pytest.raises(DeployError, match="is not a plain file within it"):
+        opened_bundle(target)
+    target.write_text("no archive")
+    with pytest.raises(DeployError, match="cannot be opened"):
+        opened_bundle(target)
