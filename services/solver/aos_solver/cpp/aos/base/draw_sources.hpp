@@ -76,7 +76,10 @@ int Enumerator::choose(const double* weights, int count, double total) {
   return choice.taken;
 }
 
-double Enumerator::uniform() { throw NotEnumerable{"a draw is continuous"}; }
+double Enumerator::uniform() {
+  if (!luck_) throw NotEnumerable{"a draw is continuous"};
+  return drawn_.uniform();
+}
 
 void Enumerator::start() {
   choices_.clear();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,10 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   int choose(const double* weights, int count, double total) override;
   double uniform() override;
   LoopHeads* loop_heads() override { return this; }
+
+  // From now on chance makes the continuous draws, the same ones in all runs. What is walked are then the combinations
+  // of the discrete draws under this luck.
+  void leave_numbers_to(std::uint64_t luck) { luck_ = luck; }
 
   // Calls `run(enumerator)` for each path, and `visit(enumerator)` once its end has been reached; `probability()` is
   // the path's then. `run` may run model code and keep its result. Some runs are cut short or are not visited. Throws
@@ -188,6 +193,7 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
     depth_ = 0;
     probability_ = 1;
     if (has_loops_) begin_run_with_loops();
+    if (luck_) drawn_ = Sampler{*luck_};
     begin_numbers();
     try {
       run(*this);
@@ -215,6 +221,8 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   void put_off();
   void take_likeliest();
 
+  std::optional<std::uint64_t> luck_;  // of the continuous draws
+  Sampler drawn_{0};
   std::vector<Choice> choices_;  // since the head that is walked from
   std::size_t depth_ = 0;
   double probability_ = 1;  // of these

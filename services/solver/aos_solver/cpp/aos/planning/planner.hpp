@@ -26,14 +26,15 @@
 #include "aos/planning/group_missions.hpp"
 #include "aos/planning/mdp_values.hpp"
 #include "aos/planning/near_states.hpp"
+#include "aos/planning/option_policy.hpp"
 #include "aos/planning/point_based.hpp"
 #include "aos/planning/pomcp.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
 
-enum class PlannerKind { pomcp, despot, sarsop, automatic, exact, belief_tree };
-inline constexpr const char* planner_names[] = {"pomcp", "despot", "sarsop", "auto", "exact", "belief-tree"};
+enum class PlannerKind { pomcp, despot, sarsop, automatic, exact, belief_tree, options };
+inline constexpr const char* planner_names[] = {"pomcp", "despot", "sarsop", "auto", "exact", "belief-tree", "options"};
 
 // The planner of this name, if there is one that can be asked for.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
@@ -55,7 +56,7 @@ class Planner {
     searching_ = {};
     tried_in_vain_ = 0;
     const auto start = thread_time();
-    used_ = chosen_kind(kind, belief, budget, horizon);
+    used_ = chosen_kind(kind, belief, budget, horizon, Sampler{Sampler{random}.bits()});
     if (used_ == PlannerKind::despot) despot().prepare(belief, horizon);
     if (used_ == PlannerKind::pomcp) pomcp_.prepare(belief, horizon, budget.threads, random);
     const auto prepared = thread_time();
@@ -86,6 +87,7 @@ class Planner {
       case PlannerKind::despot: return despot_->estimates(belief);
       case PlannerKind::sarsop: return sarsop().estimates();
       case PlannerKind::belief_tree: return belief_tree_.estimates(belief);
+      case PlannerKind::options: return options_.estimates();
       default: return pomcp_.estimates(belief);
     }
   }
@@ -147,6 +149,7 @@ class Planner {
     space_.start_over();
     exact_.start_over();
     belief_tree_.start_over();
+    options_.start_over();
     point_based_.start_over();
     near_.start_over();
     near_search_.start_over();
@@ -181,6 +184,11 @@ class Planner {
       case PlannerKind::exact: return exact_.play(belief, exact_.best(barred_));
       case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred_);
       case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred_);
+      case PlannerKind::options: {
+        const std::uint64_t simulations = options_.search(belief, horizon, random, barred_);
+        why_ += "; ways to rewards are found by search, and " + std::string{options_.reason()} + " decides";
+        return simulations;
+      }
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = sarsop().search(budget, [&] { return choice(sarsop().estimates(), barred_); });
         why_ += "; " + bounds_text(horizon, (is_near_ ? near_.space() : space_).slack(belief, horizon));
@@ -199,9 +207,9 @@ class Planner {
   }
 
   // Also sets `why_`.
-  PlannerKind chosen_kind(PlannerKind asked_for, const Belief<Model>& belief, Budget budget, int horizon) {
+  PlannerKind chosen_kind(PlannerKind asked_for, const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
     is_near_ = false;
-    if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon);
+    if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon, random);
     why_ = "it was asked for";
     if (asked_for != PlannerKind::sarsop) return asked_for;
     const std::string obstacle = point_based_obstacle(belief, horizon);
@@ -210,10 +218,11 @@ class Planner {
     return PlannerKind::pomcp;
   }
 
-  PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon) {
+  PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
     if (!space_.reach(belief)) {
       why_ = space_.obstacle();
-      return serves_near(belief, horizon) ? PlannerKind::sarsop : PlannerKind::pomcp;
+      if (serves_near(belief, horizon)) return PlannerKind::sarsop;
+      return options_or_pomcp(belief, budget, horizon, random);
     }
     why_ = "all " + std::to_string(space_.size()) + " states can be listed";
     if (fits_exact_search(belief, budget, horizon)) {
@@ -238,6 +247,18 @@ class Planner {
     searching_ += thread_time() - start;
     if (!fits) tried_in_vain_ = exact_.simulations();
     return fits;
+  }
+
+  PlannerKind options_or_pomcp(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
+    if (Model::has_rollout_policy || pomcp_.has_wide_values(belief, horizon)) return PlannerKind::pomcp;
+    const auto start = thread_time();
+    const std::string obstacle = options_.prepare(belief, budget, horizon, random);
+    searching_ += thread_time() - start;
+    if (!obstacle.empty()) {
+      why_ += "; " + obstacle;
+      return PlannerKind::pomcp;
+    }
+    return PlannerKind::options;
   }
 
   PlannerKind belief_tree_or_pomcp(const Belief<Model>& belief, int horizon) {
@@ -271,6 +292,7 @@ class Planner {
   std::vector<ActionEstimate> values_of_belief(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
     switch (used_) {
       case PlannerKind::exact: return exact_.values();
+      case PlannerKind::options: return estimates;
       case PlannerKind::sarsop: return sarsop().values(std::move(estimates), choice);
       default: return values_of_search(belief, std::move(estimates), choice);
     }
@@ -324,6 +346,7 @@ class Planner {
   PointBased<Model> near_search_{near_.space(), false};
   bool is_near_ = false;  // whether the states near the belief stood for all of them in the last search
   BeliefTree<Model> belief_tree_{space_, values_};
+  OptionPolicy<Model> options_;
   std::unique_ptr<Despot<Model>> despot_;
   GroupMissions<Model> missions_;
   PlannerKind used_ = PlannerKind::pomcp;

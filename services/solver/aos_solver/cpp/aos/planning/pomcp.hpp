@@ -50,6 +50,9 @@ class Pomcp {
     has_table_ = source_ == ValueSource::listed && steps_.prepare(space_, belief);
   }
 
+  // Whether the values of many states can be computed.
+  bool has_wide_values(const Belief<Model>& belief, int horizon) { return wide_values_.prepare(belief, horizon); }
+
   // Searches from the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {

@@ -1,0 +1,156 @@
+// What a step from a state may report: responses with the distributions of the numbers that come with them, and the
+// likelihood of what was observed. Discrete draws are enumerated and continuous ones drawn, so that a step that moves at
+// random has the reports of one of its next states.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "aos/base/described_distribution.hpp"
+#include "aos/base/distributions.hpp"
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+// Keeps the distributions that a step reports from.
+class KeptDistributions final : public NumberSink {
+ public:
+  using Kept = std::vector<std::pair<NumberKey, DescribedDistribution>>;
+  void begin() override { kept_.clear(); }
+  void take(NumberKey key, const Distribution& distribution) override {
+    kept_.emplace_back(key, DescribedDistribution{});
+    distribution.describe(kept_.back().second);
+  }
+  const Kept& kept() const { return kept_; }
+
+ private:
+  Kept kept_;
+};
+
+// What was observed at a step.
+struct Seen {
+  Observation response = default_observation;
+  std::vector<double> numbers;  // in the order in which they were reported
+};
+
+class StepReports {
+ public:
+  struct Branch {
+    double probability;
+    Observation response;
+    KeptDistributions::Kept numbers;
+  };
+
+  void clear() { branches_.clear(); }
+  void add(double probability, Observation response, const KeptDistributions::Kept& numbers) {
+    for (Branch& branch : branches_) {
+      if (branch.response != response || branch.numbers != numbers) continue;
+      branch.probability += probability;
+      return;
+    }
+    branches_.push_back({probability, response, numbers});
+  }
+  const std::vector<Branch>& branches() const { return branches_; }
+
+  Seen drawn(Sampler& random) const {
+    double place = random.uniform();
+    const Branch* chosen = &branches_.back();
+    for (const Branch& branch : branches_) {
+      if ((place -= branch.probability) >= 0) continue;
+      chosen = &branch;
+      break;
+    }
+    Seen observed{chosen->response, {}};
+    for (const auto& number : chosen->numbers) observed.numbers.push_back(number.second.quantile(random.uniform()));
+    return observed;
+  }
+
+  double likelihood(const Seen& observed) const {
+    double sum = 0;
+    for (const Branch& branch : branches_) {
+      if (branch.response != observed.response || branch.numbers.size() != observed.numbers.size()) continue;
+      double log_density = 0;
+      for (std::size_t i = 0; i < observed.numbers.size(); ++i) {
+        log_density += branch.numbers[i].second.log_density(observed.numbers[i]);
+      }
+      sum += branch.probability * std::exp(log_density);
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<Branch> branches_;
+};
+
+// Takes a step and notes what it may report. The state becomes one of the next ones, drawn. Returns the mean reward.
+template <class Model>
+class ReportedStep {
+ public:
+  using State = typename Model::State;
+
+  ReportedStep() { paths_.report_to(&kept_); }
+  ReportedStep(const ReportedStep&) = delete;
+  ReportedStep& operator=(const ReportedStep&) = delete;
+
+  double take(State& state, int action, StepReports& reports, Sampler& random) {
+    reports.clear();
+    double reward = 0;
+    double sum = 0;
+    paths_.leave_numbers_to(random.bits());
+    try {
+      const State start = state;
+      Step step;
+      const auto run = [&](Enumerator& path) {
+        next_ = start;
+        step = Model::step(next_, action, path);
+      };
+      paths_.for_nearly_each_path(run, [&](Enumerator& path) {
+        const double probability = path.probability();
+        reports.add(probability, step.observation, kept_.kept());
+        reward += probability * step.reward;
+        sum += probability;
+        if (random.uniform() * sum <= probability) state = next_;
+      }, max_paths);
+      if (sum > 0) return reward / sum;
+    } catch (const NotEnumerable&) {
+    } catch (const ModelFault&) {  // on a path that may never be drawn
+    }
+    blame::at(0);
+    return drawn(state, action, reports, random);
+  }
+
+ private:
+  static constexpr int max_paths = 64;
+  static constexpr int draws = 8;  // of a step with more
+
+  double drawn(State& state, int action, StepReports& reports, Sampler& random) {
+    reports.clear();
+    const State start = state;
+    double reward = 0;
+    for (int i = 0; i < draws; ++i) {
+      next_ = start;
+      const ReportingTo reporting{random, kept_};
+      kept_.begin();
+      const Step step = Model::step(next_, action, random);
+      reports.add(1.0 / draws, step.observation, kept_.kept());
+      reward += step.reward / draws;
+    }
+    state = next_;
+    return reward;
+  }
+
+  Enumerator paths_;
+  KeptDistributions kept_;
+  State next_{};
+};
+
+}  // namespace aos

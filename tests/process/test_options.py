@@ -1,0 +1,43 @@
+"""Decisions where states cannot be listed: ways to rewards against what could be found out first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from models import built_text, engine_of
+from wide.problems import open_field, parcels
+
+from aos_solver.child.engine import Restriction
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
+
+
+async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path) -> None:
+    """Parcels sent where most of them belong lose 1.0 each, so that 14 of them lose 6 in all."""
+    built = await built_text(parcels(14), cache_dir)
+    async with engine_of(built) as engine, engine_of(built) as other:
+        plan = await engine.plan(simulations=1000, seed=1, planner="auto")
+        assert plan.planner == "options"
+        assert plan.actions[plan.index].action.startswith(("scan", "open"))
+        assert (await other.plan(simulations=1000, seed=1, planner="auto")).actions == plan.actions
+        limits = MissionLimits(goal_probability=1, step_limit=80)
+        run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
+    assert run.discounted_return > 10
+
+
+async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it(cache_dir: Path) -> None:
+    async with engine_of(await built_text(open_field(9), cache_dir)) as engine:
+        search = Search(simulations=10_000, seed=2)
+        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
+    assert sum(action == "move(direction=0)" for action in run.actions) >= 3
+    assert run.actions[-1] == "stop"
+
+
+async def test_an_action_that_is_barred_is_not_taken(cache_dir: Path) -> None:
+    async with engine_of(await built_text(parcels(14), cache_dir)) as engine:
+        plan = await engine.plan(simulations=1000, seed=1, planner="auto")
+        within = Restriction(barred=[plan.index])
+        other = await engine.plan(simulations=1000, seed=1, planner="auto", within=within)
+    assert other.planner == "options"
+    assert other.index != plan.index

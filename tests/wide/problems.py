@@ -1,0 +1,279 @@
+"""The documents of the problems: bundles as texts, in the sizes that are asked for."""
+
+from collections.abc import Callable
+
+Bundle = dict[str, str]  # file name to text
+
+
+def _mapping(
+    project: str, skill: str, parameters: list[str], responses: list[str], numbers: list[str]
+) -> str:
+    lines = [f"project: {project}", "", "module_activation: skill", f"path: /{skill}", "max_duration: 60"]
+    for name in parameters:
+        lines += [f"parameter: the_{name}", "code:", f"chosen_{name}", ""]
+    for name in parameters:
+        lines += [f"local_variable: chosen_{name}", f"action_parameter: {name}", ""]
+    lines += [
+        "local_variable: code",
+        "type: string",
+        "from_ros_service_response: true",
+        "code:",
+        "code = __input.code",
+        "",
+    ]
+    for name in numbers:
+        lines += [f"local_variable: {name}", "type: float", "from_ros_service_response: true", "code:"]
+        lines += [f"{name} = __input.{name}", ""]
+    for response in responses:
+        lines += [f"response: {response}", f'response_rule: code == "{response}"']
+    return "\n".join(lines) + "\n"
+
+
+class _Writer:
+    """Collects the documents of a bundle."""
+
+    def __init__(self, project: str, environment: str) -> None:
+        self.project = project
+        self.files: Bundle = {"e.ef": f"project: {project}\n{environment}"}
+
+    def skill(
+        self,
+        name: str,
+        responses: list[str],
+        model: str,
+        *,
+        over: dict[str, str] | None = None,
+        numbers: list[str] | None = None,
+    ) -> None:
+        over = over or {}
+        values = "".join(f"parameter: int {parameter}\n" for parameter in over)
+        loops = "".join(
+            f"for (int {parameter} = 0; {parameter} < {count}; {parameter}++) "
+            for parameter, count in over.items()
+        )
+        listed = (
+            "available_parameters_code:\n"
+            f"{loops}__possibleParameters.push_back(std::make_tuple({', '.join(over)}));\n"
+            if over
+            else ""
+        )
+        self.files[f"{name}.sd"] = f"project: {self.project}\n{values}\n{listed}\ndynamic_model:\n{model}\n"
+        self.files[f"{name}.am"] = _mapping(self.project, name, list(over), responses, numbers or [])
+
+
+def parcels(count: int = 14) -> Bundle:
+    """Many parcels, each for one of three places: scan them (noisy), open them (dear), send them off."""
+    writer = _Writer(
+        f"parcels{count}",
+        f"""horizon: 80
+discount: 0.97
+
+state_variable: int place []
+code:
+state.place.assign({count}, 0);
+
+state_variable: bool gone []
+code:
+state.gone.assign({count}, false);
+
+initial_belief:
+for (int i = 0; i < {count}; i++) state.place[i] = AOSUtils::SampleDiscrete(vector<double>{{0.5, 0.3, 0.2}});
+
+reward_code:
+bool over = true;
+for (int i = 0; i < {count}; i++) if (!state.gone[i]) over = false;
+if (over) {{
+    __isGoalState = true;
+    __reward = 5;
+}}
+""",
+    )
+    one = {"parcel": str(count)}
+    labels = ["first", "second", "third"]
+    told = "__moduleResponse = {0} == 0 ? first : {0} == 1 ? second : third;"
+    guarded = "if (state.gone[parcel]) {{\n    __moduleResponse = not_there;\n}} else {{\n{0}\n}}"
+    scan = (
+        "int seen = state.place[parcel];\n"
+        "if (!AOS.Bernoulli(0.7)) "
+        "seen = (seen + 1 + AOSUtils::SampleDiscrete(vector<double>{0.5, 0.5})) % 3;\n"
+    )
+    responses = [*labels, "not_there"]
+    writer.skill(
+        "scan", responses, "__reward = -0.4;\n" + guarded.format(scan + told.format("seen")), over=one
+    )
+    opened = told.format("state.place[parcel]")
+    writer.skill("open", responses, "__reward = -2;\n" + guarded.format(opened), over=one)
+    send = (
+        "__reward = state.place[parcel] == where ? 6 : -8;\n"
+        "state__.gone[parcel] = true;\n"
+        "__moduleResponse = sent;"
+    )
+    over = one | {"where": "3"}
+    writer.skill("send", ["sent", "not_there"], "__reward = -1;\n" + guarded.format(send), over=over)
+    return writer.files
+
+
+def clutter(count: int = 40) -> Bundle:
+    """A thing in one of many spots, each of them covered or not: look, lift the cover, pick."""
+    writer = _Writer(
+        f"clutter{count}",
+        f"""horizon: {2 * count + 20}
+discount: 0.985
+
+state_variable: int place
+
+state_variable: bool covered []
+code:
+state.covered.assign({count}, false);
+
+state_variable: bool found
+
+initial_belief:
+state.place = AOSUtils::SampleDiscrete(vector<double>({count}, {1 / count!r}));
+for (int i = 0; i < {count}; i++) state.covered[i] = AOS.Bernoulli(0.4);
+
+reward_code:
+if (state.found) {{
+    __isGoalState = true;
+    __reward = 60;
+}}
+""",
+    )
+    spot = {"spot": str(count)}
+    look = """__reward = -0.5;
+if (state.covered[spot]) {
+    __moduleResponse = covered;
+} else {
+    __moduleResponse = AOS.Bernoulli(spot == state.place ? 0.9 : 0.03) ? thing : nothing;
+}"""
+    writer.skill("look", ["thing", "nothing", "covered"], look, over=spot)
+    lift = "__reward = -1;\nstate__.covered[spot] = false;\n__moduleResponse = lifted;"
+    writer.skill("lift", ["lifted"], lift, over=spot)
+    pick = """if (spot == state.place && !state.covered[spot]) {
+    state__.found = true;
+    __moduleResponse = picked;
+} else {
+    __reward = -10;
+    __moduleResponse = empty;
+}"""
+    writer.skill("pick", ["picked", "empty"], pick, over=spot)
+    return writer.files
+
+
+def open_field(light: int = 9) -> Bundle:
+    """A robot in the open that measures its place better in the north, and shall stop in the south."""
+    writer = _Writer(
+        f"open-field{light}",
+        """horizon: 60
+discount: 0.97
+
+state_variable: double x
+
+state_variable: double y
+
+state_variable: bool has_stopped
+
+initial_belief:
+state.x = AOS.SampleUniform(0, 4);
+state.y = AOS.SampleUniform(0, 4);
+
+reward_code:
+if (state.has_stopped) {
+    bool is_there = pow(state.x - 9, 2) + pow(state.y - 1, 2) < 1;
+    __reward = is_there ? 100 : -100;
+    __isGoalState = is_there;
+    __isFailureState = !is_there;
+}
+""",
+    )
+    move = f"""state__.x = state.x + (direction == 1) - (direction == 3) + AOS.SampleNormal(0, 0.1);
+state__.y = state.y + (direction == 0) - (direction == 2) + AOS.SampleNormal(0, 0.1);
+double deviation = 0.3 + 0.5 * fabs({light} - state__.y);
+__moduleResponse = moved;
+__observed.east = AOS.SampleNormal(state__.x, deviation);
+__observed.north = AOS.SampleNormal(state__.y, deviation);"""
+    writer.skill("move", ["moved"], move, over={"direction": "4"}, numbers=["east", "north"])
+    writer.skill("stop", ["stopped"], "state__.has_stopped = true;\n__moduleResponse = stopped;")
+    return writer.files
+
+
+def scales(settings: int = 17) -> Bundle:
+    """A load of unknown weight: weigh it on a coarse and on a fine scale, then choose a setting."""
+    writer = _Writer(
+        f"scales{settings}",
+        """horizon: 40
+discount: 0.97
+
+state_variable: double weight
+
+state_variable: bool is_held
+
+initial_belief:
+state.weight = AOS.SampleUniform(1, 9);
+
+reward_code:
+if (state.is_held) {
+    __isGoalState = true;
+    __reward = 20;
+}
+""",
+    )
+    for name, cost, deviation in (("heft", 0.3, 2.0), ("weigh", 1.5, 0.6)):
+        model = f"""__reward = -{cost};
+__moduleResponse = done;
+__observed.kg = AOS.SampleNormal(state.weight, {deviation});"""
+        writer.skill(name, ["done"], model, numbers=["kg"])
+    width = 8 / (settings - 1)
+    grip = f"""if (fabs(state.weight - (1 + {width!r} * setting)) < {0.8 * width!r}) {{
+    state__.is_held = true;
+    __moduleResponse = held;
+}} else {{
+    __reward = -6;
+    __moduleResponse = slipped;
+}}"""
+    writer.skill("grip", ["held", "slipped"], grip, over={"setting": str(settings)})
+    return writer.files
+
+
+def harbour(length: int = 60) -> Bundle:
+    """A boat on a line that knows of its place the depth below it, and shall anchor at one place."""
+    writer = _Writer(
+        f"harbour{length}",
+        f"""horizon: 60
+discount: 0.98
+
+state_variable: double x
+
+state_variable: bool is_anchored
+
+initial_belief:
+state.x = AOS.SampleUniform(0, {length});
+
+reward_code:
+if (state.is_anchored) {{
+    bool is_there = fabs(state.x - {0.7 * length!r}) < 2.5;
+    __reward = is_there ? 50 : -50;
+    __isGoalState = is_there;
+    __isFailureState = !is_there;
+}}
+""",
+    )
+    sail = f"""__reward = -0.5;
+state__.x = state.x + (step == 0 ? -6 : step == 1 ? -2 : step == 2 ? 2 : 6) + AOS.SampleNormal(0, 0.3);
+if (state__.x < 0) state__.x = 0;
+if (state__.x > {length}) state__.x = {length};
+__moduleResponse = sailed;
+__observed.depth = AOS.SampleNormal(10 + 4 * sin(state__.x / 5) + 0.1 * state__.x, 1.0);"""
+    writer.skill("sail", ["sailed"], sail, over={"step": "4"}, numbers=["depth"])
+    writer.skill("anchor", ["anchored"], "state__.is_anchored = true;\n__moduleResponse = anchored;")
+    return writer.files
+
+
+PROBLEMS: dict[str, Callable[[int], Bundle]] = {
+    "parcels": parcels,
+    "clutter": clutter,
+    "open_field": open_field,
+    "scales": scales,
+    "harbour": harbour,
+}
+SIZES = {"parcels": 14, "clutter": 40, "open_field": 9, "scales": 17, "harbour": 60}
