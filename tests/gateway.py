@@ -21,17 +21,19 @@ ROOT = Path(__file__).resolve().parents[1]
 SLOW = """\
 aos: 1
 robot: tiger
-bundles: [{root}/deploy/bundles/bench/tiger]
-mission: {{goal_probability: 1.0, step_limit: 1_000_000}}
-solver: {{simulations: 100, planner: pomcp, ponder_while_acting: false}}
-bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
+bundles: [tiger]
+mission: {goal_probability: 1.0, step_limit: 1_000_000, activation_timeout_s: 900}
+solver: {simulations: 100, planner: pomcp, ponder_while_acting: false}
+bind: {/listen: {python: robot.py:listen}, /open: {python: robot.py:open_door}}
 runs: runs
 """
 SLOW_ROBOT = """\
 import asyncio
+import itertools
 import os
 
 turns = os.open("turns", os.O_RDWR | os.O_NONBLOCK)
+sides = itertools.cycle(("left", "right"))
 
 async def listen(call):
     loop = asyncio.get_running_loop()
@@ -42,13 +44,13 @@ async def listen(call):
     finally:
         loop.remove_reader(turns)
     os.read(turns, 1)
-    return {"loudest": "left"}
+    return {"loudest": next(sides)}
 
 async def open_door(call, door):
     await asyncio.Event().wait()
 """
-"""A robot that waits for somebody to write into a pipe: a mission that goes on as a test wants costs
-nothing.
+"""A robot that hears both sides by turns, and waits for somebody to write into a pipe: a mission that goes
+on as a test wants costs nothing.
 """
 
 
@@ -167,7 +169,11 @@ def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -
 def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
     """The directory of a mission that goes on: its robot listens once for each write to the pipe `turns`."""
     os.mkfifo(folder / "turns")
-    (folder / "tiger.yaml").write_text(SLOW.format(root=ROOT))
+    (folder / "tiger").mkdir()
+    for path in (ROOT / "deploy/bundles/bench/tiger").iterdir():
+        text = path.read_text().replace("max_duration: 10\n", f"max_duration: {HANG_S:.0f}\n")
+        (folder / "tiger" / path.name).write_text(text)
+    (folder / "tiger.yaml").write_text(SLOW)
     (folder / "robot.py").write_text(SLOW_ROBOT)
     process = subprocess.Popen(
         [BIN / "aos-up", "tiger.yaml", "--json", *options],

@@ -299,6 +299,9 @@ async def activations(gateway: Gateway, mission: str, query: Paging) -> Activati
 async def trace(gateway: Gateway, mission: str, query: OfTrace) -> Trace:
     """The steps of a mission, short: all that views over time need."""
     found = await gateway.shelf.run_of_mission(mission)
+    kept = gateway.traces.get(mission, query.steps)
+    if kept is not None and not (await found.page(mission, kept.next, 1)).records:
+        return kept
     records: list[DecisionRecord] = []
     page = await found.page(mission, 0)
     while page.records:
@@ -307,7 +310,9 @@ async def trace(gateway: Gateway, mission: str, query: OfTrace) -> Trace:
         if not page.has_more:
             break
         page = await found.page(mission, page.records[-1].sequence + 1)
-    return steps_of(mission, records)
+    made = await asyncio.to_thread(steps_of, mission, records)
+    gateway.traces.keep(query.steps, made)
+    return made
 
 
 async def pictures(gateway: Gateway, mission: str) -> Pictures:

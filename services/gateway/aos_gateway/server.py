@@ -18,6 +18,7 @@ from aos_gateway.app import make_app
 from aos_gateway.feed import Watches
 from aos_gateway.runs import RemoteRun, RunShelf
 from aos_gateway.shared import Gateway
+from aos_gateway.trace import Traces
 from aos_protocol.errors import DeployError
 
 __all__ = ["Settings", "serve_gateway"]
@@ -61,6 +62,7 @@ async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -
                 folder=folder,
                 runs=settings.runs[0].resolve(),
                 studying=asyncio.Semaphore(1),
+                traces=Traces(),
             )
             config = uvicorn.Config(
                 make_app(gateway, access),

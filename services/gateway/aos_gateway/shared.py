@@ -9,6 +9,7 @@ import msgspec
 
 from aos_gateway.feed import Watches
 from aos_gateway.runs import RunShelf
+from aos_gateway.trace import Traces
 from aos_language.reading.files import MAX_BUNDLE_BYTES
 
 __all__ = ["Gateway"]
@@ -26,4 +27,5 @@ class Gateway(msgspec.Struct, frozen=True, kw_only=True):
     folder: Path
     runs: Path
     studying: asyncio.Semaphore
+    traces: Traces
     max_body_bytes: int = 2 * MAX_BUNDLE_BYTES

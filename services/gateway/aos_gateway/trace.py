@@ -13,11 +13,12 @@ import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord
 
-__all__ = ["Endings", "Step", "Steps", "Trace", "steps_of"]
+__all__ = ["Endings", "Step", "Steps", "Trace", "Traces", "steps_of"]
 
 _DIGITS = 4
 _SHOWN_VALUES = 8
 _CERTAIN = 1e-9
+_KEPT_TRACES = 8
 
 
 class Endings(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -160,6 +161,24 @@ class Steps:
             if self._whole or self._known.get(marginal.variable) != values:
                 changed[marginal.variable] = self._known[marginal.variable] = values
         return changed
+
+
+class Traces:
+    """The traces that were asked for last: pages are loaded anew, and several look at one mission."""
+
+    def __init__(self) -> None:
+        self._kept: dict[tuple[str, int], Trace] = {}
+
+    def get(self, mission: str, steps: int) -> Trace | None:
+        """The trace of at most so many steps as it was made last; None if it is not there."""
+        return self._kept.get((mission, steps))
+
+    def keep(self, steps: int, trace: Trace) -> None:
+        """Keeps a trace, and lets go of the oldest."""
+        self._kept.pop((trace.mission, steps), None)
+        self._kept[trace.mission, steps] = trace
+        while len(self._kept) > _KEPT_TRACES:
+            del self._kept[next(iter(self._kept))]
 
 
 def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:

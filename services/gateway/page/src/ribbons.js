@@ -20,7 +20,7 @@ export function Ribbons() {
   const still = rows.filter((row) => !row.isDoubtful && !row.isMoving);
   const now = index.value;
   return html`<div class="ribbons" ref=${ref}>
-    ${shown.map((row) => html`<${Ribbon} key=${row.name} row=${row} all=${all} size=${size} now=${now} />`)}
+    ${size > 0 && shown.map((row) => html`<${Ribbon} key=${row.name} row=${row} all=${all} size=${size} now=${now} />`)}
     ${told.length > SHOWN && html`<button class="link" onClick=${() => setShowsAll(!showsAll)}>
       ${showsAll ? "Show fewer" : `Show ${told.length - SHOWN} more`}</button>`}
     ${still.length > 0 && html`<p class="still"><span>Certain throughout</span>

@@ -1,7 +1,7 @@
 // All steps as a table, and one step in full: parameters, local variables, times.
-import { Card, html, useEffect, useRef } from "./ui.js";
+import { Card, html, useEffect, useRef, useState } from "./ui.js";
 import { briefAction, chance, plain, seconds, signed } from "./format.js";
-import { at, record, selectStep, steps } from "./store.js";
+import { at, index, record, selectStep, steps } from "./store.js";
 import { hasFailed, isSurprising } from "./timeline.js";
 
 export const Steps = () => html`<div class="columns">
@@ -9,9 +9,16 @@ export const Steps = () => html`<div class="columns">
   <${Card} id="activation" title=${at.value ? `Activation of step ${at.value.step}` : "Activation"}><${Activation} /><//>
 </div>`;
 
+const SHOWN = 150; // A table of more rows shows those around the step, until somebody wants all.
+
 export function Table() {
   const body = useRef(null);
+  const [showsAll, setShowsAll] = useState(false);
   const now = at.value?.step;
+  const all = steps.value;
+  const isLong = all.length > SHOWN && !showsAll;
+  const first = isLong ? Math.max(0, Math.min(all.length - SHOWN, Math.round((index.value - SHOWN / 2) / 25) * 25)) : 0;
+  const shown = isLong ? all.slice(first, first + SHOWN) : all;
   useEffect(() => {
     const row = body.current?.querySelector("[aria-selected=true]");
     const box = body.current?.closest(".scroll");
@@ -21,8 +28,9 @@ export function Table() {
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Table of steps">
     <table class="steps">
       <thead><tr><th>Step</th><th>Action</th><th class="num wide-only">Value</th><th>Seen</th><th class="num wide-only">Expected</th><th class="num">Surprise</th><th class="num wide-only">Goal</th></tr></thead>
-      <tbody ref=${body}>${steps.value.map((step) => html`<${Row} key=${step.step} step=${step} isNow=${step.step === now} />`)}</tbody>
+      <tbody ref=${body}>${shown.map((step) => html`<${Row} key=${step.step} step=${step} isNow=${step.step === now} />`)}</tbody>
     </table>
+    ${isLong && html`<button class="link" onClick=${() => setShowsAll(true)}>Show all ${all.length} steps</button>`}
   </div>`;
 }
 

@@ -38,10 +38,10 @@ export function Timeline() {
     <div class="timeline-track" ref=${ref}>
       <svg width=${room} height=${HEIGHT + 12} aria-hidden="true">
         <g transform="translate(0 12)">
-          ${blocks(all, room, skills)}
+          ${room > 0 && blocks(all, room, skills)}
           <${Cursor} room=${room} height=${HEIGHT} />
         </g>
-        ${marks(all, room)}
+        ${room > 0 && marks(all, room)}
       </svg>
       <input type="range" min=${first} max=${newest} step="1" value=${current.step}
         aria-label="Step" aria-valuetext=${`step ${current.step}, ${current.action}`}
