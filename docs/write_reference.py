@@ -24,7 +24,7 @@ from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
 from aos_protocol import access, errors, keys
-from aos_protocol.messages import base, bundles, mission, records, skills, steering, study
+from aos_protocol.messages import base, bundles, drift, mission, records, skills, steering, study
 
 DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -34,6 +34,7 @@ MESSAGES = {
     "mission": mission,
     "steering": steering,
     "records": records,
+    "drift": drift,
     "study": study,
     "skills": skills,
 }

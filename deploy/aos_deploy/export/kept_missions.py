@@ -13,6 +13,7 @@ from aos_protocol.messages import (
     ActionRefused,
     Activate,
     DecisionRecord,
+    DriftTests,
     MissionBegun,
     MissionState,
     ModelAdopted,
@@ -33,6 +34,7 @@ KINDS: dict[str, type[Any]] = {
     "adopted": ModelAdopted,
     "steered": Steer,
     "refused": ActionRefused,
+    "drift": DriftTests,
 }
 """The kinds of a journal's rows whose messages have a type; others are exported as they are."""
 

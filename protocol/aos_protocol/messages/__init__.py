@@ -24,6 +24,7 @@ from aos_protocol.messages.bundles import (
     Revisions,
     RevisionsQuery,
 )
+from aos_protocol.messages.drift import DriftTest, DriftTests, ModelDrift
 from aos_protocol.messages.mission import (
     ActionValue,
     BeliefSummary,
@@ -97,6 +98,8 @@ __all__ = [
     "ConstraintRisk",
     "DecisionRecord",
     "DecisionTree",
+    "DriftTest",
+    "DriftTests",
     "EndingOdds",
     "Envelope",
     "Fault",
@@ -115,6 +118,7 @@ __all__ = [
     "MissionsQuery",
     "ModelAdopted",
     "ModelCheck",
+    "ModelDrift",
     "Outcome",
     "PredictedObservation",
     "ProjectQuery",

@@ -9,6 +9,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.messages.base import Message
+from aos_protocol.messages.drift import ModelDrift
 from aos_protocol.messages.records import ChosenBy, SearchMade
 from aos_protocol.messages.skills import Outcome
 
@@ -296,7 +297,8 @@ class DecisionRecord(Message, frozen=True):
     `searches` are all that were made since the decision before, in their order; where one made this decision
     it is the last that is not dropped. The engine's process had been started `engine_starts` times.
     `build_digest` is of the model's text, the engine's headers, compiler and flags: decisions repeat where it
-    is the same.
+    is the same. `drift` are the alarms that stand of this skill after the outcome: the model does not predict
+    what it reports.
     """
 
     sequence: int
@@ -333,6 +335,7 @@ class DecisionRecord(Message, frozen=True):
     searches: tuple[SearchMade, ...] = ()
     engine_starts: int = 1
     build_digest: str = ""
+    drift: tuple[ModelDrift, ...] = ()
 
 
 class HistoryQuery(Message, frozen=True):

@@ -11,7 +11,7 @@ from typing import TypeVar
 import msgspec
 
 from aos_protocol.errors import AosError, MissionRunsError
-from aos_protocol.messages import MissionBegun, MissionState, StartMission
+from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartMission
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.search import Search
 from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
@@ -144,6 +144,13 @@ class MissionRunner:
             return self.mission.state.phase != "ended"
         return self.is_interrupted
 
+    def _last_drift(self) -> DriftTests | None:
+        """The tests of the mission before, which go over to the next one."""
+        if self.mission is not None:
+            return self.mission.drift
+        book = self._books.newest
+        return book.memory.drift if book is not None else None
+
     def _busy(self) -> AosError:
         hint = "Wait for its end, or end it with `aos mission stop`"
         return MissionRunsError(f"the mission {self._books.name} runs", hint=hint)
@@ -161,7 +168,8 @@ class MissionRunner:
         begun = await self._succession.next(running, start, self.mission)
         running = RunningModel(running.revision, begun.engine)
         await self._shelf.turn_to(running, self._succession.values(start))
-        self._begin(self._books.open_next(), running, start, begun.past)
+        drift = self._last_drift()
+        self._begin(self._books.open_next(), running, start, begun.past, drift)
 
     async def _until_accepted_documents_are_ready(self) -> None:
         """Waits for what the registry has accepted before the start of a mission, here and in the
@@ -177,7 +185,12 @@ class MissionRunner:
         return self._shelf.running or await self._shelf.first()
 
     def _begin(
-        self, book: Logbook, running: RunningModel, start: StartMission | None, past: Past | None = None
+        self,
+        book: Logbook,
+        running: RunningModel,
+        start: StartMission | None,
+        past: Past | None = None,
+        drift: DriftTests | None = None,
     ) -> None:
         """Begins a mission or takes it up; that it begins is in the journal."""
         terms = self._terms(book.name, book.seed, book.memory.epoch + 1, running)
@@ -192,7 +205,7 @@ class MissionRunner:
         )
         book.append(BEGUN, begun)
         memory, book.memory = book.memory, MissionMemory()
-        self.mission = Mission(terms, running, self._ports, memory, past)
+        self.mission = Mission(terms, running, self._ports, memory, past, drift)
         self.ended.clear()
         self._started.set()
         self._has_begun.set()

@@ -17,6 +17,7 @@ from aos_protocol.messages import (
     ActivationId,
     BeliefSummary,
     DecisionRecord,
+    DriftTests,
     MissionState,
     ModelAdopted,
     Outcome,
@@ -26,6 +27,7 @@ from aos_solver.child.answers import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
 from aos_solver.mission.choosing import Choice, Chooser, Ended, Held, Refused
+from aos_solver.mission.drift import DRIFT, after_use, begun_for, drifts
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.helm import Helm
@@ -61,9 +63,10 @@ class Mission:
         ports: Ports,
         memory: MissionMemory = _NOTHING,
         before: Past | None = None,
+        drift: DriftTests | None = None,
     ) -> None:
         """`memory` is what the mission has behind it, which has not ended. `before` is the past of the belief
-        that it begins with, where that is not the initial one.
+        that it begins with, where that is not the initial one. `drift` are the tests of the mission before.
         """
         state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
         self._reports = Reports(state, ports, memory)
@@ -76,6 +79,8 @@ class Mission:
         self._helm = Helm(memory.steering, ports, self._reports.steered)
         self.past = Past(terms.limits.refuted_below, before.steps if before is not None else ())
         self._adopted: ModelAdopted | None = None
+        self._carried_drift = drift
+        self.drift = memory.drift or begun_for(model)
         self._budget = RiskBudget(model.engine.bounds)
         self._chooser = Chooser(terms, self._failures, ports, self._budget, lambda: self._helm.left_out)
         self._holding = Holding(terms.hold_s, ports, self._helm, self._failures, self._adopt)
@@ -134,6 +139,7 @@ class Mission:
     async def run_or_raise(self) -> None:
         """Decide and act until the mission ends, as `run`; AosError for a machine fault."""
         self.belief = await self._model.engine.summary()
+        self._begin_drift()
         if not await self._take_up():
             return
         if self.state.step == 0:
@@ -183,6 +189,17 @@ class Mission:
             await self._hold(self._failures.to_hold)
         return self._goes_on()
 
+    def _begin_drift(self) -> None:
+        """Journals with which tests the mission begins: those that go over, where the model is the same."""
+        if self._memory.drift is not None and self._memory.drift.model_digest == self._model.digest:
+            return
+        carried = self._carried_drift
+        if carried is not None and carried.model_digest == self._model.digest:
+            self.drift = carried
+        else:
+            self.drift = begun_for(self._model)
+        self._ports.journal(DRIFT, self.drift)
+
     async def _finish(self, decision: DecisionRecord, outcome: Outcome) -> bool:
         """Takes the outcome of a decision; returns whether the mission goes on."""
         await self._observe(decision, outcome)
@@ -220,6 +237,9 @@ class Mission:
             self._terms = msgspec.structs.replace(self._terms, search=self._terms.search.after_takeover())
             self._chooser.search = self._terms.search
         self._ports.journal("adopted", takeover.row)
+        if takeover.model.digest != before.digest:
+            self.drift = begun_for(takeover.model)
+            self._ports.journal(DRIFT, self.drift)
         return True
 
     def _s_of(self, stamp_ns: int) -> float:
@@ -317,7 +337,10 @@ class Mission:
         self.past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
-        self._helm.observed(self._reports.observed(decision, outcome, update, update_s, remark))
+        before = self.drift
+        self.drift = after_use(before, decision, msgspec.structs.replace(decision, outcome=outcome))
+        drift = drifts(before, self.drift, decision.skill)
+        self._helm.observed(self._reports.observed(decision, outcome, update, update_s, remark, drift))
         self.belief = update.summary
         await keep_belief(self._ports, self._model, decision.step, self.belief)
 

@@ -16,12 +16,14 @@ from aos_protocol.messages import (
     Activate,
     BeliefSummary,
     DecisionRecord,
+    DriftTests,
     MissionBegun,
     MissionState,
     Outcome,
     Steer,
 )
 from aos_runtime.journal import JournalRow
+from aos_solver.mission.drift import DRIFT, after_use
 from aos_solver.mission.steering import LIFTS, REFUSED, STEERED, Steering
 
 __all__ = ["BEGUN", "MissionMemory", "PastStep", "Pending", "folded"]
@@ -37,6 +39,7 @@ _KINDS: dict[str, type[Any]] = {
     "mission": MissionState,
     STEERED: Steer,
     REFUSED: ActionRefused,
+    DRIFT: DriftTests,
 }
 
 
@@ -69,6 +72,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     `begun` is the row with which the first solver began the mission, None where none has. `sequence` is the
     number of the next record, and `goal_probability` that of the last one's belief. `mission_parameters` are
     the values that the mission began with. With `is_lifted` somebody has looked after what it held for.
+    `drift` are the tests of the model, None where the journal has none.
     """
 
     epoch: int = 0
@@ -81,6 +85,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     begun: MissionBegun | None = None
     steering: Steering = Steering()
     is_lifted: bool = False
+    drift: DriftTests | None = None
 
     @property
     def has_ended(self) -> bool:
@@ -99,6 +104,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     steps: list[PastStep] = []
     parameters: dict[str, str] = {}
     steering, is_lifted = Steering(), False
+    drift: DriftTests | None = None
     for row in rows:
         if row.kind not in _KINDS:
             continue
@@ -112,12 +118,16 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
                 state = said
             case Steer():
                 is_lifted = is_lifted or (said.verb in LIFTS and _is_holding(state))
+            case DriftTests():
+                drift = said
             case DecisionRecord(outcome=None):
                 pending = Pending(said)
             case DecisionRecord(outcome=Outcome() as outcome):
                 if steps:
                     steps[-1] = steps[-1]._replace(decision=_without_search(steps[-1].decision))
-                steps.append(PastStep(_of(pending, row).decision, outcome, said.stamp_ns))
+                decision = _of(pending, row).decision
+                drift = None if drift is None else after_use(drift, decision, said)
+                steps.append(PastStep(decision, outcome, said.stamp_ns))
                 pending = None
             case Activate():
                 pending = _of(pending, row)._replace(intention=said)
@@ -136,6 +146,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
         begun,
         steering,
         is_lifted,
+        drift,
     )
 
 

@@ -12,10 +12,12 @@ from aos_protocol.messages import (
     DecisionRecord,
     MissionState,
     ModelAdopted,
+    ModelDrift,
     Outcome,
 )
 from aos_solver.child.answers import BeliefUpdate
 from aos_solver.mission.choosing import Choice
+from aos_solver.mission.drift import text_of
 from aos_solver.mission.endings import Ending
 from aos_solver.mission.memory import MissionMemory
 from aos_solver.mission.ports import Ports
@@ -83,10 +85,17 @@ class Reports:
         return record
 
     def observed(
-        self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, update_s: float, remark: str
+        self,
+        decision: DecisionRecord,
+        outcome: Outcome,
+        update: BeliefUpdate,
+        update_s: float,
+        remark: str,
+        drift: tuple[ModelDrift, ...],
     ) -> DecisionRecord:
         """Reports the outcome of a decision, and the belief after it; the `remark` is for people."""
-        remarks = (update.remark, remark, *_faults_of_monitors(outcome))
+        alarms = [text_of(alarm) for alarm in drift if alarm.is_new]
+        remarks = (update.remark, remark, *_faults_of_monitors(outcome), *alarms)
         record = msgspec.structs.replace(
             decision,
             sequence=self._sequence,
@@ -99,6 +108,7 @@ class Reports:
             adopted=None,
             is_impossible=update.is_impossible,
             remark="; ".join(text for text in remarks if text),
+            drift=drift,
         )
         self._publish(record)
         return record

@@ -1,0 +1,115 @@
+"""Model against reality: what the sequential tests find, how fast, and their silence for a right model."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import pytest
+from decision_records import decision_record
+from drift_truth import BELIEF, SKILLS, alarm_of, silent, use
+
+from aos_protocol.messages import ActivationId, DriftTests, Outcome, PredictedObservation
+from aos_runtime.journal import JournalRow
+from aos_solver.mission.drift import FALSE_ALARMS, after_use, begun, drifts, text_of
+from aos_solver.mission.memory import folded
+
+RIGHT = {"taken": 0.9, "missed": 0.1}
+WRONG = {"taken": 0.6, "missed": 0.4}
+
+
+def test_a_skill_of_0_9_that_is_0_6_alarms_within_60_uses() -> None:
+    alarms = [alarm_of(seed, RIGHT, WRONG, 60, others=3) for seed in range(100)]
+    assert sum(alarm is not None for alarm in alarms) >= 95
+    first = next(alarm for alarm in alarms if alarm is not None)
+    assert first.modelled == pytest.approx(0.9 if first.response == "taken" else 0.1)
+    assert first.is_new
+    assert (first.seen < 0.8) == (first.response == "taken")
+
+
+def test_runs_of_a_right_model_stay_silent_all_skills_together() -> None:
+    assert sum(silent(seed, SKILLS, 500) for seed in range(100)) >= 99
+
+
+def test_a_skill_that_wears_out_later_is_found_too() -> None:
+    alarms = [alarm_of(seed, RIGHT, WRONG, 100, others=3, right_before=100) for seed in range(20)]
+    assert sum(alarm is not None and alarm.uses > 100 for alarm in alarms) >= 18
+
+
+def test_the_wealth_of_a_right_model_stays_as_it_is_in_the_mean() -> None:
+    """Exactly so, over all sequences of six uses; that is what the rate of false alarms rests on."""
+    mean = 0.0
+    for number in range(2**6):
+        tests, probability = begun("d", {"pick": [*RIGHT]}), 1.0
+        for place in range(6):
+            response = "taken" if number >> place & 1 else "missed"
+            probability *= RIGHT[response]
+            tests, _ = use(tests, "pick", RIGHT, response)
+        mean += probability * wealth(tests)
+    assert mean == pytest.approx(1.0, abs=1e-12)
+
+
+def wealth(tests: DriftTests) -> float:
+    """The wealth of a test after its uses, with what it has not bet."""
+    shares = (0.08, 0.17, 0.15, 0.1, 0.1, 0.15, 0.17, 0.08)
+    test = tests.tests[0]
+    bets = zip(shares, test.log_wealth, strict=True)
+    return sum(share * math.exp(log) for share, log in bets) + 0.2 / test.uses
+
+
+def test_what_the_model_excludes_alarms_at_once_where_it_comes_again() -> None:
+    tests = begun("d", {"pick": [*RIGHT]})
+    uses, alarms = 0, ()
+    while not alarms and uses < 6:
+        uses += 1
+        tests, alarms = use(tests, "pick", {"taken": 1.0, "missed": 0.0}, "missed")
+    assert uses <= 3
+    assert text_of(alarms[0]) == (
+        f"the model of pick does not hold: taken in 0.00 of {uses} uses, modelled 1.00"
+    )
+
+
+def test_a_belief_that_was_sampled_has_the_benefit_of_the_doubt() -> None:
+    sampled = msgspec.structs.replace(BELIEF, error_bound=1.0, effective_states=100.0)
+    tests = begun("d", {"pick": [*RIGHT]})
+    predicted = tuple(PredictedObservation(name, odds) for name, odds in RIGHT.items())
+    decision = decision_record(0, skill="pick", model_digest="d", predicted=predicted, belief=sampled)
+    for number in range(300):
+        response = "taken" if number % 20 < 17 else "missed"  # 0.85, within three standard errors
+        outcome = Outcome(ActivationId("m", 1), "pick", "observed", response)
+        tests = after_use(tests, decision, msgspec.structs.replace(decision, outcome=outcome))
+    assert drifts(tests, tests, "pick") == ()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"status": "timed_out", "response": ""}, {"stopped_by": "pick"}],
+    ids=["not observed", "stopped"],
+)
+def test_what_says_nothing_about_the_model_is_not_tested(changes: dict[str, str]) -> None:
+    tests = begun("d", {"pick": [*RIGHT]})
+    decision = decision_record(0, skill="pick", model_digest="d")
+    outcome = msgspec.structs.replace(Outcome(ActivationId("m", 1), "pick", "observed", "taken"), **changes)
+    assert after_use(tests, decision, msgspec.structs.replace(decision, outcome=outcome)) == tests
+
+
+def test_two_responses_are_one_test_and_one_response_is_none() -> None:
+    tests = begun("d", {"pick": ["taken", "missed"], "look": ["a", "b", "c"], "go": ["arrived"]})
+    assert tests.count == 4
+    assert {test.skill for test in tests.tests} == {"pick", "look"}
+    assert FALSE_ALARMS == 0.01
+
+
+def test_the_tests_of_a_mission_are_the_fold_of_its_journal() -> None:
+    tests = begun("d", {"look": ["left", "right"]})
+    predicted = (PredictedObservation("left", 0.5), PredictedObservation("right", 0.5))
+    rows = [("drift", tests)]
+    for step in (1, 2):
+        decision = decision_record(2 * step - 2, model_digest="d", predicted=predicted, belief=BELIEF)
+        outcome = Outcome(ActivationId("m", step), "look", "observed", "left")
+        done = msgspec.structs.replace(decision, sequence=2 * step - 1, outcome=outcome)
+        tests = after_use(tests, decision, done)
+        rows += [("decision", decision), ("decision", done)]  # type: ignore[list-item]
+    journal = [JournalRow(n, 0, kind, msgspec.json.encode(each)) for n, (kind, each) in enumerate(rows, 1)]
+    assert folded(journal).drift == tests
+    assert tests.tests[0].uses == 2
