@@ -19,7 +19,7 @@ from aos_protocol.errors import DeployError
 if TYPE_CHECKING:
     from aos_deploy.program import Program  # which imports what knows this module
 
-__all__ = ["HOST", "check_ssh", "remote_command", "why_it_failed"]
+__all__ = ["HOST", "check_ssh", "is_lost", "remote_command", "why_it_failed"]
 
 HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]-]*")
 """A text that ssh takes for a host; it cannot be one that ssh would take for an option."""
@@ -30,7 +30,9 @@ _PORTS = (20_000, 32_000)
 _OPTIONS = (
     "BatchMode=yes",  # It asks nothing: nobody is there to answer.
     "ExitOnForwardFailure=yes",
-    "ConnectTimeout=10",
+    # Short attempts, and several: a host that comes back is seen within seconds.
+    "ConnectTimeout=3",
+    "ConnectionAttempts=4",
     "ServerAliveInterval=1",
     "ServerAliveCountMax=3",
 )
@@ -112,6 +114,11 @@ def remote_command(
         program.host,
         f"exec sh -c {shlex.quote(script)}",
     ]
+
+
+def is_lost(program: Program, status: int) -> bool:
+    """Says whether it was the connection to a program's host that ended, as far as ssh tells."""
+    return bool(program.host) and status == _SSH_FAILED
 
 
 def why_it_failed(name: str, host: str, status: int, said: list[str]) -> DeployError | None:

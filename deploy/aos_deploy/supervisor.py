@@ -26,6 +26,7 @@ from aos_deploy.process_end import end_of, look_at_log, status_text
 from aos_deploy.process_start import ROUTER_MODULE, start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
+from aos_deploy.remote import is_lost
 from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
 from aos_deploy.run_directory import ProcessEnd, RunDirectory
 from aos_protocol.access import OPERATOR, Party
@@ -342,8 +343,10 @@ class Supervisor:
         may_succeed = (
             not self._is_hopeless(program, status) if was_ready else bool(program.command) and not is_mistake
         )
-        has_starts = program.is_restarted and running.restarts.are_left(self._clock.monotonic_s())
-        if may_succeed and has_starts:
+        # A link that is cut again and again is no fault of the program: how long to wait, the mission says.
+        is_cut = was_ready and is_lost(program, status)
+        has_starts = is_cut or running.restarts.are_left(self._clock.monotonic_s())
+        if may_succeed and program.is_restarted and has_starts:
             return STARTED_AGAIN
         # What an adapter served is unavailable; the mission goes on with the rest.
         return GIVEN_UP if was_ready and self._has_other_adapters(running) else THE_RUN_ENDS

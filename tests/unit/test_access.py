@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+from aos_protocol import keys
 from aos_protocol.access import (
     ACTS,
     ADAPTER,
@@ -143,3 +146,9 @@ def test_a_permission_that_is_looked_up_is_no_refusal_and_a_session_is_known_aga
     assert told == ["refused: arm may not send query on aos/r/x"]
     log.take(b"DEBUG acc-0 ThreadId(05) b: UsrPwd extension - Recv OpenSyn. Invalid password. at x")
     assert told[1:] == ["refused: a connection with a wrong password"]
+
+
+def test_every_key_has_a_row() -> None:
+    written = re.findall(r"^    aos/<robot>/(\S+)", keys.__doc__ or "", re.MULTILINE)
+    rows = [row.key.replace("<topic>", "<path>") for row in TABLE]
+    assert sorted(rows) == sorted(written)

@@ -158,7 +158,16 @@ def test_a_new_solver_replays_what_an_older_model_had_handed_over() -> None:
         history.change("decision", 2, belief=belief(7))
         history.journal.insert(0, Entry(1, "adopted", ModelAdopted(2, "", 1, by, 0)))
         begun = MissionBegun(MISSION, 2, 1, 2, "")
-        history.journal.insert(history.place("decision", 2), Entry(190, "begun", begun))
+        place = history.place("decision", 2)
+        history.journal[place:] = [
+            Entry(190, "begun", begun),
+            *(
+                entry._replace(payload=replace(entry.payload, epoch=2))
+                if hasattr(entry.payload, "epoch")
+                else entry
+                for entry in history.journal[place:]
+            ),
+        ]
         assert history.broken_rules() == broken, by
 
 
@@ -221,6 +230,11 @@ def _belief_of_no_replay(history: History) -> None:
 
 def _epoch_that_falls(history: History) -> None:
     history.change("decision", 0, epoch=2)
+
+
+def _epoch_that_leaps(history: History) -> None:
+    begun = MissionBegun(MISSION, 3, 1, 2, "")
+    history.journal.insert(history.place("decision", 2), Entry(190, "begun", begun))
 
 
 def _call_of_an_older_epoch(history: History) -> None:
@@ -334,6 +348,7 @@ BREAKS: dict[Callable[[History], None], str] = {
     _step_decided_twice: "steps",
     _other_belief: "belief",
     _epoch_that_falls: "epochs",
+    _epoch_that_leaps: "epochs",
     _call_of_an_older_epoch: "epochs",
     _intention_of_something_else: "intention",
     _intention_without_a_decision: "intention",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aos_deploy.program import Program
-from aos_deploy.remote import HOST, remote_command, why_it_failed
+from aos_deploy.remote import HOST, is_lost, remote_command, why_it_failed
 
 
 @pytest.mark.parametrize(
@@ -38,6 +38,13 @@ def test_an_ssh_that_fails_says_why_and_what_to_do(text: str, hint: str) -> None
 
 def test_the_end_of_the_program_itself_is_not_that_of_ssh() -> None:
     assert why_it_failed("arm", "robot@arm", 3, ["no power"]) is None
+
+
+def test_a_connection_that_is_lost_is_told_from_a_program_that_ends() -> None:
+    far, here = Program(name="arm", command=("./arm",), host="arm"), Program(name="arm", command=("./arm",))
+    assert is_lost(far, 255)
+    assert not is_lost(far, 1)
+    assert not is_lost(here, 255)
 
 
 @pytest.mark.parametrize(

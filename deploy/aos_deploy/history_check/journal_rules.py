@@ -92,7 +92,7 @@ class JournalRules:
             self._take_state(row, message, found)
             return
         if isinstance(message, MissionBegun | ModelAdopted):
-            self._take_model(message)
+            self._take_model(message, found)
             return
         if self._held_since_ns is not None and not isinstance(message, Outcome):
             found("hold", f"a row of the kind {row.kind} while the mission holds")
@@ -114,11 +114,15 @@ class JournalRules:
         if _is_end(state) and self.end_ns is None:
             self.end_ns = row.stamp_ns
 
-    def _take_model(self, message: MissionBegun | ModelAdopted) -> None:
+    def _take_model(self, message: MissionBegun | ModelAdopted, found: Found) -> None:
         """A belief that was handed over from another model is not that which a new solver replays."""
         if isinstance(message, ModelAdopted):
             self._is_handed_over |= message.by != "replay"
-        elif self._is_handed_over:
+            return
+        if message.epoch != self._epoch + 1:
+            found("epochs", f"a solver begins with epoch {message.epoch} after epoch {self._epoch}")
+        self._epoch = max(message.epoch, self._epoch)
+        if self._is_handed_over:
             self._belief, self._is_handed_over = None, False
 
     def _take_record(self, record: DecisionRecord, found: Found) -> None:

@@ -12,7 +12,7 @@ RULES = {
     "steps": "decisions and observations take turns, of the same action, and steps count from 1",
     "belief": "a decision is made with the belief of the observed record before it",
     "replay": "a replay of the outcomes gives each belief again, by its digest",
-    "epochs": "the epoch of a mission never falls",
+    "epochs": "the epoch of a mission goes up by one with each solver, and never falls",
     "intention": "an intention is that of the decision before it",
     "outcome": "an outcome belongs to the intention before it, and is the one that the middleware has stored",
     "id": "an id stands for one skill with its parameters, and nothing moves that was not intended",

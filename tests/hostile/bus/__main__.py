@@ -7,6 +7,8 @@ python -m tests.hostile.bus matrix forgeries    parts
 from __future__ import annotations
 
 import argparse
+import math
+import random
 import sys
 import tempfile
 from collections.abc import Callable
@@ -14,6 +16,7 @@ from pathlib import Path
 
 from .cell import STEPS, cell
 from .cost import cost
+from .far import far_mission, is_possible
 from .forgeries import FORGERIES, faults_of
 from .malformed import flooded_keys, flooding
 from .matrix import PARTIES, attempts, wrong
@@ -21,6 +24,7 @@ from .routed import routed
 
 MAY_ANSWER_S = 0.1
 MAY_GROW_BYTES = 20_000_000
+MAY_HOLD_S, MAY_GO_ON_S = 4.0, 5.0
 
 
 def matrix(folder: Path, _: argparse.Namespace) -> int:
@@ -80,11 +84,36 @@ def costs(folder: Path, options: argparse.Namespace) -> int:
     return 0
 
 
+def far(folder: Path, options: argparse.Namespace) -> int:
+    """Cuts of the link to an adapter on another host."""
+    if not is_possible():
+        print("far: needs ip, sshd and ssh, and to be root")
+        return 0
+    chance, broken = random.Random(1), 0
+    with far_mission(folder) as mission:
+        for _ in range(options.cuts):
+            cut = mission.cut(math.exp(chance.uniform(math.log(0.2), math.log(30.0))))
+            is_held_late = cut.cut_s > MAY_HOLD_S and (cut.held_s is None or cut.held_s > MAY_HOLD_S)
+            is_late = is_held_late or cut.went_on_s is None or cut.went_on_s > MAY_GO_ON_S
+            broken += is_late
+            held, went_on = ("-" if one is None else f"{one:.1f} s" for one in cut[1:])
+            print(
+                f"  cut for {cut.cut_s:.1f} s: held after {held}, went on {went_on} after its end", flush=True
+            )
+            if mission.has_ended:
+                print((folder / "aos-up.log").read_text())
+                return broken + 1
+        twice = len(mission.moved) - len(set(mission.moved))
+    print(f"far: {options.cuts} cuts, {broken} late; {twice} motions twice")
+    return broken + twice
+
+
 PARTS: dict[str, Callable[[Path, argparse.Namespace], int]] = {
     "matrix": matrix,
     "forgeries": forgeries,
     "malformed": malformed,
     "cost": costs,
+    "far": far,
 }
 
 
@@ -95,6 +124,7 @@ def main() -> int:
     parser.add_argument("--messages", type=int, default=20_000, help="malformed messages on each key")
     parser.add_argument("--questions", type=int, default=3000)
     parser.add_argument("--sessions", type=int, default=200)
+    parser.add_argument("--cuts", type=int, default=20, help="of the link to an adapter on another host")
     options = parser.parse_args()
     broken = 0
     for part in options.parts or PARTS:

@@ -1,0 +1,243 @@
+"""An adapter on another host whose link is cut: a network namespace with an SSH server of its own."""
+
+from __future__ import annotations
+
+import getpass
+import json
+import os
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+__all__ = ["Cut", "far_mission", "is_possible"]
+
+_NAME = "aosfar"
+_HERE, _THERE = "10.213.77.1", "10.213.77.2"
+_PORT = 2222
+_PATIENCE_S = 120.0
+_STEPS = 100_000
+
+_FILES = {
+    "documents/far.ef": """project: far
+horizon: 2
+discount: 0.9
+
+state_variable: int count
+
+initial_belief:
+state.count = 0;
+
+reward_code:
+if (state.count >= STEPS) { __reward = 10; __isGoalState = true; }
+""",
+    "documents/step.sd": "project: far\n\ndynamic_model:\nstate__.count = state.count + 1;\n"
+    "__moduleResponse = done;\n",
+    "documents/step.am": "project: far\n\nmodule_activation: skill\npath: /step\nresponse: done\n"
+    "response_rule: True\n",
+    "far_robot.py": """import asyncio
+from pathlib import Path
+
+from aos_runtime.adapters import Adapter
+
+
+class Robot(Adapter):
+    version = "1"
+
+    def __init__(self, host):
+        self.host = host
+
+    async def start(self):
+        await self.host.serve("/step")
+
+    async def close(self):
+        pass
+
+    async def call(self, call):
+        with Path("moved").open("a") as file:
+            file.write(f"{call.id}\\n")
+        await asyncio.sleep(0.3)
+        return {}
+""",
+    "far.yaml": """aos: 1
+robot: far
+bundles: [documents]
+mission: {step_limit: STEPS, failure_limit: 1000, set_aside_after: 1000, hold_s: 300}
+solver: {simulations: 20}
+adapters:
+  arm: {command: [PYTHON, -m, aos_runtime.adapters, "far_robot.py:Robot"], host: robot@arm, folder: FOLDER}
+bind: {/step: arm}
+runs: runs
+""",
+}
+
+
+class Cut(NamedTuple):
+    """A cut of so many seconds, and what came of it: when the mission held, and when it went on after the
+    end; None where it did not."""
+
+    cut_s: float
+    held_s: float | None
+    went_on_s: float | None
+
+
+def is_possible() -> bool:
+    """Says whether namespaces and an SSH server can be had here."""
+    programs = all(
+        shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin") for name in ("ip", "sshd", "ssh")
+    )
+    return programs and os.getuid() == 0
+
+
+class FarMission:
+    """A mission whose robot is in the namespace."""
+
+    def __init__(self, folder: Path, process: subprocess.Popen[str]) -> None:
+        self._folder = folder
+        self._process = process
+        self._events: list[tuple[float, dict[str, Any]]] = []
+        self._news = threading.Condition()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def cut(self, cut_s: float) -> Cut:
+        """Cuts the link for so long. The mission has to hold, unless it is over before."""
+        self._until(lambda event: event.get("phase") == "acting", time.monotonic())
+        down_s = time.monotonic()
+        # The far end: ours stays up, as a network card does whose cable is pulled somewhere else.
+        _ip("-n", _NAME, "link", "set", f"{_NAME}1", "down")
+        held_s = self._until(_is_held, down_s, min(cut_s, _PATIENCE_S))
+        time.sleep(max(0.0, down_s + cut_s - time.monotonic()))
+        up_s = time.monotonic()
+        _ip("-n", _NAME, "link", "set", f"{_NAME}1", "up")
+        went_on_s = self._until(_is_observed, up_s)
+        return Cut(
+            cut_s,
+            None if held_s is None else held_s - down_s,
+            None if went_on_s is None else went_on_s - up_s,
+        )
+
+    @property
+    def has_ended(self) -> bool:
+        """True where it should go on and does not."""
+        return self._process.poll() is not None
+
+    @property
+    def moved(self) -> list[str]:
+        """The ids of the motions."""
+        return (self._folder / "moved").read_text().split()
+
+    def _until(self, is_it: Any, since_s: float, timeout_s: float = _PATIENCE_S) -> float | None:
+        """The time of the first such event since then."""
+
+        def found() -> float | None:
+            return next((at_s for at_s, event in self._events if at_s >= since_s and is_it(event)), None)
+
+        with self._news:
+            self._news.wait_for(lambda: found() is not None or self.has_ended, timeout_s)
+            return found()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with suppress(ValueError):  # The output is closed when the mission is ended.
+            for line in self._process.stdout:
+                event = json.loads(line)
+                with self._news:
+                    self._events.append((time.monotonic(), event))
+                    self._news.notify_all()
+
+
+def _is_held(event: dict[str, Any]) -> bool:
+    return event.get("phase") == "holding"
+
+
+def _is_observed(event: dict[str, Any]) -> bool:
+    return (event.get("outcome") or {}).get("status") == "observed"
+
+
+@contextmanager
+def far_mission(folder: Path) -> Iterator[FarMission]:
+    """The mission, once its robot has moved; it is ended with the block, and so is the namespace."""
+    python = str(Path(sys.executable))
+    for name, text in _FILES.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        text = text.replace("STEPS", str(_STEPS)).replace("PYTHON", python).replace("FOLDER", str(folder))
+        (folder / name).write_text(text)
+    with _namespace(), _server(folder) as programs:
+        environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
+        command = [Path(sys.executable).with_name("aos-up"), "far.yaml", "--json"]
+        with (folder / "aos-up.log").open("w") as log:
+            process = subprocess.Popen(
+                command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=log
+            )
+        with process:
+            mission = FarMission(folder, process)
+            try:
+                if mission._until(_is_observed, 0.0) is None:
+                    raise RuntimeError((folder / "aos-up.log").read_text())
+                yield mission
+            finally:
+                process.terminate()
+
+
+@contextmanager
+def _namespace() -> Iterator[None]:
+    _ip("netns", "add", _NAME)
+    try:
+        _ip("link", "add", _NAME, "type", "veth", "peer", "name", f"{_NAME}1")
+        _ip("link", "set", f"{_NAME}1", "netns", _NAME)
+        _ip("addr", "add", f"{_HERE}/24", "dev", _NAME)
+        _ip("link", "set", _NAME, "up")
+        for words in (
+            ("addr", "add", f"{_THERE}/24", "dev", f"{_NAME}1"),
+            ("link", "set", f"{_NAME}1", "up"),
+        ):
+            _ip("-n", _NAME, *words)
+        _ip("-n", _NAME, "link", "set", "lo", "up")
+        yield
+    finally:
+        _ip("netns", "del", _NAME)
+        subprocess.run(["ip", "link", "del", _NAME], check=False, capture_output=True)
+
+
+@contextmanager
+def _server(folder: Path) -> Iterator[str]:
+    """An SSH server in the namespace; gives the folder of an `ssh` that reaches it as robot@arm."""
+    for name in ("host", "user"):
+        command = ["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(folder / name)]
+        subprocess.run(command, check=True)
+    (folder / "sshd_config").write_text(
+        f"ListenAddress {_THERE}:{_PORT}\nHostKey {folder}/host\nAuthorizedKeysFile {folder}/user.pub\n"
+        "PidFile none\nStrictModes no\nUsePAM no\nPasswordAuthentication no\n"
+    )
+    kind, key, _ = (folder / "host.pub").read_text().split(" ", 2)
+    (folder / "known").write_text(f"[{_THERE}]:{_PORT} {kind} {key}\n")
+    (folder / "ssh_config").write_text(
+        f"Host arm\n HostName {_THERE}\n Port {_PORT}\n IdentityFile {folder}/user\n"
+        f" IdentitiesOnly yes\n UserKnownHostsFile {folder}/known\n"
+    )
+    Path("/run/sshd").mkdir(exist_ok=True)
+    programs = folder / "bin"
+    programs.mkdir()
+    ssh = shutil.which("ssh")
+    (programs / "ssh").write_text(
+        f'#!/bin/sh\nexec {ssh} -F {folder}/ssh_config -l {getpass.getuser()} "$@"\n'
+    )
+    (programs / "ssh").chmod(0o755)
+    sshd = shutil.which("sshd", path=f"{os.environ['PATH']}:/usr/sbin")
+    command = ["ip", "netns", "exec", _NAME, str(sshd), "-D", "-e", "-f", str(folder / "sshd_config")]
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL) as server:
+        try:
+            time.sleep(0.5)
+            yield str(programs)
+        finally:
+            server.terminate()
+
+
+def _ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True)
