@@ -109,8 +109,8 @@ class Sarsop {
   // Plays `steps` decisions of a mission from the only start. It begins with `action` and decides anew at each later belief,
   // with the whole horizon to go. Tells what it earns less in them than the lower bound says: it may put off for ever what is
   // best at the end of a horizon, and without a horizon the bound counts what comes after these decisions, too. Most luck is
-  // left out, since a step counts by what it is expected to change of the lower bound. After `is_over()` decisions are no
-  // longer searched for: bounds that are known decide. `uniform()` draws.
+  // left out, since a step counts by what it is expected to change of the lower bound. At `is_over()` the mission breaks off, since
+  // decisions without a search would be others: what is left of it loses as much as what was played. `uniform()` draws.
   template <class IsOver, class Uniform>
   MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, IsOver&& is_over, Uniform&& uniform) {
     const std::vector<std::uint32_t> begun = trial_.begun();
@@ -119,10 +119,14 @@ class Sarsop {
     double promised = graph_[number].lower;
     bool is_settled = true;
     MissionLoss loss;
-    double discount = roots_.front().weight;
-    for (std::size_t step = 0; step < steps; ++step) {
+    double discount = roots_.front().weight, played = 0;
+    std::size_t step = 0;
+    for (; step < steps; ++step) {
+      if (step > 0) std::tie(action, is_settled) = decided_anew(anew_of(number), precision, is_over);
+      if (step > 0 && is_over()) break;
       const Branch branch = opened(number, action);
       const double lost = discount * (promised - branch.lower);
+      played += discount;
       loss.all += lost;
       if (!is_settled) loss.unsettled += lost;
       double place = uniform();
@@ -130,16 +134,18 @@ class Sarsop {
                                      [&](const Successor& successor) { return (place -= successor.probability) < 0; });
       if (next == branch.successors.end()) {
         promised = 0;
+        step = steps;
         break;
       }
       number = next->node;
       graph_.refresh_lower(graph_[number]);
       promised = graph_[number].lower;
       discount *= model_.discount;
-      const Belief belief = graph_[number].belief;
-      const std::uint32_t anew = graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);
-      std::tie(action, is_settled) = decided_anew(anew, precision, is_over);
     }
+    double all = played;
+    for (; step < steps; ++step, discount *= model_.discount) all += discount;
+    loss.all *= all / played;
+    loss.unsettled *= all / played;
     if (model_.horizon == 0) loss.later = discount * promised;
     trial_.set_begun(begun);
     return loss;
@@ -231,6 +237,12 @@ class Sarsop {
     graph_.open(node, branch);
     backups_.refresh(branch);
     return branch;
+  }
+
+  // The node of a belief with the whole horizon to go.
+  std::uint32_t anew_of(std::uint32_t number) {
+    const Belief belief = graph_[number].belief;
+    return graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);
   }
 
   // The action with the highest lower bound at a belief, after a search for a gap of at most `precision`, and whether it is
