@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import msgspec
 import pytest
 from models import built_bundle, engine_of
 from study.played import Played, play
@@ -12,6 +13,7 @@ from study.played import Played, play
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
 from aos_protocol.messages import TreeQuery, WhatIfQuery, WhyQuery
+from aos_runtime.journal import JournalRow
 from aos_solver.study.study import Study
 
 BUNDLE = "armadillo-rough"
@@ -26,8 +28,8 @@ async def played(bundles: Path, cache_dir: Path) -> Played:
 async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played, cache_dir: Path) -> None:
     study = Study(played, cache_dir, flips_s=math.inf)
     try:
-        why = await study.why(WhyQuery(2))
-        again = await study.why(WhyQuery(2))
+        why = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
+        again = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
         assert again == why  # A question leaves the engine where it was.
         assert why.is_exact
         assert not why.remark
@@ -98,5 +100,36 @@ async def test_what_cannot_be_supposed_is_told(
         assert caught.value.code == code
         assert caught.value.hint
         assert (await study.what_if(WhatIfQuery(1, forbid=("pick",)))).action != "pick"
+    finally:
+        await study.close()
+
+
+async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
+    bundles: Path, cache_dir: Path
+) -> None:
+    played = await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=1)
+    chosen = played.mission.decision(1)
+    asked = msgspec.structs.replace(
+        chosen,
+        action="observe_holding",
+        skill="observe_holding",
+        chosen_by="operator",
+        actions=(),
+        searches=(),
+        planner="",
+        outcome=None,
+    )
+    rows = [row for row in played.rows if row.kind == "begun"]
+    text = msgspec.json.encode(asked).decode()
+    played.rows = [*rows, JournalRow(len(rows) + 1, 0, "decision", text)]
+    study = Study(played, cache_dir, flips_s=0.0)
+    try:
+        why = await study.why(WhyQuery(1))
+        assert (why.action, why.chosen_by, why.other) == ("observe_holding", "operator", chosen.action)
+        assert why.is_exact
+        assert why.margin < 0
+        other = await study.what_if(WhatIfQuery(1, forbid=("observe_holding",)))
+        assert (other.action, other.before) == (chosen.action, "observe_holding")
+        assert other.value_before == pytest.approx(why.value)
     finally:
         await study.close()

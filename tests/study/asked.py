@@ -14,7 +14,7 @@ import msgspec
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import DecisionRecord, Why, WhyQuery
 from aos_solver.child.engine import Engine
-from aos_solver.study.flips import flip_between
+from aos_solver.study.flips import flip_between, is_lost
 from aos_solver.study.study import Study
 from aos_solver.study.valuing import Margin, Value
 
@@ -28,8 +28,9 @@ _BUNDLES = ("armadillo-rough", "armadillo-finer", "armadillo-rough-enhanced", "a
 
 async def measure_undisturbed(runs: int, cache_dir: Path) -> bool:
     """Plays missions twice, once while somebody asks all the time; counts the decisions that differ."""
-    compared = differing = asked = 0
-    for seed in range(1, 1 + math.ceil(runs / 6)):
+    compared = differing = asked = seed = 0
+    while compared < runs:
+        seed += 1
         files = files_of("armadillo-rough")
         budget: dict[str, Any] = {"planner": "pomcp", "simulations": 5000}
         quiet = await play(files, cache_dir, seed=seed, steps=6, **budget)
@@ -138,7 +139,7 @@ async def _is_right(played: Played, why: Why, variable: str, value: str, low: fl
             plan = await search.run(replay.engine, why.step)
             worth = {each.action: each.at_least or each.q for each in plan.actions}
             ahead.append(worth[why.action] - worth[why.other])
-        return high - low <= 1e-3 and (ahead[0] < 0) != (ahead[1] < 0)
+        return high - low <= 1e-3 and is_lost(ahead[0]) != is_lost(ahead[1])
     finally:
         await replay.close()
 

@@ -153,7 +153,7 @@ class Chooser:
         plan = Plan(index, 0, horizon, (), predicted, 0.0, why=f"{asked.by} has asked for it")
         chosen_by: ChosenBy = "script" if asked.is_script else "operator"
         without = self._without(engine).reasons
-        return Choice(plan, risks, frozenset(), without, False, chosen_by, self._searched())
+        return Choice(plan, risks, frozenset(), without, False, chosen_by, self._searched(are_dropped=True))
 
     async def _choose(self, model: RunningModel, step: int, belief: BeliefSummary) -> Choice | Ended | Held:
         engine = model.engine
@@ -186,7 +186,15 @@ class Chooser:
                 index = [action.name for action in actions].index(retried.action)
                 if index in possible and index not in barred:
                     again = await self._repeated(engine, retried, index)
-                    return Choice(again, risks, forbidden, without.reasons, False, "retry", self._searched())
+                    return Choice(
+                        again,
+                        risks,
+                        forbidden,
+                        without.reasons,
+                        False,
+                        "retry",
+                        self._searched(are_dropped=True),
+                    )
             plan, is_cautious = await self._plan(engine, step, belief, barred, without)
             if actions[plan.index].skill in self._around.unavailable:
                 continue
@@ -197,9 +205,11 @@ class Chooser:
             chosen_by, searches = self.search.chosen_by, self._searched()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
 
-    def _searched(self) -> tuple[SearchMade, ...]:
-        """The searches since the decision before, which are told once."""
+    def _searched(self, *, are_dropped: bool = False) -> tuple[SearchMade, ...]:
+        """The searches since the decision before, told once. None of them decided if they `are_dropped`."""
         searches, self._searches = tuple(self._searches), []
+        if are_dropped:
+            return tuple(msgspec.structs.replace(made, is_dropped=True) for made in searches)
         return searches
 
     def _set_aside(self) -> dict[str, str]:

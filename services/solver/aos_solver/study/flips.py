@@ -15,7 +15,7 @@ from aos_protocol.messages import BeliefSummary, Flip
 from aos_solver.child.engine import Engine
 from aos_solver.study.valuing import Margin, Valuing
 
-__all__ = ["doubtful_values", "flip_between", "flips_of"]
+__all__ = ["doubtful_values", "flip_between", "flips_of", "is_lost"]
 
 _PRECISION = 2e-4
 _PARTS = 4
@@ -23,6 +23,7 @@ _PARTS = 4
 _REFINEMENTS = 2
 _MOST_VALUES = 6
 _CERTAIN = 1e-9
+_TIE = 1e-9
 
 MarginAt = Callable[[float], Awaitable[Margin]]
 
@@ -77,6 +78,11 @@ async def flips_of(
     return tuple(sorted(found, key=lambda flip: abs((flip.low + flip.high) / 2 - flip.now)))
 
 
+def is_lost(margin: float) -> bool:
+    """Says whether the other action is better by an exact margin; rounding decides no tie."""
+    return margin < -_TIE
+
+
 async def flip_between(margin_at: MarginAt, now: float) -> tuple[float, float, bool] | None:
     """The two probabilities nearest to `now` between which the margin changes its sign, at both of which it
     was computed; None where it does not, as far as a few looks tell."""
@@ -87,8 +93,8 @@ async def flip_between(margin_at: MarginAt, now: float) -> tuple[float, float, b
         for part in range(1, _PARTS + 1):
             far = now + (end - now) * part / _PARTS
             value = (await margin_at(far)).value
-            if (value < 0) != (sign < 0):
-                brackets.append((abs(near - now), near, far, sign < 0))
+            if is_lost(value) != is_lost(sign):
+                brackets.append((abs(near - now), near, far, is_lost(sign)))
                 break
             near, sign = far, value
     if not brackets:
@@ -96,7 +102,7 @@ async def flip_between(margin_at: MarginAt, now: float) -> tuple[float, float, b
     _, near, far, is_negative = min(brackets)
     while abs(far - near) > _PRECISION:
         middle = (near + far) / 2
-        if ((await margin_at(middle)).value < 0) == is_negative:
+        if is_lost((await margin_at(middle)).value) == is_negative:
             near = middle
         else:
             far = middle

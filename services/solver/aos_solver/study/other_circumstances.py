@@ -52,6 +52,7 @@ async def _decided(
     said: tuple[str, ...],
 ) -> WhatIf:
     made = deciding_search(decision)
+    was_worth = await _values_before(replay, decision)
     was = replay.restriction_of(made) if made is not None else Restriction()
     within = _restricted(engine, query, was)
     said += await believe_all(engine, query.believe, cautious=within.cautious)
@@ -60,7 +61,6 @@ async def _decided(
         search = search.after_takeover()
     belief = await engine.summary()
     plan = await search.run(engine, decision.step, within)
-    was_worth = {value.action: value.q for value in _told(decision.actions, decision.planner)}
     actions = _told(plan.actions, plan.planner)
     best = next(value for value in actions if value.action == plan.best.action)
     return WhatIf(
@@ -77,6 +77,15 @@ async def _decided(
         plan.why,
         said,
     )
+
+
+async def _values_before(replay: ReplayedMission, decision: DecisionRecord) -> dict[str, float]:
+    """The values by which a decision was made, or that it would have been made by."""
+    actions, planner = decision.actions, decision.planner
+    if not actions:
+        plan = await replay.search_by(decision).run(replay.engine, decision.step)
+        actions, planner = plan.actions, plan.planner
+    return {value.action: value.q for value in _told(actions, planner)}
 
 
 def _told(actions: tuple[ActionValue, ...], planner: str) -> tuple[ActionValue, ...]:

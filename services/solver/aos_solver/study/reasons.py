@@ -41,6 +41,7 @@ class Reasons:
         """The explanation; SkillError AOS501 for an action that the model does not have."""
         begun_s = time.monotonic()
         decision, valuing = self._decision, self._valuing
+        planner = await valuing.begin(self._engine, decision)
         values = await self._values()
         if decision.action not in values:
             raise StudyError(f"{decision.action} has no value: the search did without it")
@@ -66,8 +67,8 @@ class Reasons:
             is_exact=valuing.is_exact,
             is_close=not valuing.is_exact and margin.is_close,
             simulations_to_tell=self._simulations_to_tell(margin),
-            horizon=decision.horizon,
-            planner=decision.planner,
+            horizon=valuing.horizon,
+            planner=planner,
             chosen_by=decision.chosen_by,
             belief=belief,
             expected=expected,
@@ -82,6 +83,8 @@ class Reasons:
         """The values that decided; exact ones are computed, since the record has those of missions that plan
         anew at each step."""
         if self._valuing.is_exact:
+            return dict(await self._valuing.values(self._engine, anywhere=True))
+        if deciding_search(self._decision) is None:
             return dict(await self._valuing.values(self._engine, anywhere=True))
         return {value.action: Value(value.q, value.stderr, value.n) for value in self._decision.actions}
 
@@ -179,7 +182,7 @@ class Reasons:
         index = [known.name for known in engine.description.actions].index(action)
         return await engine.reward_terms(
             index,
-            horizon=self._decision.horizon,
+            horizon=self._valuing.horizon,
             is_first=not self._valuing.is_exact,
             cautious=self._valuing.within.cautious,
         )

@@ -61,6 +61,15 @@ class Valuing:
         numbers = {action.name: n for n, action in enumerate(replay.engine.description.actions)}
         self.barred = {name for name, number in numbers.items() if number in self.within.barred}
 
+    async def begin(self, engine: Engine, decision: DecisionRecord) -> str:
+        """Finds the planner for a decision that nothing was searched for; returns whose values count."""
+        if deciding_search(decision) is not None:
+            return decision.planner
+        plan = await self._search.run(engine, self._step, self.within)
+        self.is_exact = plan.planner == "exact" and not self.within.without
+        self.horizon = plan.horizon
+        return plan.planner
+
     async def values(
         self, engine: Engine, *, share: float = 1.0, anywhere: bool = False
     ) -> Mapping[str, Value]:
