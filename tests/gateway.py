@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -135,7 +136,7 @@ def environment(folder: Path, cache: Path) -> dict[str, str]:
 def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
     """A gateway of the runs and deploy files in a folder."""
     process = subprocess.Popen(
-        [BIN / "aos", "serve", *(options or ("--port", "0"))],
+        [BIN / "aos", "serve", *(() if "--port" in options else ("--port", "0")), *options],
         cwd=folder,
         env=environment(folder, cache),
         stdout=subprocess.PIPE,
@@ -144,8 +145,9 @@ def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
     try:
         assert process.stdout is not None
         address = process.stdout.readline()
-        port, _, token = address.rpartition("#/?token=")
-        yield Gateway(int(port.rstrip("/").rpartition(":")[2]), token.strip(), process, folder)
+        found = re.match(r"http://[^:]+:(\d+)/#/\S*\?token=(\S+)", address)
+        assert found is not None, address
+        yield Gateway(int(found[1]), found[2], process, folder)
     finally:
         process.terminate()
         process.communicate(timeout=HANG_S)

@@ -157,6 +157,7 @@ CODES: dict[str, str] = {
     "AOS902": "nothing is there",
     "AOS903": "the token is needed",
     "AOS904": "a request from elsewhere",
+    "AOS905": "the run is over",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 

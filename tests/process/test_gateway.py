@@ -17,6 +17,8 @@ import pytest
 from gateway import Gateway, gateway, played, slow_system
 from processes import HANG_S
 
+from aos_deploy.export.run_bundle import write_bundle
+
 ERRAND = "deploy/bundles/errand"
 
 
@@ -84,6 +86,19 @@ def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(
     assert other["before"] == decided["action"] != other["action"]
     unknown = served.ask(f"{path}/why?instead=fly")
     assert (unknown.status, unknown.json["code"]) == (404, "AOS501")
+
+
+def test_a_run_that_somebody_has_sent_is_shown(
+    past: tuple[Gateway, str], tmp_path: Path, cache_dir: Path
+) -> None:
+    served, name = past
+    file = tmp_path / "sent.aosrun"
+    write_bundle([served.folder / "runs" / name], file)
+    with gateway(tmp_path, cache_dir, str(file)) as other:
+        (run,) = other.ask("/v1/runs").json["runs"]
+        assert (run["run"], run["ending"]) == (name, "goal")
+        path = f"/v1/missions/{name}/trace"
+        assert other.ask(path).json == served.ask(path).json
 
 
 def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path) -> None:
@@ -161,6 +176,17 @@ def test_what_cannot_be_answered_is_a_problem(
     assert answer.headers["content-type"] == "application/problem+json"
     assert (answer.status, answer.json["status"], answer.json["code"]) == (status, status, code)
     assert answer.json["type"] == f"urn:aos:{code}"
+
+
+def test_a_mission_that_is_over_is_neither_stopped_nor_steered(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    for answer in (
+        served.post(f"/v1/missions/{name}/stop"),
+        served.post(f"/v1/missions/{name}/steering", {"verb": "hold"}),
+        served.post(f"/v1/runs/{name}/missions"),
+    ):
+        assert (answer.status, answer.json["code"]) == (409, "AOS905")
+    assert served.ask(f"/v1/missions/{name}/documents?revision={2**40}").status == 400
 
 
 def test_strangers_are_refused(past: tuple[Gateway, str]) -> None:

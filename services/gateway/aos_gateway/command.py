@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.living_runs import RUNS
 from aos_protocol.errors import DeployError
 
@@ -34,6 +35,10 @@ Connect = Annotated[
     list[str] | None,
     typer.Option("--connect", metavar="ENDPOINT", help="A system elsewhere, with --robot"),
 ]
+Files = Annotated[
+    list[Path] | None,
+    typer.Argument(metavar="FILE", help="Runs that somebody has sent, from aos export --format bundle"),
+]
 Robots = Annotated[
     list[str] | None, typer.Option("--robot", help="The robot at the endpoint, in the same order")
 ]
@@ -45,6 +50,7 @@ def register(app: typer.Typer) -> None:
 
 
 def serve(
+    files: Files = None,
     listen: Listen = "127.0.0.1",
     port: Port = 7480,
     host: Hosts = None,
@@ -74,8 +80,11 @@ def serve(
     if listen != "localhost" and not _is_address(listen):
         raise typer.BadParameter("no address of this machine", param_hint="--listen")
 
+    sent = [run for file in files or () for run in opened_bundle(file)]
+
     def ready(address: str, token: str) -> None:
-        typer.echo(f"{address}#/?token={token}")
+        place = f"runs/{sent[0].name}" if len(sent) == 1 else ""
+        typer.echo(f"{address}#/{place}?token={token}")
         typer.echo("Whoever has this address may start and stop missions. Ctrl-C ends the gateway.")
 
     settings = Settings(
@@ -84,6 +93,7 @@ def serve(
         names=tuple(host or ()),
         is_private=private,
         runs=tuple(runs or [RUNS]),
+        sent=tuple(sent),
         projects=tuple(projects or [Path()]),
         remote=tuple(zip(endpoints, robots, strict=True)),
     )

@@ -51,7 +51,7 @@ class Documents(msgspec.Struct, frozen=True):
 class OfDocuments(msgspec.Struct, frozen=True):
     """The revision that is wanted; 0 is the newest."""
 
-    revision: Annotated[int, msgspec.Meta(ge=0)] = 0
+    revision: Annotated[int, msgspec.Meta(ge=0, le=2**31 - 1)] = 0
 
 
 async def bundles(gateway: Gateway, run: str) -> Catalogue:

@@ -15,6 +15,8 @@ from aos_protocol import __version__
 __all__ = ["openapi_document"]
 
 _REFERENCES = "#/components/schemas/{name}"
+_NAME = {"type": "string", "minLength": 1}
+_NUMBER = {"type": "integer", "minimum": 0}
 _PARAMETER = re.compile(r"\{(\w+)\}")
 
 
@@ -77,7 +79,7 @@ def _operation(one: Operation, schema_of: dict[Any, Any], components: dict[str, 
 
 def _path_parameters(path: str) -> list[dict[str, Any]]:
     return [
-        {"name": name, "in": "path", "required": True, "schema": {"type": "string"}}
+        {"name": name, "in": "path", "required": True, "schema": _NUMBER if name == "step" else _NAME}
         for name in _PARAMETER.findall(path)
     ]
 

@@ -52,7 +52,7 @@ _TRACE_RECORDS = 4000
 _LOG_BYTES = 200_000
 _PICTURE = re.compile(r"(?:step-?)?0*(\d+)\.(png|jpg)")
 
-Since = Annotated[int, msgspec.Meta(ge=0, description="The first sequence number")]
+Since = Annotated[int, msgspec.Meta(ge=0, le=2**53, description="The first sequence number")]
 Limit = Annotated[int, msgspec.Meta(ge=1, le=_PAGE, description="The most that are given")]
 
 

@@ -16,7 +16,7 @@ from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
-from aos_protocol.errors import AosError, BusError, DeployError, GatewayError
+from aos_protocol.errors import AosError, DeployError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionEntry, MissionState
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
@@ -83,10 +83,10 @@ class Run(ABC):
         """
 
     def client(self, user: str = WATCHER) -> AbstractAsyncContextManager[AosClient]:
-        """A client of the system, as its watcher or its operator; BusError AOS605 if it does not run."""
+        """A client of the system, as its watcher or its operator; GatewayError AOS905 if it does not run."""
         if not self.is_running:
-            raise BusError(
-                f"the run {self.name} is over", code="AOS605", hint="Start a system, or look at its records"
+            raise GatewayError(
+                f"the run {self.name} is over", code="AOS905", hint="Start a system, or look at its records"
             )
         return self._client(user)
 
@@ -228,9 +228,13 @@ class RemoteRun(Run):
 class RunShelf:
     """All runs by name. Folders in which a living run was found stay in view."""
 
-    def __init__(self, folders: Iterable[Path], remote: Iterable[RemoteRun] = ()) -> None:
+    def __init__(
+        self, folders: Iterable[Path], remote: Iterable[RemoteRun] = (), directories: Iterable[Path] = ()
+    ) -> None:
+        """The runs in the folders, those at endpoints, and those of single run directories."""
         self._folders = {folder.resolve(): None for folder in folders}
         self._remote = {run.name: run for run in remote}
+        self._directories = frozenset(path.resolve() for path in directories)
         self._kept: dict[Path, KeptRun] = {}
         self._entries: tuple[RunEntry, ...] = ()
         self._looked_s = -_FRESH_S
@@ -249,7 +253,7 @@ class RunShelf:
         """The runs, the newest first. Of two directories of one name the last by path is shown."""
         living = {run.path for run in living_runs()}
         self._folders |= {path.parent: None for path in living}
-        paths = set(living)
+        paths = living | self._directories
         for folder in self._folders:
             paths |= {record.parent for record in folder.glob("*/run.json") if not record.parent.is_symlink()}
         for gone in self._kept.keys() - paths:

@@ -29,13 +29,14 @@ _BACKLOG = 128
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True):
-    """The options of `aos serve`. `remote` are endpoints with the robot there."""
+    """The options of `aos serve`. `remote` are endpoints with their robots, `sent` are runs out of files."""
 
     host: str = "127.0.0.1"
     port: int = 7480
     names: tuple[str, ...] = ()
     is_private: bool = False
     runs: tuple[Path, ...] = (Path("runs"),)
+    sent: tuple[Path, ...] = ()
     projects: tuple[Path, ...] = ()
     remote: tuple[tuple[str, str], ...] = ()
 
@@ -56,7 +57,7 @@ async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -
         async with asyncio.TaskGroup() as tasks:
             watches = Watches(tasks)
             gateway = Gateway(
-                shelf=RunShelf(settings.runs, [RemoteRun(*each) for each in settings.remote]),
+                shelf=RunShelf(settings.runs, [RemoteRun(*each) for each in settings.remote], settings.sent),
                 watches=watches,
                 projects=tuple(path.resolve() for path in settings.projects),
                 folder=folder,
