@@ -120,6 +120,14 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path
         os.kill(note["pid"], signal.SIGTERM)
 
 
+def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(
+    tmp_path: Path, cache_dir: Path
+) -> None:
+    with gateway(tmp_path, cache_dir, "--runs", str(tmp_path / "others")) as served:
+        run = played(tmp_path, cache_dir, "--page")
+        assert served.ask(f"/v1/missions/{run.name}").json["state"]["ending"] == "goal"
+
+
 def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]) -> None:
     served, name = past
     found = served.ask(f"/v1/missions/{name}/documents").json
