@@ -61,7 +61,8 @@ class OptionLibrary {
     for (std::size_t o = 0; o < gains.size(); ++o) {
       if (gains.is_used(o)) used.push_back(std::move(options_[o]));
     }
-    options_ = std::move(used);
+    options_.clear();
+    add(used);
   }
 
  private:
@@ -70,10 +71,13 @@ class OptionLibrary {
   static constexpr std::size_t searched_rests = 8;  // states where the known options end
   static constexpr std::size_t longest = 40;        // options in a row
 
-  // Returns whether there were any.
+  // Adds options, and what is left of each after its first actions. Returns whether there were any.
   bool add(const std::vector<Option>& found) {
     for (const Option& option : found) {
-      if (options_.size() < max_options && std::ranges::find(options_, option) == options_.end()) options_.push_back(option);
+      for (auto first = option.begin(); first != option.end() && options_.size() < max_options; ++first) {
+        Option rest(first, option.end());
+        if (std::ranges::find(options_, rest) == options_.end()) options_.push_back(std::move(rest));
+      }
     }
     return !found.empty();
   }

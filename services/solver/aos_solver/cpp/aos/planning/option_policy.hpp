@@ -29,6 +29,7 @@
 #include "aos/planning/option_gains.hpp"
 #include "aos/planning/option_library.hpp"
 #include "aos/planning/option_search.hpp"
+#include "aos/planning/repeated_observation.hpp"
 #include "aos/planning/sampled_belief.hpp"
 #include "aos/planning/step_cost.hpp"
 #include "aos/planning/step_reports.hpp"
@@ -210,11 +211,12 @@ class OptionPolicy {
     for (const Test& test : tests_) {
       if (tried[static_cast<std::size_t>(Model::skill_of(test.action))]++ >= tried_tests) continue;
       const std::vector<StepReports>& reports = reports_[static_cast<std::size_t>(test.action)];
+      const RepeatedObservation observation{reports};
       double paid = 0;
       double discount = 1;
       for (int repeats = 1, done = 0; repeats <= most_repeats; repeats *= 2) {
         for (; done < repeats; ++done, discount *= Model::discount) paid += discount * test.reward;
-        const double left = regret_after(random, [&](std::size_t k, StateWeights& weights) {
+        const double left = regret_after(observation, repeats, random, [&](std::size_t k, StateWeights& weights) {
           for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
         });
         candidates_.push_back({test.action, paid + discount * (value_seen_ - share_left_ * left), "what can be observed"});
@@ -222,10 +224,15 @@ class OptionPolicy {
     }
   }
 
-  // The mean regret after `see(k, weights)`, which draws from state k what is observed.
+  // The mean regret after an observation that is made so many times. Where these are too many to list, `see(k, weights)`
+  // draws from state k what is observed.
   template <class See>
-  double regret_after(Sampler& random, See&& see) {
+  double regret_after(const RepeatedObservation& observation, int times, Sampler& random, See&& see) {
     double sum = 0;
+    if (observation.is_listed(times)) {
+      observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) { sum += probability * regret_of(weights); });
+      return sum;
+    }
     draw_states(belief_.weights(), observations, random, [&](std::size_t k) {
       StateWeights weights = belief_.weights();
       see(k, weights);
@@ -281,7 +288,8 @@ class OptionPolicy {
     double share = 0;
     for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
     if (share < 0.5) return;
-    const double left = regret_after(random, [&](std::size_t k, StateWeights& weights) {
+    const RepeatedObservation last{share < 1 - 1e-9 || !tell_nothing(reports) ? std::vector<StepReports>{} : reports.back()};
+    const double left = regret_after(last, 1, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
       if (weights[k] <= 0) return;
       for (const auto& of_step : reports) observe(of_step, of_step[k].drawn(random), weights);
@@ -290,6 +298,11 @@ class OptionPolicy {
     const double seen = share * (value_seen_ + gain_of(now, random));
     const double stake = value_seen_ > 0 ? std::max(seen / value_seen_, 0.0) : 1;
     candidates_.push_back({way.front(), earned + discount * (seen - share_left_ * stake * left), "what can be observed elsewhere"});
+  }
+
+  // Whether nothing is observed on the way but at its last step.
+  static bool tell_nothing(const std::vector<std::vector<StepReports>>& reports) {
+    return std::all_of(reports.begin(), reports.end() - 1, [](const auto& of_step) { return RepeatedObservation{of_step}.tells_nothing(); });
   }
 
   // How much more the next states are worth than those before, if they are seen.
