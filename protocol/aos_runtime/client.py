@@ -245,13 +245,18 @@ class AosClient(SteeringQuestions):
                 yield event
 
     async def follow(
-        self, *, away_s: float | None = SOLVER_AWAY_S, stays: bool = False
+        self,
+        *,
+        away_s: float | None = SOLVER_AWAY_S,
+        begins_s: float | None = None,
+        stays: bool = False,
     ) -> AsyncGenerator[DecisionRecord | MissionState | BundleReport, None]:
         """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
         bundles.
 
         The stream goes on with a solver that is started again, and with `stays` with the missions that
-        follow. It ends when the solver was away for `away_s`, or never where that is None.
+        follow. It ends when the solver was away for `away_s`, or has not come within `begins_s`; never where
+        these are None.
         """
         keys = self.keys
         feed = DecisionFeed()
@@ -261,7 +266,7 @@ class AosClient(SteeringQuestions):
             self.bus.listen(keys.bundle_report, BundleReport),
             self.bus.presence(keys.live("solver")),
         )
-        may_wait_s = None
+        may_wait_s = begins_s
         async with stream:
             while (event := await _next(stream, may_wait_s)) is not None:
                 if isinstance(event, bool):

@@ -163,6 +163,10 @@ async def test_following_ends_when_the_solver_goes(endpoint: str, client: AosCli
     assert [decision async for decision in following] == []
 
 
+async def test_who_comes_when_the_solver_has_gone_waits_as_long_as_was_said(client: AosClient) -> None:
+    assert [event async for event in client.follow(begins_s=0.1)] == []
+
+
 async def test_states_come_between_the_decisions(client: AosClient, solver: Storyteller) -> None:
     await solver.appear()
     solver.decide(is_lost=True)

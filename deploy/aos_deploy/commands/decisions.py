@@ -29,6 +29,10 @@ def register(app: typer.Typer) -> None:
     app.command(epilog="Example: aos decisions --json | jq .action")(decisions)
 
 
+_SOLVER_S = 15.0
+"""The solver may have gone since its run was found."""
+
+
 @on_system
 def decisions(
     system: System,
@@ -45,7 +49,11 @@ def decisions(
     While the mission runs the decisions come from the bus, afterwards from the run directory's journal.
     """
 
+    shown: set[tuple[str, int]] = set()
+
     def show(event: DecisionRecord | MissionState) -> None:
+        if isinstance(event, DecisionRecord):
+            shown.add((event.mission, event.sequence))
         if as_json:
             if isinstance(event, DecisionRecord):
                 typer.echo(msgspec.json.encode(event))
@@ -60,7 +68,12 @@ def decisions(
                 show(event)
             return
         system = System(run=directory.path)
-    system.do(lambda aos: _stream(aos, show, is_following=follow), user=WATCHER)
+    has_ended = system.do(lambda aos: _stream(aos, show, is_following=follow), user=WATCHER)
+    if follow and not has_ended and not system.is_at_endpoint:
+        # The system stopped meanwhile, and took the end with it.
+        for event in _journaled(directory, newest):
+            if isinstance(event, MissionState) or (event.mission, event.sequence) not in shown:
+                show(event)
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:
@@ -85,11 +98,16 @@ def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord
                 yield event
 
 
-async def _stream(aos: AosClient, show: Show, *, is_following: bool) -> None:
+async def _stream(aos: AosClient, show: Show, *, is_following: bool) -> bool:
+    """Shows decisions as they come; returns whether the mission's end was among them."""
     if not is_following:
         async for record in aos.history():
             show(record)
-        return
-    async for event in aos.follow():
-        if isinstance(event, DecisionRecord) or (isinstance(event, MissionState) and event.phase == "ended"):
+        return False
+    async for event in aos.follow(begins_s=_SOLVER_S):
+        if isinstance(event, DecisionRecord):
             show(event)
+        elif isinstance(event, MissionState) and event.phase == "ended":
+            show(event)
+            return True
+    return False
