@@ -41,7 +41,7 @@ from aos_runtime.guard import NOT_STARTED
 from aos_runtime.lifecycle import ROUTER_S, STORAGE_STATUS, ServiceSettings
 from aos_runtime.subscription import merged
 
-__all__ = ["ROUTER", "Supervisor", "supervised"]
+__all__ = ["ROUTER", "STARTED_AGAIN", "Supervisor", "supervised"]
 
 STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
 """The consequences of a process that ends by itself."""

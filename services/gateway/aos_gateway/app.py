@@ -14,6 +14,7 @@ from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from aos_gateway.access import COOKIE, Access
+from aos_gateway.exposition import EXPOSITION
 from aos_gateway.openapi import openapi_document
 from aos_gateway.operations import JSON, Content, Operation, response_of, route_of
 from aos_gateway.page import page_routes
@@ -30,6 +31,9 @@ _HEADERS = {
     "x-content-type-options": "nosniff",
 }
 
+_METRICS = "/metrics"
+"""The place at which Prometheus looks."""
+
 
 def make_app(gateway: Gateway, access: Access) -> ASGIApp:
     """The application. Every request passes `access`."""
@@ -41,6 +45,8 @@ def make_app(gateway: Gateway, access: Access) -> ASGIApp:
 
     own = Operation(method="GET", path="/v1/openapi.json", do=openapi, gives=Content)
     routes = [route_of(one, gateway) for one in (own, *OPERATIONS)]
+    if gateway.metrics is not None:
+        routes.append(route_of(Operation(method="GET", path=_METRICS, do=_metrics, gives=Content), gateway))
     session = Route("/v1/session", _session_of(access), methods=["POST"])
     app = Starlette(
         routes=[session, *routes, *page_routes()],
@@ -72,13 +78,19 @@ class _Guarded:
                 ]
             await send(message)
 
-        is_of_page = not scope["path"].startswith("/v1")
+        is_of_page = not scope["path"].startswith(("/v1", _METRICS))
         try:
             self._access.check(scope["method"], request.headers, request.cookies, is_open=is_of_page)
         except AosError as error:
             await response_of(error)(scope, receive, send_with_headers)
             return
         await self._app(scope, receive, send_with_headers)
+
+
+async def _metrics(gateway: Gateway) -> Content:
+    """The metrics of missions, for Prometheus."""
+    assert gateway.metrics is not None
+    return Content(await gateway.metrics.text(), EXPOSITION)
 
 
 def _session_of(access: Access) -> Callable[[Request], Awaitable[Response]]:

@@ -35,6 +35,7 @@ Connect = Annotated[
     list[str] | None,
     typer.Option("--connect", metavar="ENDPOINT", help="A system elsewhere, with --robot"),
 ]
+Metrics = Annotated[bool, typer.Option("--metrics", help="Also serve metrics for Prometheus, at /metrics")]
 Files = Annotated[
     list[Path] | None,
     typer.Argument(metavar="FILE", help="Runs that somebody has sent, from aos export --format bundle"),
@@ -59,6 +60,7 @@ def serve(
     projects: Projects = None,
     connect: Connect = None,
     robot: Robots = None,
+    metrics: Metrics = False,
 ) -> None:
     """Show runs, living and past, on a page and over HTTP.
 
@@ -96,6 +98,7 @@ def serve(
         sent=tuple(sent),
         projects=tuple(projects or [Path()]),
         remote=tuple(zip(endpoints, robots, strict=True)),
+        has_metrics=metrics,
     )
     try:
         asyncio.run(serve_gateway(settings, ready))

@@ -16,6 +16,7 @@ from aos_deploy.page_address import GatewayNote, gateway_folder
 from aos_gateway.access import access_of, kept_token
 from aos_gateway.app import make_app
 from aos_gateway.feed import Watches
+from aos_gateway.metrics import Metrics
 from aos_gateway.runs import RemoteRun, RunShelf
 from aos_gateway.shared import Gateway
 from aos_gateway.trace import Traces
@@ -39,6 +40,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     sent: tuple[Path, ...] = ()
     projects: tuple[Path, ...] = ()
     remote: tuple[tuple[str, str], ...] = ()
+    has_metrics: bool = False
 
 
 async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -> None:
@@ -56,14 +58,16 @@ async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -
         access = access_of(settings.host, settings.names, token, is_private=settings.is_private)
         async with asyncio.TaskGroup() as tasks:
             watches = Watches(tasks)
+            shelf = RunShelf(settings.runs, [RemoteRun(*each) for each in settings.remote], settings.sent)
             gateway = Gateway(
-                shelf=RunShelf(settings.runs, [RemoteRun(*each) for each in settings.remote], settings.sent),
+                shelf=shelf,
                 watches=watches,
                 projects=tuple(path.resolve() for path in settings.projects),
                 folder=folder,
                 runs=settings.runs[0].resolve(),
                 studying=asyncio.Semaphore(1),
                 traces=Traces(),
+                metrics=await asyncio.to_thread(Metrics, shelf) if settings.has_metrics else None,
             )
             config = uvicorn.Config(
                 make_app(gateway, access),

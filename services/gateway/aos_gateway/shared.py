@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from aos_gateway.feed import Watches
+from aos_gateway.metrics import Metrics
 from aos_gateway.runs import RunShelf
 from aos_gateway.trace import Traces
 from aos_language.reading.files import MAX_BUNDLE_BYTES
@@ -18,7 +19,8 @@ __all__ = ["Gateway"]
 class Gateway(msgspec.Struct, frozen=True, kw_only=True):
     """The runs, who watches them, and the folders: of `projects` to start, and of the gateway's own files.
 
-    Studies of missions that are over take turns (`studying`): each has engines of its own.
+    Without `metrics` nobody can read any. Studies of missions that are over take turns (`studying`): each has
+    engines of its own.
     """
 
     shelf: RunShelf
@@ -28,4 +30,5 @@ class Gateway(msgspec.Struct, frozen=True, kw_only=True):
     runs: Path
     studying: asyncio.Semaphore
     traces: Traces
+    metrics: Metrics | None = None
     max_body_bytes: int = 2 * MAX_BUNDLE_BYTES

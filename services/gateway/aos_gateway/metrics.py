@@ -1,0 +1,160 @@
+"""Metrics of missions, for Prometheus: counted out of their records whenever somebody asks.
+
+Sums begin with 0 when the gateway begins, and missions that had ended before are in none. A mission that ran
+at that moment is counted from its first step. Nothing is read while nobody asks; what a mission has
+recorded between two scrapes is counted with the second, so that none is lost.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections import Counter as Multiset
+
+import msgspec
+
+from aos_deploy.supervisor import STARTED_AGAIN
+from aos_gateway.exposition import exposition
+from aos_gateway.metric_families import Families
+from aos_gateway.runs import KeptRun, Run, RunEntry, RunShelf
+from aos_protocol.errors import AosError
+from aos_protocol.messages import MissionEntry, MissionState
+from aos_runtime.journal import Journal
+from aos_solver.mission.logbook import JOURNAL
+
+__all__ = ["Metrics"]
+
+_log = logging.getLogger("aos.gateway")
+
+
+class _Mission:
+    """The place up to which a mission is counted."""
+
+    def __init__(self) -> None:
+        self.next_sequence = 0
+        self.next_row = 0
+        self.goal_probability: float | None = None
+        self.is_holding = False
+        self.has_ended = False
+
+
+class _Counted:
+    """The place up to which a run is counted."""
+
+    def __init__(self) -> None:
+        self.missions: dict[str, _Mission] = {}
+        self.engine_starts: dict[str, int] = {}
+        self.pids: dict[str, int] = {}
+        self.restarts: Multiset[str] = Multiset()
+        self.is_over = False
+
+
+class Metrics:
+    """The metrics of the runs on a shelf."""
+
+    def __init__(self, shelf: RunShelf) -> None:
+        self._shelf = shelf
+        self._families = Families()
+        self._counted: dict[str, _Counted] = {}
+        self._begun_ns = time.time_ns()
+        self._asked = asyncio.Lock()
+        for name, run in shelf.runs().items():
+            if not run.is_running:
+                self._of(name).is_over = True
+
+    async def text(self) -> bytes:
+        """The metrics now, in Prometheus' text format."""
+        async with self._asked:
+            runs = await asyncio.to_thread(self._shelf.runs)
+            for name, run in runs.items():
+                counted = self._of(name)
+                if not counted.is_over:
+                    await self._count(run, counted)
+            self._show_living(runs)
+            return exposition(self._families.all)
+
+    def _of(self, run: str) -> _Counted:
+        return self._counted.setdefault(run, _Counted())
+
+    async def _count(self, run: Run, counted: _Counted) -> None:
+        try:
+            # First whether it is over: whatever is read after that is all that there will be.
+            entry = await run.entry()
+            known = {each.mission: each for each in await run.missions()}
+            for mission in entry.missions:
+                place = counted.missions.setdefault(mission, _Mission())
+                if not place.has_ended:
+                    await self._count_mission(run, entry, known.get(mission), mission)
+            if isinstance(run, KeptRun):
+                await asyncio.to_thread(self._count_restarts, run, counted)
+            counted.is_over = not entry.is_running and isinstance(run, KeptRun)
+        except AosError as error:
+            _log.warning("the metrics of %s are not whole: %s", run.name, error)
+            self._families.unreadable.add(robot=run.robot)
+            counted.is_over = not run.is_running
+
+    async def _count_mission(
+        self, run: Run, entry: RunEntry, known: MissionEntry | None, mission: str
+    ) -> None:
+        counted = self._of(run.name)
+        place = counted.missions[mission]
+        if known is not None and 0 < known.ended_ns < self._begun_ns:
+            place.has_ended = True
+            return
+        has_more = True
+        while has_more:
+            page = await run.page(mission, place.next_sequence)
+            for record in page.records:
+                self._families.take(run.robot, record, counted.engine_starts)
+                place.next_sequence = record.sequence + 1
+                place.goal_probability = record.belief.goal_probability
+            has_more = page.has_more
+        if isinstance(run, KeptRun):
+            await asyncio.to_thread(self._count_holds, run, mission, place)
+        ending = known.ending if known is not None and known.ended_ns else ""
+        if not ending and not entry.is_running and entry.ending not in ("stopped", "unreachable"):
+            ending = entry.ending  # The run has ended otherwise than by its mission.
+        if ending:
+            place.has_ended = True
+            self._families.missions.add(robot=run.robot, ending=ending)
+
+    def _count_holds(self, run: KeptRun, mission: str, place: _Mission) -> None:
+        journal = run.folder(mission) / JOURNAL
+        if not journal.exists():
+            return
+        with Journal.read(journal) as rows:
+            for row in rows.walk("mission", place.next_row):
+                place.next_row = row.seq + 1
+                state = msgspec.json.decode(row.payload, type=MissionState)
+                is_holding = state.phase == "holding"
+                if is_holding and not place.is_holding:
+                    by = "operator" if state.held_by else "skill"
+                    self._families.holds.add(robot=run.robot, held_for=by)
+                place.is_holding = is_holding
+
+    def _count_restarts(self, run: KeptRun, counted: _Counted) -> None:
+        """Counts new process ids while a run goes on; at its end the summary has all restarts."""
+        pids = run.directory.read_record().pids
+        summary = run.directory.read_summary()
+        before = Multiset(counted.restarts)
+        counted.restarts.update(name for name, pid in pids.items() if counted.pids.get(name, pid) != pid)
+        counted.pids |= pids
+        if summary is not None:
+            counted.restarts |= Multiset(
+                end.name for end in summary.process_ends if end.then == STARTED_AGAIN
+            )
+        for service, number in (counted.restarts - before).items():
+            self._families.service_restarts.add(number, robot=run.robot, service=service)
+
+    def _show_living(self, runs: dict[str, Run]) -> None:
+        families = self._families
+        families.forget_gauges()
+        for name, run in runs.items():
+            for mission, place in self._of(name).missions.items():
+                if place.has_ended or self._of(name).is_over:
+                    continue
+                families.running.add(robot=run.robot)
+                families.holding.add(float(place.is_holding), robot=run.robot)
+                if place.goal_probability is not None:
+                    families.goal.set(place.goal_probability, robot=run.robot, mission=mission)

@@ -1,0 +1,64 @@
+"""The gateway's metrics of a mission that runs, for Prometheus."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from pathlib import Path
+
+from gateway import Gateway, gateway, played, slow_system
+
+
+def samples(served: Gateway) -> dict[str, float]:
+    """The samples now, by name and labels."""
+    answer = served.ask("/metrics", has_token=False)
+    assert (answer.status, answer.headers["content-type"]) == (
+        200,
+        "text/plain; version=0.0.4; charset=utf-8",
+    )
+    lines = (line.rpartition(" ") for line in answer.body.decode().splitlines() if line[0] != "#")
+    return {name: float(value) for name, _, value in lines}
+
+
+def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cache_dir: Path) -> None:
+    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir, "--metrics") as served:
+        begun = samples(served)
+        assert begun['aos_missions_running{robot="tiger"}'] == 1
+        assert begun['aos_decision_seconds_count{robot="tiger",chosen_by="planner"}'] == 1
+        assert begun['aos_simulations_total{robot="tiger"}'] == 100
+        assert 'aos_steps_total{robot="tiger"}' not in begun
+        with served.events(f"/v1/events?mission={run.name}") as events:
+            served.post(f"/v1/missions/{run.name}/steering", {"verb": "hold", "by": "ada"})
+            (tmp_path / "turns").write_bytes(b".")
+            next(data for _, kind, data in events if kind == "state" and data["phase"] == "holding")
+            held = samples(served)
+            assert held['aos_holds_total{robot="tiger",held_for="operator"}'] == 1
+            assert held['aos_missions_holding{robot="tiger"}'] == 1
+            assert (
+                held['aos_steps_total{robot="tiger"}'] == held['aos_surprise_nats_count{robot="tiger"}'] == 1
+            )
+            assert held[f'aos_goal_probability{{robot="tiger",mission="{run.name}"}}'] < 1
+            os.kill(json.loads((run / "run.json").read_text())["pids"]["solver"], signal.SIGKILL)
+            next(data for _, kind, data in events if kind == "state" and data.get("epoch") == 2)
+        again = samples(served)
+        assert again['aos_service_restarts_total{robot="tiger",service="solver"}'] == 1
+        assert again['aos_holds_total{robot="tiger",held_for="operator"}'] == 1
+        served.post(f"/v1/missions/{run.name}/stop")
+        over = samples(served)
+        assert over['aos_missions_total{robot="tiger",ending="cancelled"}'] == 1
+        assert 'aos_missions_running{robot="tiger"}' not in over
+
+
+def test_metrics_are_off_count_nothing_of_before_and_are_as_private_as_the_rest(
+    tmp_path: Path, cache_dir: Path
+) -> None:
+    played(tmp_path, cache_dir)
+    with gateway(tmp_path, cache_dir) as served:
+        assert served.ask("/metrics").status == 404
+    with gateway(tmp_path, cache_dir, "--metrics", "--private") as served:
+        assert served.ask("/metrics", has_token=False).status == 401
+        assert served.ask("/metrics").body == b""
+        played(tmp_path, cache_dir)
+        text = served.ask("/metrics").body.decode()
+    assert 'aos_missions_total{robot="errand",ending="goal"} 1\n' in text
