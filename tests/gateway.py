@@ -13,9 +13,10 @@ from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from mappings import mapping_text
 from processes import HANG_S
 
-__all__ = ["Answer", "Gateway", "environment", "gateway", "played", "slow_system"]
+__all__ = ["Answer", "Gateway", "environment", "gateway", "played", "slow_system", "worn_system"]
 
 BIN = Path(sys.executable).parent
 ROOT = Path(__file__).resolve().parents[1]
@@ -53,6 +54,52 @@ async def open_door(call, door):
 """A robot that hears both sides by turns, and waits for somebody to write into a pipe: a mission that goes
 on as a test wants costs nothing.
 """
+WORN = {
+    "worn.yaml": """\
+aos: 1
+robot: lamp
+bundles: [lamp]
+stay: true
+mission: {goal_probability: 1.0, step_limit: 8, set: {room: hall}}
+solver: {simulations: 50}
+bind: {/press: {python: robot.py:press}}
+runs: runs
+""",
+    "robot.py": """\
+async def press(call, room):
+    return {"answer": "stuck"}
+""",
+    "lamp/lamp.ef": """\
+project: lamp
+horizon: 3
+discount: 0.9
+
+define_type: Room
+enum_members: hall, lab
+
+mission_parameter: Room room
+default_value: hall
+
+state_variable: bool is_lit
+
+reward_code:
+if (state.is_lit) __reward = 10;
+""",
+    "lamp/press.sd": """\
+project: lamp
+parameter: Room room
+
+available_parameters_code:
+__possibleParameters.push_back(std::make_tuple(state.room));
+
+dynamic_model:
+__moduleResponse = AOS.Bernoulli(0.9) ? pressed : stuck;
+state__.is_lit = __moduleResponse == pressed;
+__reward = -1;
+""",
+    "lamp/press.am": mapping_text("pressed", "stuck", project="lamp", skill="press", parameters=("room",)),
+}
+"""A switch that its document holds to work in nine of ten uses, and that never does."""
 
 
 class Answer(NamedTuple):
@@ -177,8 +224,27 @@ def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
         (folder / "tiger" / path.name).write_text(text)
     (folder / "tiger.yaml").write_text(SLOW)
     (folder / "robot.py").write_text(SLOW_ROBOT)
+    with _up(folder, cache, "tiger.yaml", *options) as lines:
+        next(line for line in lines if line["event"] == "decision")
+        yield (folder / "runs/latest").resolve()
+
+
+@contextmanager
+def worn_system(folder: Path, cache: Path) -> Iterator[Path]:
+    """The directory of a system that stays, whose first mission has ended with an alarm of its only skill."""
+    for name, text in WORN.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    with _up(folder, cache, "worn.yaml") as lines:
+        next(line for line in lines if line.get("phase") == "ended")
+        yield (folder / "runs/latest").resolve()
+
+
+@contextmanager
+def _up(folder: Path, cache: Path, deploy_file: str, *options: str) -> Iterator[Iterator[dict[str, Any]]]:
+    """The events of a system, which ends with the block."""
     process = subprocess.Popen(
-        [BIN / "aos-up", "tiger.yaml", "--json", *options],
+        [BIN / "aos-up", deploy_file, "--json", *options],
         cwd=folder,
         env=environment(folder, cache),
         stdout=subprocess.PIPE,
@@ -186,10 +252,7 @@ def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
     )
     try:
         assert process.stdout is not None
-        for line in process.stdout:
-            if json.loads(line)["event"] == "decision":
-                break
-        yield (folder / "runs/latest").resolve()
+        yield map(json.loads, process.stdout)
     finally:
         process.terminate()
         process.communicate(timeout=HANG_S)

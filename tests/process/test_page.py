@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from gateway import Gateway, gateway, played, slow_system
+from gateway import Gateway, gateway, played, slow_system, worn_system
 from long_run import write_long_run
 from page_sources import installed_sources
 from playwright.sync_api import Browser, Page, expect, sync_playwright
@@ -50,6 +50,14 @@ def kept(page: Page, name: str, pictures: Path) -> None:
     page.screenshot(path=pictures / f"{name}.png", full_page=True)
 
 
+def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
+    """The findings of the accessibility checker: the rule, and the elements. A screen may not be too wide."""
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    page.evaluate((installed_sources(ROOT, cache_dir) / AXE).read_text())
+    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
+    return [(each["id"], [node["target"] for node in each["nodes"]]) for each in found]
+
+
 @pytest.fixture(scope="module")
 def pictures(cache_dir: Path) -> Path:
     return cache_dir / "page-pictures"
@@ -62,6 +70,13 @@ def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[
     run = played(folder, cache_dir)
     with gateway(folder, cache_dir) as served:
         yield served, run.name
+
+
+@pytest.fixture
+def worn(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+    """A gateway, and a mission of a system that stays, which has ended with an alarm."""
+    with worn_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+        yield served, f"{run.name}-1"
 
 
 @pytest.fixture
@@ -139,13 +154,33 @@ def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gatewa
     expect(page.locator(".phase, .problem").first).to_be_visible()
 
 
+def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
+    browser: Browser, worn: tuple[Gateway, str], pictures: Path, cache_dir: Path
+) -> None:
+    served, name = worn
+    rows = served.ask(f"/v1/missions/{name}/trace").json["steps"]
+    first = next(row for row in rows if "drift" in row)
+    alarm = first["drift"][0]
+    for width, theme in ((390, "dark"), (1440, "light")):
+        page = opened(browser, served, width, theme)
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step={first['step']}")
+        page.get_by_role("link", name="The model of press does not hold").click()
+        cells = page.locator(".alarms tbody tr").first.locator("td")
+        told = [f"{alarm['modelled']:.2f}", f"{alarm['seen']:.2f}", str(alarm["uses"]), str(first["step"])]
+        expect(cells).to_have_text(["press", alarm["response"], *told])
+        kept(page, f"alarm-{width}-{theme}", pictures)
+        assert violations(page, cache_dir) == []
+        page.keyboard.press("ArrowLeft")
+        expect(page.locator(".alarm")).to_have_count(0)
+        page.close()
+
+
 @pytest.mark.parametrize(("width", "theme"), [(390, "dark"), (1440, "light")])
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
     browser: Browser, past: tuple[Gateway, str], width: int, theme: str, pictures: Path, cache_dir: Path
 ) -> None:
     served, name = past
     action = served.ask(f"/v1/missions/{name}/trace").json["steps"][1]["action"]
-    axe = (installed_sources(ROOT, cache_dir) / AXE).read_text()
     page = opened(browser, served, width, theme)
     for view in ("list", *VIEWS):
         if view != "list":
@@ -155,10 +190,7 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
         expect(page.locator("main .card").last).to_be_visible()
         expect(page.locator("[aria-busy=true]")).to_have_count(0)
         kept(page, f"{width}-{theme}{view.replace('/', '-')}", pictures)
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
-        page.evaluate(axe)
-        found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
-        assert [(each["id"], [node["target"] for node in each["nodes"]]) for each in found] == [], view
+        assert violations(page, cache_dir) == [], view
     page.close()
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord
+from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, ModelDrift
 
 __all__ = ["Endings", "Step", "Steps", "Trace", "Traces", "steps_of"]
 
@@ -37,7 +37,8 @@ class Step(msgspec.Struct, omit_defaults=True):
     is the best of the others, `margin` is how much better the chosen one is. `predicted` are the responses
     with their probabilities, `seen` is the response, `expected` its probability. `belief` are the variables
     whose distribution is another one than before this decision, `after` those that the outcome has changed:
-    value to probability, with `…` for all values that are not listed.
+    value to probability, with `…` for all values that are not listed. `drift` are the alarms that stand of
+    the skill, as in DecisionRecord.
     """
 
     step: int
@@ -73,6 +74,7 @@ class Step(msgspec.Struct, omit_defaults=True):
     ended_ms: int = 0
     endings_after: Endings | None = None
     after: dict[str, dict[str, float]] = {}
+    drift: tuple[ModelDrift, ...] = ()
 
 
 class Trace(msgspec.Struct, frozen=True):
@@ -145,7 +147,7 @@ class Steps:
         row.status, row.seen = outcome.status, outcome.response
         row.expected = row.predicted.get(outcome.response) if outcome.response else None
         row.surprise, row.impossible = _short(record.surprise) or 0.0, record.is_impossible
-        row.stopped_by, row.remark = outcome.stopped_by, record.remark
+        row.stopped_by, row.remark, row.drift = outcome.stopped_by, record.remark, record.drift
         row.fault = outcome.fault.message if outcome.fault is not None else ""
         row.started_ms, row.ended_ms = outcome.started_ns // 1_000_000, outcome.ended_ns // 1_000_000
         row.endings_after, row.after = _endings(record.belief), self._changed(record.belief)

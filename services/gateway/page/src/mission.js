@@ -1,7 +1,7 @@
 // One mission: where it is, what was decided, and the views below.
 import { Card, Findings, html, useEffect } from "./ui.js";
 import { addressOf, route, VIEWS } from "./route.js";
-import { at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
+import { alarms, at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
 import { chance, ending, phase } from "./format.js";
 import { Controls, LeftOut } from "./steering.js";
 import { Sentence } from "./sentence.js";
@@ -64,6 +64,7 @@ function Head() {
         ${!isLive.value && html`<span class="past">showing step ${at.value?.step}</span>`}
       </p>
       <p class="remark">${now?.remark ?? ""}</p>
+      <${Alarm} />
     </div>
     <div class="goal" title="How probable the goal is, as the belief has it">
       <span class="goal-number">${chance(goal)}</span><span class="goal-word">goal</span>
@@ -72,6 +73,13 @@ function Head() {
     </div>
     <${Controls} />
   </header>`;
+}
+
+function Alarm() {
+  const skills = [...new Set(alarms.value.map((each) => each.skill))];
+  if (!skills.length) return null;
+  const { name, step } = route.value;
+  return html`<p><a class="alarm" href=${addressOf(name, "model", step)}><svg width="11" height="11" viewBox="0 0 10 10" aria-hidden="true"><path d="M5 0 l5 9.5 h-10z" /></svg>The model of ${skills.join(", ")} does not hold</a></p>`;
 }
 
 function Overview() {

@@ -1,10 +1,11 @@
 // The model against what was seen: per skill and response, and which action was chosen at which belief.
 import { Card, html, useState, useWidth } from "./ui.js";
-import { briefAction, chance, percent } from "./format.js";
-import { at, points, selectStep, steps } from "./store.js";
+import { briefAction, chance, percent, plain } from "./format.js";
+import { alarms, at, points, selectStep, steps } from "./store.js";
 import { summarised } from "./ribbons.js";
 
 export const Model = () => html`<div class="columns even">
+  <${Alarms} />
   <${Card} id="expected" title="Expected against seen" note="The ring is how often the model expected a response, the dot how often it came; the bar holds the true frequency with 95 %.">
     <${Expected} />
   <//>
@@ -12,6 +13,22 @@ export const Model = () => html`<div class="columns even">
     <${Strip} />
   <//>
 </div>`;
+
+// What the sequential tests have found, as the records tell it.
+function Alarms() {
+  const all = alarms.value;
+  if (!all.length) return null;
+  return html`<${Card} id="alarms" title="The model does not hold" className="alarms" note="Where the model is right, the probability that any such alarm ever comes is 1 % at most.">
+    <div class="scroll" tabindex="0" role="region" aria-label="Table of alarms"><table>
+      <thead><tr><th>Skill</th><th>Response</th><th class="num">Modelled</th><th class="num">Seen</th><th class="num">Uses</th><th class="num" title="The step at which it began">Since</th></tr></thead>
+      <tbody>${all.map((each) => html`<tr onClick=${() => selectStep(each.since)}>
+        <td class="action">${each.skill}</td><td class="response">${each.response}</td>
+        <td class="num">${plain(each.modelled)}</td><td class="num mark">${plain(each.seen)}</td><td class="num">${each.uses}</td>
+        <td class="num"><button class="row-step" aria-label=${`Step ${each.since}`}>${each.since}</button></td>
+      </tr>`)}</tbody>
+    </table></div>
+  <//>`;
+}
 
 function counted() {
   const skills = new Map();

@@ -35,6 +35,18 @@ export const record = computed(() => {
   recordsChanged.value;
   return at.value ? records.get(at.value.step) ?? null : null;
 });
+// The alarms that stand at the step that is shown, with the step at which each began. A new model begins anew.
+export const alarms = computed(() => {
+  const standing = new Map();
+  for (const step of steps.value.slice(0, index.value + 1)) {
+    if (step.adopted) standing.clear();
+    for (const each of step.drift ?? []) {
+      const name = `${each.skill} ${each.response}`;
+      standing.set(name, { ...each, since: standing.get(name)?.since ?? step.step });
+    }
+  }
+  return [...standing.values()];
+});
 
 let source = null;
 let waiting = [];
