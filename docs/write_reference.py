@@ -95,6 +95,28 @@ def key_table() -> str:
     return "\n".join(lines) + "\n"
 
 
+# --- notebook ------------------------------------------------------------------------------------------
+
+
+def notebook(page: str) -> str:
+    """The part of a page that is a notebook, as one: its blocks of Python are cells, and its prose others."""
+    part = page.split("<!-- notebook -->")[1].split("<!-- end -->")[0]
+    pieces = re.split(r"```python\n(.*?)```\n", part, flags=re.DOTALL)
+    cells: list[dict[str, object]] = []
+    for place, piece in enumerate(pieces):
+        if text := piece.strip("\n"):
+            of_code = {"execution_count": None, "outputs": []} if place % 2 else {}
+            kind = "code" if place % 2 else "markdown"
+            source = text.splitlines(keepends=True)
+            cells.append(
+                {"cell_type": kind, "id": f"cell-{len(cells)}", "metadata": {}, "source": source, **of_code}
+            )
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    metadata = {"kernelspec": kernel, "language_info": {"name": "python"}}
+    whole = {"cells": cells, "metadata": metadata, "nbformat": 4, "nbformat_minor": 5}
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
 # --- http ----------------------------------------------------------------------------------------------
 
 
@@ -217,6 +239,7 @@ def pages() -> dict[Path, str]:
     return {
         DOCS / "errors.md": errors_page(),
         DOCS / "examples/vscode/syntaxes/aos.tmLanguage.json": textmate_grammar(),
+        DOCS / "notebook.ipynb": notebook((DOCS / "python.md").read_text(encoding="utf-8")),
         **{page: with_generated_parts(page.read_text(encoding="utf-8")) for page in generated_in_part},
         **{DOCS / "schemas" / f"{name}.json": schema_text(schema()) for name, schema in SCHEMAS.items()},
     }
