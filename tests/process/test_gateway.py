@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from gateway import Gateway, gateway, played, slow_system
+from gateway import Gateway, gateway, played, slow_system, worn_system
 from processes import HANG_S
 
 from aos_deploy.export.run_bundle import write_bundle
@@ -319,6 +319,28 @@ def test_a_mission_is_held_and_does_what_a_person_asks_for(living: tuple[Gateway
     refused = served.post(f"{path}/steering", {"verb": "act", "actions": ["fly"]})
     assert (refused.status, refused.json["code"]) == (409, "AOS517")
     assert served.post(f"{path}/steering", {"verb": "dance"}).status == 400
+
+
+def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(
+    tmp_path: Path, cache_dir: Path
+) -> None:
+    with worn_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+        path = f"/v1/runs/{run.name}/missions"
+        assert served.ask(f"/v1/missions/{run.name}-1").json["parameters"] == {"room": "hall"}
+        refused = served.post(path, {"given": ["state.is_lit == maybe"]})
+        assert (refused.status, refused.json["code"]) == (422, "AOS110")
+        impossible = served.post(path, {"given": ["state.is_lit"]})
+        assert (impossible.status, impossible.json["code"]) == (422, "AOS516")
+        wish = {"belief": "keep", "idle": 2, "given": ["!state.is_lit"], "values": {"room": "lab"}}
+        begun = served.post(path, wish)
+        assert (begun.status, begun.json["mission"]) == (201, f"{run.name}-2")
+        with served.events(f"/v1/events?mission={run.name}-2") as events:
+            first = next(data for _, kind, data in events if kind == "decision")
+            next(data for _, kind, data in events if kind == "state" and data["phase"] == "ended")
+        assert first["row"]["action"] == "press(room=lab)"
+        view = served.ask(f"/v1/missions/{run.name}-2").json
+        assert {name: view["mission"][name] for name in wish} == wish
+        assert view["parameters"] == {"room": "lab"}
 
 
 def test_a_stream_that_comes_back_gets_each_record_once_from_a_gateway_that_was_started_again(

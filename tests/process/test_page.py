@@ -175,6 +175,30 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
         page.close()
 
 
+def test_the_next_mission_is_begun_where_one_has_ended(
+    browser: Browser, worn: tuple[Gateway, str], pictures: Path, cache_dir: Path
+) -> None:
+    served, name = worn
+    page = opened(browser, served, 390, "dark")
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+    page.get_by_text("Next mission").click()
+    page.get_by_label("What is known").fill("state.is_lit")
+    page.get_by_role("button", name="Begin it").click()
+    expect(page.locator(".next .problem")).to_contain_text("AOS516")
+    assert violations(page, cache_dir) == []
+    kept(page, "next-390-dark", pictures)
+    page.set_viewport_size({"width": 1440, "height": 900})
+    page.emulate_media(color_scheme="light")
+    kept(page, "next-1440-light", pictures)
+    assert violations(page, cache_dir) == []
+    page.get_by_label("What is known").fill("!state.is_lit")
+    page.get_by_label("Belief at the start").select_option("keep")
+    page.get_by_role("textbox", name="room").fill("lab")
+    page.get_by_role("button", name="Begin it").click()
+    expect(page).to_have_url(re.compile(f"{name[:-1]}2$"))
+    expect(page.locator(".decision .action")).to_have_text("press(room=lab)")
+
+
 @pytest.mark.parametrize(("width", "theme"), [(390, "dark"), (1440, "light")])
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
     browser: Browser, past: tuple[Gateway, str], width: int, theme: str, pictures: Path, cache_dir: Path

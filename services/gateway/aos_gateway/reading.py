@@ -71,7 +71,10 @@ class Runs(msgspec.Struct, frozen=True):
 
 
 class MissionView(msgspec.Struct, frozen=True, omit_defaults=True):
-    """A mission: the run it belongs to, how it began, its last state, and its summary once it has ended."""
+    """A mission: the run it belongs to, how it began, its last state, and its summary once it has ended.
+
+    `parameters` are the values of its mission parameters.
+    """
 
     run: str
     robot: str
@@ -79,6 +82,7 @@ class MissionView(msgspec.Struct, frozen=True, omit_defaults=True):
     mission: MissionEntry | None = None
     state: MissionState | None = None
     summary: Summary | None = None
+    parameters: dict[str, str] = {}
 
 
 class MissionList(msgspec.Struct, frozen=True):
@@ -234,8 +238,9 @@ async def mission(gateway: Gateway, mission: str) -> MissionView:
     try:
         entries = await found.missions()
         state = await found.last_state(mission)
+        parameters = await found.parameters(mission)
     except AosError:
-        entries, state = (), None  # A run that has not come so far, or a system that is away.
+        entries, state, parameters = (), None, {}  # A run that has not come so far, or a system that is away.
     entry = next((each for each in entries if each.mission == mission), None)
     is_over = state is not None and state.phase == "ended"
     return MissionView(
@@ -245,6 +250,7 @@ async def mission(gateway: Gateway, mission: str) -> MissionView:
         mission=entry,
         state=state,
         summary=found.summary(mission) if isinstance(found, KeptRun) else None,
+        parameters=parameters,
     )
 
 

@@ -16,8 +16,8 @@ from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
-from aos_protocol.errors import AosError, DeployError, GatewayError
-from aos_protocol.messages import History, HistoryQuery, MissionEntry, MissionState
+from aos_protocol.errors import AosError, DeployError, GatewayError, StorageError
+from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder, mission_folders, number_of
@@ -81,6 +81,10 @@ class Run(ABC):
         """The last that is known of a mission; None before its first word, and of one that is not the
         newest of a system elsewhere.
         """
+
+    async def parameters(self, mission: str) -> dict[str, str]:
+        """The values of a mission's parameters; none where they are not known."""
+        return {}
 
     def client(self, user: str = WATCHER) -> AbstractAsyncContextManager[AosClient]:
         """A client of the system, as its watcher or its operator; GatewayError AOS905 if it does not run."""
@@ -160,6 +164,22 @@ class KeptRun(Run):
             last = next(iter(rows.rows("mission")[-1:]), None)
         message = message_of_row(last) if last is not None else None
         return message if isinstance(message, MissionState) else None
+
+    async def parameters(self, mission: str) -> dict[str, str]:
+        return await asyncio.to_thread(self._parameters, self.folder(mission) / JOURNAL)
+
+    @staticmethod
+    def _parameters(journal: Path) -> dict[str, str]:
+        if not journal.exists():
+            return {}
+        with Journal.read(journal) as rows:
+            last = next(iter(rows.rows("begun")[-1:]), None)
+        if last is None:
+            return {}
+        try:
+            return msgspec.json.decode(last.payload, type=MissionBegun).mission_parameters
+        except msgspec.MsgspecError as error:
+            raise StorageError(f"row {last.seq} of the journal: {error}", code="AOS702") from error
 
     def folder(self, mission: str) -> Path:
         """The folder of a mission's journal and summary."""

@@ -4,6 +4,7 @@ import { addressOf, route, VIEWS } from "./route.js";
 import { alarms, at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
 import { chance, ending, phase } from "./format.js";
 import { Controls, LeftOut } from "./steering.js";
+import { Next } from "./next.js";
 import { Sentence } from "./sentence.js";
 import { Timeline } from "./timeline.js";
 import { Ribbons } from "./ribbons.js";
@@ -36,6 +37,7 @@ export function Mission() {
   const Page = PAGES[view];
   return html`<main id="main" class="page">
     <${Head} />
+    <${Next} />
     <div class="hero card">
       <${Sentence} />
       <${Timeline} />
