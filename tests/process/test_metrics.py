@@ -5,9 +5,13 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from gateway import Gateway, gateway, played, slow_system
+from gateway import BIN, Gateway, environment, gateway, played, slow_system
+from processes import HANG_S
 
 
 def samples(served: Gateway) -> dict[str, float]:
@@ -19,6 +23,26 @@ def samples(served: Gateway) -> dict[str, float]:
     )
     lines = (line.rpartition(" ") for line in answer.body.decode().splitlines() if line[0] != "#")
     return {name: float(value) for name, _, value in lines}
+
+
+@contextmanager
+def resumed(run: Path, cache_dir: Path) -> Iterator[None]:
+    """Somebody takes a run up, until the block ends."""
+    folder = run.parents[1]
+    process = subprocess.Popen(
+        [BIN / "aos-up", "--resume", run, "--json"],
+        cwd=folder,
+        env=environment(folder, cache_dir),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        next(line for line in process.stdout if json.loads(line)["event"] == "decision")
+        yield
+    finally:
+        process.terminate()
+        process.communicate(timeout=HANG_S)
 
 
 def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cache_dir: Path) -> None:
@@ -48,6 +72,20 @@ def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cac
         over = samples(served)
         assert over['aos_missions_total{robot="tiger",ending="cancelled"}'] == 1
         assert 'aos_missions_running{robot="tiger"}' not in over
+
+
+def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path, cache_dir: Path) -> None:
+    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir, "--metrics") as served:
+        assert samples(served)['aos_missions_running{robot="tiger"}'] == 1
+        os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
+        while served.ask(f"/v1/runs/{run.name}").json["is_running"]:
+            pass
+        killed = samples(served)
+        assert killed['aos_missions_total{robot="tiger",ending="killed"}'] == 1
+        assert 'aos_missions_running{robot="tiger"}' not in killed
+        with resumed(run, cache_dir):
+            assert served.ask(f"/v1/runs/{run.name}").json["is_running"] is True
+            assert samples(served)['aos_missions_running{robot="tiger"}'] == 1
 
 
 def test_metrics_are_off_count_nothing_of_before_and_are_as_private_as_the_rest(

@@ -107,7 +107,8 @@ async def _no_operation(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     status = HTTPStatus(error.status_code)
     if status == HTTPStatus.NOT_FOUND:
-        return response_of(GatewayError(f"there is nothing at {request.url.path}", code="AOS902"))
+        hint = "Metrics are off: `aos serve --metrics`" if request.url.path == _METRICS else ""
+        return response_of(GatewayError(f"there is nothing at {request.url.path}", code="AOS902", hint=hint))
     text = f"{request.method} {request.url.path}: {error.detail}"
     return response_of(GatewayError(text, code="AOS901"), status=status)
 

@@ -37,6 +37,7 @@ class _Mission:
         self.goal_probability: float | None = None
         self.is_holding = False
         self.has_ended = False
+        self.was_killed = False
 
 
 class _Counted:
@@ -69,7 +70,7 @@ class Metrics:
             runs = await asyncio.to_thread(self._shelf.runs)
             for name, run in runs.items():
                 counted = self._of(name)
-                if not counted.is_over:
+                if not counted.is_over or run.is_running:
                     await self._count(run, counted)
             self._show_living(runs)
             return exposition(self._families.all)
@@ -84,6 +85,8 @@ class Metrics:
             known = {each.mission: each for each in await run.missions()}
             for mission in entry.missions:
                 place = counted.missions.setdefault(mission, _Mission())
+                if place.was_killed and entry.is_running:
+                    place.has_ended = place.was_killed = False  # It was taken up.
                 if not place.has_ended:
                     await self._count_mission(run, entry, known.get(mission), mission)
             if isinstance(run, KeptRun):
@@ -117,6 +120,7 @@ class Metrics:
             ending = entry.ending  # The run has ended otherwise than by its mission.
         if ending:
             place.has_ended = True
+            place.was_killed = ending == "killed"
             self._families.missions.add(robot=run.robot, ending=ending)
 
     def _count_holds(self, run: KeptRun, mission: str, place: _Mission) -> None:

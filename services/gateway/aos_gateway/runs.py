@@ -109,21 +109,27 @@ class KeptRun(Run):
         self.robot = record.robot
         self.endpoint = record.endpoint
         self._last: RunEntry | None = None
+        self._has_summary = False
 
     @property
     def is_running(self) -> bool:
         return self.directory.is_running
 
     async def entry(self) -> RunEntry:
-        if self._last is None or self._last.is_running:
+        if self._last is None or self._last.is_running or self._goes_on_again():
             self._last = await asyncio.to_thread(self._entry)
         return self._last
+
+    def _goes_on_again(self) -> bool:
+        """Says whether a run whose aos-up was killed was taken up."""
+        return self._last is not None and not self._has_summary and self.directory.is_held
 
     def _entry(self) -> RunEntry:
         path, record = self.directory.path, self.record
         numbers = list(mission_folders(path))
         names = tuple(f"{path.name}-{number}" for number in numbers) if numbers else (path.name,)
         summary = self.directory.read_summary()
+        self._has_summary = summary is not None
         is_running = summary is None and self.is_running
         return RunEntry(
             run=self.name,
