@@ -35,7 +35,7 @@ def browser() -> Iterator[Browser]:
 
 def opened(browser: Browser, served: Gateway, width: int = 1440, theme: str = "light") -> Page:
     """A page that has the token. An error in its scripts fails the test."""
-    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=theme)  # type: ignore[arg-type]
+    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=theme)
     page.set_default_timeout(HANG_S * 1000)
     expect.set_options(timeout=HANG_S * 1000)
     page.on("pageerror", lambda error: pytest.fail(f"a script failed: {error}"))
@@ -173,6 +173,37 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
         page.keyboard.press("ArrowLeft")
         expect(page.locator(".alarm")).to_have_count(0)
         page.close()
+
+
+def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_shown(
+    browser: Browser, living: tuple[Gateway, Path], pictures: Path
+) -> None:
+    served, run = living
+    (run.parents[1] / "turns").write_bytes(b".")
+    page = opened(browser, served)
+    address = f"http://127.0.0.1:{served.port}/#/missions/{run.name}"
+    page.goto(f"{address}/system")
+    expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+    better = (run.parents[1] / "tiger/listen.sd").read_text().replace("0.85 : 0.15", "0.95 : 0.05")
+    given = {"name": "listen.sd", "mimeType": "text/plain", "buffer": better.encode()}
+    page.locator("input[type=file]").set_input_files(given)
+    expect(page.locator(".push [role=status]")).to_contain_text("Accepted: revision 2, listen")
+    known = served.ask(f"/v1/missions/{run.name}/trace").json["next"]
+    with served.events(f"/v1/events?mission={run.name}&since={known}") as events:
+        told = (data for _, kind, data in events if kind == "decision")
+        rows = (data["row"] for data in told if "outcome" not in data["record"])
+        has_taken_over = False
+        while not has_taken_over:
+            (run.parents[1] / "turns").write_bytes(b".")
+            has_taken_over = "adopted" in next(rows)
+    expect(page.locator(".timeline-track path.adopted")).to_have_count(1)
+    expect(page.locator(".legend")).to_contain_text("new model")
+    kept(page, "hot-plug", pictures)
+    page.goto(f"{address}/documents")
+    expect(page.locator(".card", has_text="Documents of tiger")).to_contain_text("Revision 2")
+    expect(page.locator(".source")).to_contain_text("0.95 : 0.05")
+    page.goto(f"{address}/documents?step=1")
+    expect(page.locator(".source")).to_contain_text("0.85 : 0.15")
 
 
 def test_the_next_mission_is_begun_where_one_has_ended(
