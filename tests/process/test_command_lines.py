@@ -30,7 +30,7 @@ class Recorded(Engine):
 
     asked: list[str]
 
-    async def _ask(self, command: str, kind: type, **more: float) -> object:  # type: ignore[override]
+    async def _ask(self, command: str, kind: type, **more: float) -> object:
         self.asked.append(command)
         return await super()._ask(command, kind, **more)
 

@@ -235,7 +235,7 @@ async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure
     around.clock = Clock()
 
     def robot(request: Activate) -> Outcome:
-        around.clock.now_s += 10.0  # type: ignore[attr-defined]
+        around.clock.now_s += 10.0
         answers = {"ask": "said_right" if request.id.step % 2 else "said_left", "take": "missed"}
         return jammed(request) if request.skill == "look" else observed(request, answers[request.skill])
 

@@ -48,7 +48,7 @@ __moduleResponse = AOS.Bernoulli(0.8) == state.red ? light : darkness;
 @pytest.fixture
 async def lamps(cache_dir: Path) -> Engine:
     async with engine_of(await built_text(LAMPS, cache_dir)) as engine:
-        yield engine  # type: ignore[misc]
+        yield engine
 
 
 def probability(summary: BeliefSummary, variable: str) -> float:

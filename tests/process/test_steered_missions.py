@@ -56,7 +56,7 @@ class Steered(Surroundings):
 
     def steer(self, verb: str, *actions: str, name: str = "") -> None:
         request = f"{verb} {' '.join(actions)} {name} {self.mission.state.step}"
-        self.mission.steer(Steer(verb, actions, name, by="ana", request=request))  # type: ignore[arg-type]
+        self.mission.steer(Steer(verb, actions, name, by="ana", request=request))
 
     @property
     def chosen(self) -> list[tuple[str, str]]:
@@ -181,7 +181,7 @@ async def test_a_mission_without_anything_left_holds_until_something_is_taken_ba
     state = await run(tiger, around, step_limit=2)
     assert (state.ending, around.chosen[1]) == ("step_limit", ("listen", "planner"))
     (refused,) = [payload for kind, payload in around.journalled if kind == "refused"]
-    assert refused.why == "listen is left out by ana"  # type: ignore[attr-defined]
+    assert refused.why == "listen is left out by ana"
     assert violations(around) == []
 
 
@@ -240,7 +240,7 @@ async def test_stop_ends_a_search_that_would_take_minutes(tiger: BuiltModel) -> 
         if state.phase == "planning" and state.step == 0:
             loop.call_soon(around.steer, "stop")
 
-    around.publish_state = soon  # type: ignore[method-assign]
+    around.publish_state = soon
     state = await run(tiger, around, search=Search(simulations=0, time_s=60.0, seed=1))
     assert (state.ending, state.remark, around.decisions) == ("cancelled", "stopped by ana", [])
 
@@ -256,7 +256,7 @@ async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltMod
             for number, (verb, *actions) in enumerate(wishes):
                 before = len(around.journalled)
                 name = OPEN_RIGHT if verb == "leave_out" else ""
-                around.mission.steer(Steer(verb, tuple(actions), name, by="ana", request=str(number)))  # type: ignore[arg-type]
+                around.mission.steer(Steer(verb, tuple(actions), name, by="ana", request=str(number)))
                 if len(around.journalled) > before:
                     return
 

@@ -37,7 +37,7 @@ async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Play
         assert abs(sum(term.other for term in why.terms) - why.other_value) < 1e-9
         assert sum(each.probability for each in why.expected) == pytest.approx(1)
         assert [each.response for each in why.expected if each.is_seen] == [
-            played.mission.outcome(2).outcome.response  # type: ignore[union-attr]
+            played.mission.outcome(2).outcome.response
         ]
         assert why.flips
         for flip in why.flips:

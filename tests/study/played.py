@@ -139,7 +139,7 @@ async def play(
         cache_dir=str(cache_dir),
         seed=seed,
         step_limit=steps,
-        **budget,  # type: ignore[arg-type]
+        **budget,
     )
     project = _project(files)
     built = await build_project(project, cache_dir, lambda text: None)

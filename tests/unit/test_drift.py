@@ -109,7 +109,7 @@ def test_the_tests_of_a_mission_are_the_fold_of_its_journal() -> None:
         outcome = Outcome(ActivationId("m", step), "look", "observed", "left")
         done = msgspec.structs.replace(decision, sequence=2 * step - 1, outcome=outcome)
         tests = after_use(tests, decision, done)
-        rows += [("decision", decision), ("decision", done)]  # type: ignore[list-item]
+        rows += [("decision", decision), ("decision", done)]
     journal = [JournalRow(n, 0, kind, msgspec.json.encode(each)) for n, (kind, each) in enumerate(rows, 1)]
     assert folded(journal).drift == tests
     assert tests.tests[0].uses == 2

@@ -35,7 +35,7 @@ async def test_a_push_reads_each_file_once(
 
     def counted(name: str, *rest: object) -> object:
         read[name] += 1
-        return plain(name, *rest)  # type: ignore[arg-type]
+        return plain(name, *rest)
 
     async def no_solver(_: Project) -> tuple[Diagnostic, ...]:
         return ()

@@ -115,7 +115,7 @@ def test_a_hold_for_a_skill_is_over_once_somebody_has_resumed_the_mission() -> N
     holding = MissionState("m", "holding", 1, 0.0)
     said: list[tuple[str, Message]] = [("mission", holding), (STEERED, Steer("leave_out", name="look"))]
     for verb, is_held in (("leave_out", True), ("resume", False)):
-        said[1] = (STEERED, Steer(verb, by="ana"))  # type: ignore[arg-type]
+        said[1] = (STEERED, Steer(verb, by="ana"))
         entries = [*said, ("mission", holding)]
         rows = [
             JournalRow(n, 0, kind, msgspec.json.encode(each)) for n, (kind, each) in enumerate(entries, 1)

@@ -86,7 +86,7 @@ def test_whether_a_circle_is_there_is_told_by_a_picture_and_not_by_the_ink(make:
         hidden.append(picture())
         return np.full_like(hidden[-1], 90)
 
-    world.picture = behind_a_hand  # type: ignore[method-assign]
+    world.picture = behind_a_hand
     assert call(world, "/draw", {"cell": 0}) == {"success": False}
     assert world.marks[0] == "O"
     assert board_in(hidden[0]) == world.marks

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -14,7 +15,7 @@ EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 _Labels = tuple[tuple[str, str], ...]
 
 
-class Family:
+class Family(ABC):
     """The samples of one name, by labels. `text` says in one line what they are."""
 
     kind = "untyped"
@@ -23,9 +24,9 @@ class Family:
         self.name = name
         self.text = text
 
+    @abstractmethod
     def samples(self) -> Iterator[str]:
         """The lines of the samples."""
-        raise NotImplementedError
 
     def lines(self) -> Iterator[str]:
         """The family in the text format; nothing where there is no sample."""
