@@ -17,6 +17,7 @@ import zenoh
 from aos_deploy.run_directory import RunDirectory
 from aos_runtime.credentials import credential_of_run
 
+from .counting import counting
 from .routed import opened
 
 __all__ = ["ROBOT", "STEPS", "Cell", "cell"]
@@ -27,22 +28,7 @@ STEPS = 8
 _PATIENCE_S = 600.0
 
 _FILES = {
-    "documents/cell.ef": """project: cell
-horizon: 2
-discount: 0.9
-
-state_variable: int count
-
-initial_belief:
-state.count = 0;
-
-reward_code:
-if (state.count >= STEPS) { __reward = 10; __isGoalState = true; }
-""",
-    "documents/step.sd": "project: cell\n\ndynamic_model:\nstate__.count = state.count + 1;\n"
-    "__moduleResponse = done;\n",
-    "documents/step.am": "project: cell\n\nmodule_activation: skill\npath: /step\nresponse: done\n"
-    "response_rule: True\n",
+    **counting("cell"),
     "robot.py": """import asyncio
 from pathlib import Path
 

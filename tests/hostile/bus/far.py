@@ -15,6 +15,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from .counting import counting
+
 __all__ = ["Cut", "far_mission", "is_possible"]
 
 _NAME = "aosfar"
@@ -24,22 +26,7 @@ _PATIENCE_S = 120.0
 _STEPS = 100_000
 
 _FILES = {
-    "documents/far.ef": """project: far
-horizon: 2
-discount: 0.9
-
-state_variable: int count
-
-initial_belief:
-state.count = 0;
-
-reward_code:
-if (state.count >= STEPS) { __reward = 10; __isGoalState = true; }
-""",
-    "documents/step.sd": "project: far\n\ndynamic_model:\nstate__.count = state.count + 1;\n"
-    "__moduleResponse = done;\n",
-    "documents/step.am": "project: far\n\nmodule_activation: skill\npath: /step\nresponse: done\n"
-    "response_rule: True\n",
+    **counting("far"),
     "far_robot.py": """import asyncio
 from pathlib import Path
 

@@ -95,7 +95,7 @@ class Planner {
   // while the mission plans anew at each of them (action_values.hpp). `estimates` are those by which `choice` was made.
   std::vector<ActionEstimate> values(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
     std::vector<ActionEstimate> values = values_of_belief(belief, std::move(estimates), choice);
-    const double slack = (is_near_ ? near_.space() : space_).slack(belief, horizon_);
+    const double slack = slack_of(belief);
     for (ActionEstimate& value : values) {
       value.at_least -= slack;
       value.at_most += slack;
@@ -191,7 +191,7 @@ class Planner {
       }
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = sarsop().search(budget, [&] { return choice(sarsop().estimates(), barred_); });
-        why_ += "; " + bounds_text(horizon, (is_near_ ? near_.space() : space_).slack(belief, horizon));
+        why_ += "; " + bounds_text(horizon, slack_of(belief));
         if (const auto& policy = sarsop().policy()) {
           why_ += "; a simple policy decides, since it returns " + rounded_down(policy->value) + " in played missions";
         }
@@ -285,6 +285,8 @@ class Planner {
     }
     return is_near_;
   }
+  // How far bounds have to be widened; see StateSpace.
+  double slack_of(const Belief<Model>& belief) const { return (is_near_ ? near_.space() : space_).slack(belief, horizon_); }
   PointBased<Model>& sarsop() { return is_near_ ? near_search_ : point_based_; }
   const PointBased<Model>& sarsop() const { return is_near_ ? near_search_ : point_based_; }
 
