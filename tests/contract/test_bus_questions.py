@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import Awaitable
-from contextlib import suppress
+from collections.abc import AsyncIterator, Awaitable
+from contextlib import asynccontextmanager, suppress
 
 import msgspec
 import pytest
@@ -35,6 +35,7 @@ from aos_protocol.messages import (
 from aos_runtime.bus import Bus
 from aos_runtime.bus_config import client_config
 from aos_runtime.children import PIPE, Child
+from aos_runtime.server_watch import ServerWatch
 
 ENTRY = CatalogueEntry("armadillo", 1, "digest", 0, ("pick",))
 
@@ -135,6 +136,16 @@ async def test_who_leaves_the_bus_over_a_question_says_so(bus: Bus, endpoint: st
     assert "leaving stopped while it answered" in str(asked.result())
 
 
+@asynccontextmanager
+async def outsider_on(endpoint: str) -> AsyncIterator[zenoh.Session]:
+    """A session of a program that is not ours."""
+    outsider = await asyncio.to_thread(zenoh.open, client_config(endpoint))
+    try:
+        yield outsider
+    finally:
+        await asyncio.to_thread(outsider.close)
+
+
 class Holder:
     """Serves a key and answers nothing: it holds what it is asked."""
 
@@ -163,12 +174,10 @@ class Holder:
             error = await _error_of(bus.ask(self._key, ProjectQuery(), Catalogue, timeout_s=0.5))
 
 
-@pytest.mark.parametrize("is_served_again", [False, True])
 async def test_a_question_is_lost_once_its_server_has_left(
-    endpoint: str, bus: Bus, other: Bus, keys: Keys, is_served_again: bool
+    endpoint: str, bus: Bus, other: Bus, keys: Keys
 ) -> None:
-    outsider = await asyncio.to_thread(zenoh.open, client_config(endpoint))
-    try:
+    async with outsider_on(endpoint) as outsider:
         holder = Holder(outsider, keys.project)
         await holder.until_asked(bus)
         async with asyncio.TaskGroup() as tasks:
@@ -176,18 +185,28 @@ async def test_a_question_is_lost_once_its_server_has_left(
             asked = tasks.create_task(_error_of(question))
             with await holder.held.get():
                 await holder.leave(other)
-                if is_served_again:
-                    await other.answer(keys.project, ProjectQuery, list_catalogue)
                 assert isinstance(await asked, NobodyAnswersError)
-    finally:
-        await asyncio.to_thread(outsider.close)
+
+
+async def test_a_key_that_is_served_again_is_not_served_for_who_watched_its_server_leave(
+    endpoint: str, other: Bus, keys: Keys
+) -> None:
+    async with outsider_on(endpoint) as outsider, outsider_on(endpoint) as asker, asyncio.timeout(HANG_S):
+        holder = Holder(outsider, keys.project)
+        await holder.until_asked(other)
+        watch = ServerWatch(asker, keys.project)
+        while not watch.is_served:
+            await _error_of(other.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=0.05))
+        await holder.leave(other)
+        await watch.has_left
+        await other.answer(keys.project, ProjectQuery, list_catalogue)
+        assert not watch.is_served
 
 
 async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
     endpoint: str, bus: Bus, other: Bus, keys: Keys
 ) -> None:
-    outsider = await asyncio.to_thread(zenoh.open, client_config(endpoint))
-    try:
+    async with outsider_on(endpoint) as outsider:
         question = encode(ProjectQuery("a"), sender="outsider", stamp_ns=0)
         answer = encode(Catalogue((ENTRY,)), sender="outsider", stamp_ns=0)
         await other.answer(keys.catalogue, ProjectQuery, list_catalogue)
@@ -200,8 +219,6 @@ async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
         )
         await until_answered(bus, keys.project)
         queryable.undeclare()
-    finally:
-        await asyncio.to_thread(outsider.close)
 
 
 async def until_answered(bus: Bus, key: str) -> None:

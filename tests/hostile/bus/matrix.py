@@ -87,9 +87,11 @@ def wrong(routed: Routed, tried: Iterable[Attempt]) -> Iterator[str]:
     for attempt in tried:
         partners = [other for other in _ALL if other != attempt.party]
         able = [one for one in partners if may(ROBOT, one, _OPPOSITE[attempt.act], attempt.key)]
-        has = has_effect(routed, attempt, (able or partners)[0])
         # Where nobody may do the opposite, two try what neither may.
-        if has != (attempt.is_allowed and bool(able)):
+        partner, passes = (able or partners)[0], attempt.is_allowed and bool(able)
+        has = has_effect(routed, attempt, partner)
+        # On a busy machine the round trips overtake what was said before them: Zenoh sends them first.
+        if has != passes and not (passes and has_effect(routed, attempt, partner)):
             yield f"{attempt}: {'passes' if has else 'has no effect'}"
 
 
