@@ -18,13 +18,16 @@ from aos_protocol.diagnostics import Span
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
 
-__all__ = ["EVERYTHING_ELSE", "TAKEN", "AdapterPlan", "played_by_model", "read_adapters"]
+__all__ = ["EVERYTHING_ELSE", "SPANS", "TAKEN", "AdapterPlan", "played_by_model", "read_adapters"]
 
 EVERYTHING_ELSE = "*"
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
-TAKEN = ("router", "registry", "middleware", "solver", "aos-up", OPERATOR, WATCHER)
+SPANS = "spans"
+"""The process that sends spans to a collector."""
+
+TAKEN = ("router", "registry", "middleware", "solver", "aos-up", SPANS, OPERATOR, WATCHER)
 """The names of our own processes, and of those who command and look on."""
 _BINDING_KEYS = ("fields", "result")
 

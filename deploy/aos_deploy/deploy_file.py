@@ -18,6 +18,7 @@ from aos_deploy.constraints import snippet_of
 from aos_deploy.deploy_folder import deploy_file_at
 from aos_deploy.mission_values import values_of_node
 from aos_deploy.own_programs import ProgramPart, check_programs
+from aos_deploy.spans.otlp import is_collector_address
 from aos_deploy.typed import known_names, read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_language.archive import is_archive_name
@@ -36,6 +37,7 @@ __all__ = [
     "MissionPart",
     "SkillPart",
     "SolverPart",
+    "SpansPart",
     "check_endpoint",
     "read_deploy_file",
     "without_a_robot",
@@ -131,6 +133,14 @@ class SolverPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"
 
 
+class SpansPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """The collector that gets OpenTelemetry's spans of missions, by OTLP over HTTP; without one none are
+    made.
+    """
+
+    otlp: str = ""
+
+
 class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     """The file as it is written; what is not required has the defaults given here.
 
@@ -141,7 +151,8 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `serve`
     says how `aos-up --serve` shows them to others. `programs` run beside the adapters. `runs` is where run
     directories go. With `trust: documents` their code runs also where the kernel cannot confine it. A system
-    with `stay` goes on after its mission, and waits for the next.
+    with `stay` goes on after its mission, and waits for the next. Where `spans` names a collector, it gets
+    OpenTelemetry's spans of the missions.
     """
 
     aos: Literal[1]
@@ -162,6 +173,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     runs: str = "runs"
     trust: Literal["nobody", "documents"] = "nobody"
     stay: bool = False
+    spans: SpansPart = SpansPart()
 
 
 class Deployment(msgspec.Struct, frozen=True, kw_only=True):
@@ -249,6 +261,10 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
             check_endpoint(file.bus.listen)
     except DeployError as error:
         findings.error("AOS106", error.message, _place(node, "bus", "listen"), error.hint)
+    if file.spans.otlp and not is_collector_address(file.spans.otlp):
+        hint = "Write it as http://127.0.0.1:4318"
+        where = _place(node, "spans", "otlp")
+        findings.error("AOS106", f"{file.spans.otlp!r} is no collector's address", where, hint)
     if file.solver.simulations is not None and file.solver.time_s is not None:
         where = _place(node, "solver", "time_s")
         findings.error("AOS106", "solver has both simulations and time_s", where, "Keep one of them")

@@ -25,6 +25,7 @@ from aos_deploy.program import outsiders_of, programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of, beginning_of, settled
+from aos_deploy.spans.rest import send_rest
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp
 from aos_deploy.verdict import Account, Verdict
@@ -122,6 +123,7 @@ class MissionRun:
             run.write_summary(summary)
         except StorageError as error:
             self.error = self.error or error
+        await send_rest(run, is_wanted=bool(self._deployment.file.spans.otlp))
         run.close()
         took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
         self._report(Told(f"{summary.ending} after {took}; everything is kept in {from_here(run.path)}"))

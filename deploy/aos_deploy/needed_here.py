@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from aos_deploy.adapter_kinds import check_installed
+from aos_deploy.adapters import SPANS
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.process_start import check_command
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.remote import check_ssh
+from aos_deploy.spans.otlp import check_otel_installed
 from aos_runtime.sandbox.support import require_sandbox, trust_documents
 
 __all__ = ["check_needed_here", "check_sandbox", "needs_of"]
@@ -38,6 +40,8 @@ def needs_of(deployment: Deployment) -> Iterator[tuple[str, str, Callable[[], No
         if not adapter.is_command:
             kind = f"adapter of the kind {adapter.kind_name}"
             yield adapter.name, kind, partial(check_installed, adapter.name, adapter.kind)
+    if deployment.file.spans.otlp:
+        yield SPANS, f"spans to {deployment.file.spans.otlp}", check_otel_installed
     for program in programs_of_deployment(deployment):
         what = f"{'program' if program.is_own else 'adapter'} {' '.join(program.command)}"
         if program.host:

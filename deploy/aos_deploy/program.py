@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from aos_deploy.adapter_kinds import MODEL
-from aos_deploy.adapters import AdapterPlan
+from aos_deploy.adapters import SPANS, AdapterPlan
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.own_programs import ProgramPart, ReadyPart
 from aos_deploy.passes import Outsider
@@ -32,8 +33,8 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     word `python` stands for the Python that this runs in. With a `host` it runs there, in a `folder` of
     that host. Others may go on without an adapter.
 
-    A program with an `on_exit` is none of the bus: the adapters start once it is `ready`, and `on_exit` says
-    what follows when it ends by itself.
+    A program with an `on_exit` is none of the bus, and `on_exit` says what follows when it ends by itself.
+    Where it is the user's own, the adapters start once it is `ready`.
     """
 
     name: str
@@ -53,12 +54,12 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def is_own(self) -> bool:
         """True if it is one of the deploy file's `programs:`."""
-        return bool(self.on_exit)
+        return bool(self.on_exit and self.command)
 
     @property
     def party(self) -> Party | None:
         """Its place on the bus; None for a program of the user's, which looks on like others."""
-        if self.is_own:
+        if self.on_exit:
             return None
         if not self.is_adapter:
             return Party(name=self.name, role=self.name if self.name in ROLES else SERVER)
@@ -73,7 +74,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def user(self) -> str:
         """Its name on the bus."""
-        return WATCHER if self.is_own else self.name
+        return WATCHER if self.on_exit else self.name
 
     @property
     def ending_s(self) -> float:
@@ -109,6 +110,7 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
     middleware = project | activation | _played(deployment)
     return (
         Program(name="registry", module="aos_registry", settings=registry, is_restarted=True),
+        *_spans(deployment),
         Program(name="middleware", module="aos_middleware", settings=middleware, is_restarted=True),
         *(_own(deployment, name, part) for name, part in file.programs.items()),
         *adapters,
@@ -120,6 +122,13 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
             is_restarted=True,
         ),
     )
+
+
+def _spans(deployment: Deployment) -> Iterator[Program]:
+    """The process that sends spans, where the deploy file asks for them. A mission goes on without it."""
+    if otlp := deployment.file.spans.otlp:
+        settings = {"otlp": otlp}
+        yield Program(name=SPANS, module="aos_deploy.spans", settings=settings, stop_s=1.0, on_exit="ignore")
 
 
 def outsiders_of(deployment: Deployment) -> tuple[Outsider, ...]:

@@ -232,7 +232,7 @@ class Supervisor:
             self._passes.write_dictionary()  # The router before it, if there was one, has removed its own.
         running.child = await start_process(program, self._base, self._run, self._passes)
         reach("up.start.after")
-        if program.is_own:
+        if program.on_exit:
             running.seeking = self._beside(self._seek_ready(running, log_start))
 
     async def _seek_ready(self, running: _Running, log_start: int) -> None:

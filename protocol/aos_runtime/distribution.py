@@ -8,7 +8,7 @@ __all__ = ["DISTRIBUTION", "Extra", "pip_install"]
 
 DISTRIBUTION = "aos-autonomy"
 
-Extra = Literal["", "sim", "compiler", "gym", "bench", "ros", "dds", "ray", "report"]
+Extra = Literal["", "sim", "compiler", "gym", "bench", "ros", "dds", "ray", "report", "otel"]
 
 
 def pip_install(extra: Extra = "") -> str:

@@ -32,6 +32,12 @@ def export(
         Path | None,
         typer.Option("--output", "-o", metavar="PATH", help="Instead of a name here after the run's"),
     ] = None,
+    otlp: Annotated[
+        str | None,
+        typer.Option(
+            "--otlp", metavar="URL", help="Write nothing: send OpenTelemetry's spans to this collector"
+        ),
+    ] = None,
     runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
@@ -39,15 +45,44 @@ def export(
 
     mcap: a file for Foxglove, Lichtblick and PlotJuggler for each run, with a layout for each of them. csv,
     parquet: a folder of tables of all runs together. bundle: one file with whole runs, which `aos decisions`,
-    `aos check` and `aos serve` open. A run that goes on is exported as far as it is.
+    `aos check` and `aos serve` open. With --otlp spans go to a collector, such as http://127.0.0.1:4318. A
+    run that goes on is exported as far as it is.
     """
     chosen = [chosen_run(each, runs).path for each in run] if run else [chosen_run(None, runs).path]
+    if otlp is not None:
+        _send_spans(chosen, otlp, as_json=as_json)
+        return
     written = _WRITERS[format](chosen, output)
     if as_json:
         print_json({"files": {str(from_here(path)): said for path, said in written.items()}})
         return
     for path, said in written.items():
         typer.echo(f"{from_here(path)}: {said}")
+
+
+def _send_spans(runs: list[Path], address: str, *, as_json: bool) -> None:
+    from aos_deploy.run_directory import RunDirectory
+    from aos_deploy.spans.otlp import Collector, is_collector_address
+    from aos_deploy.spans.sending import Sender
+
+    if not is_collector_address(address):
+        raise typer.BadParameter("write it as http://127.0.0.1:4318", param_hint="--otlp")
+    sent: dict[str, int] = {}
+    for run in runs:
+        collector = Collector(address, RunDirectory(run).read_record().robot)
+        number, is_whole = Sender(run, collector, keeps_place=False).send()
+        if not is_whole:
+            raise DeployError(
+                f"{collector.address} does not take spans",
+                code="AOS805",
+                hint="Start a collector that takes OTLP over HTTP, or name another address",
+            )
+        sent[str(from_here(run))] = number
+    if as_json:
+        print_json({"spans": sent})
+        return
+    for path, number in sent.items():
+        typer.echo(f"{path}: {count(number, 'span')} sent")
 
 
 def _mcap(runs: list[Path], output: Path | None) -> dict[Path, str]:

@@ -1,0 +1,37 @@
+"""The spans that are still to be sent when a run's processes have ended, such as that of the mission."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from contextlib import suppress
+
+from aos_deploy.adapters import SPANS
+from aos_deploy.run_directory import RunDirectory
+
+__all__ = ["REST", "send_rest"]
+
+REST = "rest"
+"""The word after the settings for a process that sends once what there is, and ends."""
+
+_REST_S = 6.0
+
+
+async def send_rest(run: RunDirectory, *, is_wanted: bool) -> None:
+    """Sends what the run's journals have and no collector has taken, if that is soon done.
+
+    A process of its own does it: whatever goes wrong with it changes nothing about how the run has ended.
+    """
+    settings = run.path / "settings" / f"{SPANS}.json"
+    if not is_wanted or not settings.is_file():
+        return
+    with suppress(OSError), run.open_log(SPANS) as log:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "aos_deploy.spans", str(settings), REST, stdout=log, stderr=log
+        )
+        try:
+            async with asyncio.timeout(_REST_S):
+                await process.wait()
+        except TimeoutError:
+            process.kill()
+            await process.wait()
