@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
+from aos_deploy.history_check.check import MIDDLEWARE
+from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS
 from aos_deploy.run_directory import RunDirectory, RunRecord
-from aos_protocol.errors import DeployError
-from aos_runtime.journal import Journal
+from aos_protocol.errors import DeployError, StorageError
+from aos_protocol.messages import ActivationId
+from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import stays
 from aos_solver.mission.logbook import JOURNAL, entries_of
-from aos_solver.mission.memory import folded
+from aos_solver.mission.memory import MissionMemory, folded
 
 __all__ = ["TakenUp", "take_up"]
 
@@ -30,7 +34,7 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
     """The deployment of a run as it was started, and the run.
 
     DeployError AOS801 if the path is no run, AOS810 if the run goes on or its mission has ended. StorageError
-    AOS702 if its journal is damaged.
+    AOS702 if its journal is damaged, or lacks what a ledger of the run was asked for.
     """
     run = RunDirectory(path.resolve())
     record = run.read_record()
@@ -70,8 +74,44 @@ def _of_mission(run: RunDirectory) -> tuple[bool, str]:
         return False, ""  # It died before the solver was there.
     with Journal.read(path) as journal:
         memory = folded(journal.rows())
+    _check_that_all_was_intended(run.path, path, memory)
     ending = memory.state.ending if memory.has_ended and memory.state is not None else ""
     return memory.epoch > 0, ending
+
+
+def _check_that_all_was_intended(run: Path, journal: Path, memory: MissionMemory) -> None:
+    """Refuses a journal that has lost its last rows: what was asked for had been intended there before.
+
+    A write-ahead log that was cut off looks as if its process had died before them.
+    """
+    steps = {step.decision.step for step in memory.steps}
+    if memory.pending is not None and memory.pending.intention is not None:
+        steps.add(memory.pending.intention.id.step)
+    ledgers = [
+        (run / MIDDLEWARE, MIDDLEWARE_KINDS),
+        *((path, ADAPTER_KINDS) for path in run.glob("adapter-*.db")),
+    ]
+    for path, kinds in ledgers:
+        if not path.exists():
+            continue
+        with Journal.read(path) as ledger:
+            for row in ledger.walk("started"):
+                id = _id_in(row, kinds["started"])
+                if id.mission == run.name and id.step not in steps:
+                    raise StorageError(
+                        f"the journal {journal} has lost its last rows: it did not intend {id}, for which "
+                        f"{path.name} was asked",
+                        code="AOS702",
+                        hint="Start a new run with aos-up and the deploy file",
+                    )
+
+
+def _id_in(row: JournalRow, kind: type[Any]) -> ActivationId:
+    try:
+        id: ActivationId = msgspec.json.decode(row.payload, type=kind).id
+    except msgspec.MsgspecError as error:
+        raise StorageError(f"row {row.seq} of a ledger is damaged: {error}", code="AOS702") from error
+    return id
 
 
 def _of_system(run: RunDirectory) -> tuple[bool, str]:

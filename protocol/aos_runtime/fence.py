@@ -6,6 +6,7 @@ that are not his. Middleware and adapters each have a fence.
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 from collections.abc import Awaitable, Callable
 
@@ -17,9 +18,12 @@ from aos_protocol.messages import Activate, ActivationId, Cancel, MissionQuery, 
 from aos_runtime.bus import Bus
 from aos_runtime.mission_folders import is_before, number_of
 
-__all__ = ["Fence", "epoch_of_solver", "meaning"]
+__all__ = ["Fence", "epoch_of_solver", "is_given_up", "meaning"]
 
 _ASK_TIMEOUT_S = 5.0
+_LINK_S = 0.2
+_LINK_TIMES = 10
+"""A client whose link was lost finds back to the router within so many times of `_LINK_S`."""
 
 
 def meaning(request: Activate | SkillCall) -> str:
@@ -110,10 +114,31 @@ def epoch_of_solver(bus: Bus, keys: Keys) -> Callable[[str], Awaitable[int | Non
     """Asks the solver on the bus for the epoch of its mission."""
 
     async def asked(mission: str) -> int | None:
-        try:
-            state = await bus.ask(keys.mission_state, MissionQuery(), MissionState, timeout_s=_ASK_TIMEOUT_S)
-        except AosError:
-            return None
-        return state.epoch if state.mission == mission else None
+        state = await _state_of_solver(bus, keys)
+        return state.epoch if state is not None and state.mission == mission else None
 
     return asked
+
+
+async def is_given_up(bus: Bus, keys: Keys, id: ActivationId) -> bool:
+    """Asks the solver on the bus whether its mission has begun this activation and does not wait for it.
+
+    Whoever asks may just have lost its own link, and asks for a while. Of calls by hand, and where no solver
+    answers, nobody says so.
+    """
+    state = await _state_of_solver(bus, keys)
+    for _ in range(_LINK_TIMES):
+        if state is not None:
+            break
+        await asyncio.sleep(_LINK_S)
+        state = await _state_of_solver(bus, keys)
+    if state is None or state.mission != id.mission:
+        return False
+    return state.phase != "acting" or state.step != id.step
+
+
+async def _state_of_solver(bus: Bus, keys: Keys) -> MissionState | None:
+    try:
+        return await bus.ask(keys.mission_state, MissionQuery(), MissionState, timeout_s=_ASK_TIMEOUT_S)
+    except AosError:
+        return None

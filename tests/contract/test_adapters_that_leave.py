@@ -13,6 +13,7 @@ import pytest
 from middleware_system import System
 from processes import HANG_S
 
+from aos_protocol.messages import MissionQuery, MissionState
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.children import Child
 
@@ -52,6 +53,37 @@ async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
             child = await launch(system, endpoint, tmp_path)
         await system.state_when(lambda state: "sense" not in state.unavailable)
         assert (await system.activate("sense", 2)).status == "observed"
+    finally:
+        child.kill()
+        await child.wait()
+
+
+async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_it_was_given_up(
+    system: System, endpoint: str, tmp_path: Path
+) -> None:
+    begun = tmp_path / "begun"
+    now = MissionState("m", "acting", 1, 0.0)
+
+    async def state(_: MissionQuery, __: str) -> MissionState:
+        return now
+
+    await system.bus.answer(system.keys.mission_state, MissionQuery, state)
+    await system.bus.announce(system.keys.live("solver"))
+    robot = (
+        f"def sense(call):\n    print(call.id, file=open({str(begun)!r}, 'a'), flush=True)\n    return {{}}\n"
+    )
+    child = await launch(system, endpoint, tmp_path, robot)
+    try:
+        await system.state_when(lambda state: "sense" not in state.unavailable)
+        os.kill(child.pid, signal.SIGSTOP)
+        assert (await system.activate("sense", 1)).status != "refused", "the call has gone out"
+        now = MissionState("m", "holding", 1, 0.0)
+        await system.state_when(lambda state: "sense" in state.unavailable)
+        os.kill(child.pid, signal.SIGCONT)
+        await system.state_when(lambda state: "sense" not in state.unavailable)
+        now = MissionState("m", "acting", 2, 0.0)
+        assert (await system.activate("sense", 2)).status == "observed"
+        assert begun.read_text().split() == ["m-2"]
     finally:
         child.kill()
         await child.wait()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from pathlib import Path
 
 import pytest
 from models import built_text, engine_of
+from processes import descendants, until_ended
 
 from aos_language.load import load_files
 from aos_protocol.documents import Project
@@ -134,6 +137,26 @@ async def test_what_is_impossible_begins_nothing(cache_dir: Path) -> None:
             await begin_with(engine, StartMission(given=given), None, conditioned, 0.01)
         assert refused.value.code == "AOS516"
         assert await distribution(engine) == before
+
+
+async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_process(
+    cache_dir: Path,
+) -> None:
+    aside = await Engine.start(
+        await built_with_conditions(project(), ("state.place == 7",), cache_dir), seed=1
+    )
+    try:
+        before = (await aside.update("look", "low")).summary
+        for _ in range(2):
+            answer = await aside.condition(0.01)
+            assert (answer.probability, answer.summary) == (0.0, before)
+            assert aside.pid is not None
+            children = descendants(aside.pid)
+            os.kill(aside.pid, signal.SIGKILL)
+            await until_ended(children)
+            assert await aside.summary() == before
+    finally:
+        await aside.close()
 
 
 @pytest.mark.parametrize(

@@ -191,6 +191,25 @@ async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_w
         assert len(killed) == 3
 
 
+async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(
+    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    launch, killed = EngineChild.launch, []
+
+    async def launch_and_kill(built: BuiltModel, beginning: EngineStart) -> EngineChild:
+        child = await launch(built, beginning)
+        if len(killed) < 3:
+            killed.append(child.pid)
+            os.kill(child.pid, signal.SIGKILL)
+        return child
+
+    built = await built_bundle(bundles / "armadillo-finer", cache_dir)
+    monkeypatch.setattr(EngineChild, "launch", launch_and_kill)
+    async with engine_of(built) as engine:
+        assert (await engine.summary()).states > 0
+    assert len(killed) == 3
+
+
 async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it(
     bundles: Path, cache_dir: Path
 ) -> None:

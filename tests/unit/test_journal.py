@@ -158,6 +158,36 @@ def read_damaged(path: Path, whole: bytes, draw: random.Random) -> list[JournalR
     damaged = bytearray(whole)
     damaged[draw.randrange(len(whole))] ^= 1 << draw.randrange(8)
     path.write_bytes(damaged)
+    return rows_of(path)
+
+
+@pytest.mark.parametrize("harm", ["cut off", "flipped bit"])
+def test_a_harmed_write_ahead_log_gives_the_first_rows_or_is_an_error(tmp_path: Path, harm: str) -> None:
+    path, log = tmp_path / "journal.db", tmp_path / "journal.db-wal"
+    with Journal.open(path, clock=StoppedClock()) as journal:
+        for number in range(30):
+            journal.append("cancel", Cancel(f"reason {number} " * 12))
+        rows = journal.rows()
+        files = {path: path.read_bytes(), log: log.read_bytes()}  # As SIGKILL would leave them.
+    draw, lengths = random.Random(1), set()
+    for _ in range(100):
+        left = bytearray(files[log])
+        if harm == "cut off":
+            del left[draw.randrange(len(left)) :]
+        else:
+            left[draw.randrange(len(left))] ^= 1 << draw.randrange(8)
+        path.write_bytes(files[path])
+        log.write_bytes(left)
+        (tmp_path / "journal.db-shm").unlink(missing_ok=True)
+        found = rows_of(path)
+        if found is not None:
+            assert found == rows[: len(found)]
+            lengths.add(len(found))
+    assert len(lengths) > 10
+
+
+def rows_of(path: Path) -> list[JournalRow] | None:
+    """The rows of a journal; None where it is refused."""
     try:
         with Journal.read(path) as journal:
             return journal.rows()

@@ -36,10 +36,11 @@ from aos_runtime.adapters.adapter import Adapter, Answer, Call, Observed
 from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
+from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.asking import ask_until_answered
-from aos_runtime.fence import Fence, epoch_of_solver
+from aos_runtime.fence import Fence, epoch_of_solver, is_given_up
 from aos_runtime.lifecycle import Service
 from aos_runtime.older_python import timeout
 from aos_runtime.subscription import Subscription
@@ -121,6 +122,8 @@ class Host:
         self._fence = Fence(epoch_of_solver(service.bus, service.keys))
         for call in self._ledger.calls():
             self._fence.note(call)
+        self._pauses = Pauses()
+        self._has_solver = False
         self._published: Counter[str] = Counter()
         self._unsent: deque[tuple[str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
         self._sending = threading.Lock()
@@ -238,14 +241,26 @@ class Host:
             sys.path.append(self._settings.folder)  # For classes that stand beside the deploy file.
         self._adapter = load_adapter(self._settings.adapter, self)
         # Before anything is served: whoever calls may be gone a moment later.
-        async with self._service.bus.presence(self._service.keys.live("middleware")) as presence:
-            await self._adapter.start()
-            await self._service.ready()
-            watching = asyncio.create_task(self._watch_middleware(presence))
+        bus, keys = self._service.bus, self._service.keys
+        async with (
+            bus.presence(keys.live("middleware")) as middleware,
+            bus.presence(keys.live("solver")) as solver,
+        ):
+            watching = [asyncio.create_task(self._watch_solver(solver))]
             try:
-                await self._failed
+                with self._pauses:
+                    await self._adapter.start()
+                    await self._service.ready()
+                    watching.append(asyncio.create_task(self._watch_middleware(middleware)))
+                    await self._failed
             finally:
-                watching.cancel()
+                for task in watching:
+                    task.cancel()
+
+    async def _watch_solver(self, presence: Subscription[tuple[str, bool]]) -> None:
+        """Notes that the system has a solver: one that has gone may come again."""
+        async for _, is_there in presence:
+            self._has_solver = self._has_solver or is_there
 
     async def _watch_middleware(self, presence: Subscription[tuple[str, bool]]) -> None:
         """Stops what moves when the middleware, or the bus, was away for too long."""
@@ -282,6 +297,7 @@ class Host:
         """Runs a call, joins the one of the same id, or tells again how it ended."""
         try:
             await self._fence.check(request)
+            await self._check_that_it_is_wanted(request)
         except SkillError as error:
             _log.warning("refused: %s", error)
             raise
@@ -332,6 +348,24 @@ class Host:
             running.ended.set()
         self._tell_end(call, "succeeded")
         return result
+
+    async def _check_that_it_is_wanted(self, request: SkillCall) -> None:
+        """Refuses a call that would begin now, and may have come while this process stood still.
+
+        Its middleware has perhaps given it up, and the mission holds or does something else.
+        """
+        if not self._has_solver or not self._pauses.was_there_one:
+            return
+        is_running = self._running is not None and self._running.call.id == request.id
+        if is_running or self._ledger.stored(request.id) is not None:
+            return
+        if await is_given_up(self._service.bus, self._service.keys, request.id):
+            raise SkillError(
+                f"the call {request.id} of {request.path} comes too late: {self.name} stood still, and "
+                "the mission does not wait for it any more",
+                code="AOS506",
+                hint="Nothing has moved; call it again if it is still wanted",
+            )
 
     def _begin(self, call: Call) -> _Running:
         assert self._adapter is not None

@@ -106,7 +106,7 @@ class Asking:
             engine._beliefs = SharedMemory.create("aos-beliefs")
         engine._listing = SharedMemory.create("aos-listing")
         try:
-            await engine._start_child()
+            await engine._begin_child()
         except BaseException:
             await engine.close()
             raise
@@ -129,7 +129,7 @@ class Asking:
             self._log = BeliefLog()
             self._world = []
             await self._drop_child()
-            await self._start_child()
+            await self._begin_child()
 
     async def anew(self, seed: int, mission_values: Mapping[str, str]) -> Self:
         """Starts another engine of the same model, on its initial belief; errors are those of `start`.
@@ -262,6 +262,16 @@ class Asking:
         """The fault at its statement, if a replay of the commands finds it after so many changes."""
         commands = [*self._restoration(changes), *commands]
         return await at_its_statement(fault, self._built, self._start, commands)
+
+    async def _begin_child(self) -> None:
+        """Starts a child on the initial belief, and another one where it is killed meanwhile."""
+        for again in range(_KILLED_TIMES + 1):
+            try:
+                return await self._start_child()
+            except KilledError as error:
+                if again == _KILLED_TIMES:
+                    raise
+                log.warning("starting again: %s", error)
 
     async def _start_child(self) -> None:
         try:
