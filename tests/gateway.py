@@ -14,9 +14,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mappings import mapping_text
-from processes import HANG_S
+from processes import COMMAND_S, HANG_S
 
-__all__ = ["Answer", "Gateway", "environment", "gateway", "played", "slow_system", "worn_system"]
+__all__ = [
+    "Answer",
+    "Gateway",
+    "environment",
+    "gateway",
+    "played",
+    "slow_deploy_file",
+    "slow_system",
+    "worn_system",
+]
 
 BIN = Path(sys.executable).parent
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,8 +42,9 @@ SLOW_ROBOT = """\
 import asyncio
 import itertools
 import os
+from pathlib import Path
 
-turns = os.open("turns", os.O_RDWR | os.O_NONBLOCK)
+turns = os.open(Path(__file__).with_name("turns"), os.O_RDWR | os.O_NONBLOCK)
 sides = itertools.cycle(("left", "right"))
 
 async def listen(call):
@@ -209,22 +219,28 @@ def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -
     command = [BIN / "aos-up", ROOT / "deploy/errand.yaml", "--model", "--plain", "--runs", runs, *options]
     with (said or folder / "said").open("wb") as out:
         subprocess.run(
-            command, cwd=folder, env=environment(folder, cache), stdout=out, timeout=HANG_S, check=False
+            command, cwd=folder, env=environment(folder, cache), stdout=out, timeout=COMMAND_S, check=False
         )
     return (runs / "latest").resolve()
+
+
+def slow_deploy_file(folder: Path, step_limit: int = 1_000_000) -> Path:
+    """The deploy file of a robot that listens once for each byte written to the pipe `turns` beside it."""
+    os.mkfifo(folder / "turns")
+    (folder / "tiger").mkdir()
+    for path in (ROOT / "deploy/bundles/bench/tiger").iterdir():
+        text = path.read_text().replace("max_duration: 10\n", "max_duration: 900\n")
+        (folder / "tiger" / path.name).write_text(text)
+    (folder / "robot.py").write_text(SLOW_ROBOT)
+    deploy_file = folder / "tiger.yaml"
+    deploy_file.write_text(SLOW.replace("1_000_000", str(step_limit)))
+    return deploy_file
 
 
 @contextmanager
 def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
     """The directory of a mission that goes on: its robot listens once for each write to the pipe `turns`."""
-    os.mkfifo(folder / "turns")
-    (folder / "tiger").mkdir()
-    for path in (ROOT / "deploy/bundles/bench/tiger").iterdir():
-        text = path.read_text().replace("max_duration: 10\n", f"max_duration: {HANG_S:.0f}\n")
-        (folder / "tiger" / path.name).write_text(text)
-    (folder / "tiger.yaml").write_text(SLOW)
-    (folder / "robot.py").write_text(SLOW_ROBOT)
-    with _up(folder, cache, "tiger.yaml", *options) as lines:
+    with _up(folder, cache, slow_deploy_file(folder).name, *options) as lines:
         next(line for line in lines if line["event"] == "decision")
         yield (folder / "runs/latest").resolve()
 

@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 __all__ = ["installed_sources"]
 
@@ -26,7 +26,7 @@ def installed_sources(root: Path, cache: Path) -> Path:
         new = cache / f".page-{lock}-{os.getpid()}"
         shutil.copytree(sources, new, ignore=shutil.ignore_patterns("node_modules"))
         command = [npm, "ci", "--silent", "--no-audit", "--no-fund"]
-        done = subprocess.run(command, cwd=new, capture_output=True, timeout=HANG_S, check=False)
+        done = subprocess.run(command, cwd=new, capture_output=True, timeout=COMMAND_S, check=False)
         if done.returncode != 0:
             shutil.rmtree(new)
             pytest.skip("the page's libraries cannot be fetched here")

@@ -8,10 +8,13 @@ import signal
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["HANG_S", "descendants", "has_listener", "is_running", "kill", "until_ended"]
+__all__ = ["COMMAND_S", "HANG_S", "descendants", "has_listener", "is_running", "kill", "until_ended"]
 
-HANG_S = 900.0
-"""Tests wait this long for what takes seconds on a machine without other work: only a hang takes longer."""
+HANG_S = 120.0
+"""Tests wait this long for one event, which takes a second on an idle machine: only a hang takes longer."""
+
+COMMAND_S = 600.0
+"""Tests wait this long for a whole command, which may compile, plan and simulate."""
 
 
 def is_running(pid: int) -> bool:

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 pytest.importorskip("rosbags", reason="needs the extra `dds`")
 pytest.importorskip("cyclonedds", reason="needs the extra `dds`")
@@ -31,7 +31,7 @@ def fast_dds_program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     program = tmp_path_factory.mktemp("fast_dds") / "peer"
     source = ROOT / "tests" / "cpp" / "fast_dds_peer.cpp"
     command = [compiler, "-std=c++17", str(source), "-o", str(program), "-lfastrtps", "-lfastcdr"]
-    subprocess.run(command, check=True, timeout=HANG_S)
+    subprocess.run(command, check=True, timeout=COMMAND_S)
     return program
 
 
@@ -40,7 +40,7 @@ def test_fast_dds_understands_us_and_we_it(fast_dds_program: Path) -> None:
     with subprocess.Popen([fast_dds_program, domain]) as peer:
         try:
             partner = [sys.executable, str(ROOT / "tests" / "fast_dds_partner.py"), domain]
-            talk = subprocess.run(partner, capture_output=True, text=True, timeout=HANG_S)
+            talk = subprocess.run(partner, capture_output=True, text=True, timeout=COMMAND_S)
         finally:
             peer.kill()
     assert talk.returncode == 0, talk.stderr

@@ -14,7 +14,7 @@ from aos_solver.building.compiler import Compiler, find_compiler
 
 __all__ = ["PATIENCE_S", "built_program", "run", "what_decides"]
 
-PATIENCE_S = 1200.0
+PATIENCE_S = 800.0
 """Another process that compiles the same is waited for."""
 
 

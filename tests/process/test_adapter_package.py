@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from installed import built_wheel, install
-from processes import HANG_S
+from processes import COMMAND_S
 
 BIN = Path(sys.executable).parent
 NEEDED = ("zenoh", "eclipse_zenoh", "msgspec")
@@ -45,7 +45,7 @@ def humble_python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
     subprocess.run([named, "-m", "venv", "--without-pip", environment], check=True)
     python = environment / "bin" / "python"
     pip = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet"]
-    if subprocess.run([*pip, "--only-binary", ":all:", wheel], timeout=HANG_S).returncode != 0:
+    if subprocess.run([*pip, "--only-binary", ":all:", wheel], timeout=COMMAND_S).returncode != 0:
         pytest.skip("needs a package index with msgspec and zenoh for Python 3.10")
     return python
 
@@ -56,7 +56,7 @@ def _runs(python: str) -> bool:
 
 def said_by(python: Path, program: str, *words: str) -> str:
     done = subprocess.run(
-        [python, "-c", program, *words], capture_output=True, text=True, timeout=HANG_S, cwd=python.parent
+        [python, "-c", program, *words], capture_output=True, text=True, timeout=COMMAND_S, cwd=python.parent
     )
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
@@ -92,14 +92,14 @@ def test_an_adapter_of_it_runs_a_mission(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     for words in (["new", "project", "fetch"], ["new", "adapter", "class", "--in", "fetch"]):
-        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=HANG_S)
+        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=COMMAND_S)
     deploy = Path("fetch.yaml")
     command = json.dumps([str(python), "-m", "aos_runtime.adapters", "fetch_robot.py:Robot"])
     text = deploy.read_text()
     assert "{class: 'fetch_robot:Robot'}" in text
     deploy.write_text(text.replace("{class: 'fetch_robot:Robot'}", f"{{command: {command}}}"))
     up = [BIN / "aos-up", deploy, "--plain", "--listen", "tcp/127.0.0.1:0"]
-    done = subprocess.run(up, capture_output=True, text=True, timeout=HANG_S)
+    done = subprocess.run(up, capture_output=True, text=True, timeout=COMMAND_S)
     assert "mission ended: the goal is reached" in done.stdout, done.stdout + done.stderr
     assert "robot ready" in done.stdout
     log = Path("runs/latest/logs/robot.log").read_text()
@@ -118,7 +118,7 @@ def test_a_command_that_is_wrong_is_told(
     python: Path, words: list[str], environment: dict[str, str], said: str
 ) -> None:
     command = [python, "-m", "aos_runtime.adapters", *words]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=HANG_S)
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=COMMAND_S)
     assert done.returncode == 2
     assert done.stderr.startswith(said)
 

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 BIN = Path(sys.executable).parent
 
@@ -28,7 +28,7 @@ def run(command: str) -> str:
     if name == "aos-up":
         arguments += ["--listen", "tcp/127.0.0.1:0"]
     done = subprocess.run(
-        [BIN / name, *arguments], capture_output=True, text=True, check=False, timeout=HANG_S
+        [BIN / name, *arguments], capture_output=True, text=True, check=False, timeout=COMMAND_S
     )
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
     return done.stdout

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from gateway import slow_deploy_file
 from processes import HANG_S, descendants, is_running, until_ended
 
 from aos_deploy.history_check.files import violations_of_run
@@ -89,6 +90,13 @@ class Up:
                 self.pids = [self.process.pid, *descendants(self.process.pid)]
                 return event
         pytest.fail(f"aos-up ended before any {kind}: {self.events}\n{self.error_text()}")
+
+    def until_ready(self, service: str) -> None:
+        """Reads until a service says that it is ready."""
+        while True:
+            event = self.until("service")
+            if (event["service"], event["state"]) == (service, "ready"):
+                return
 
     def error_text(self) -> str:
         assert self.process.stderr is not None
@@ -239,11 +247,15 @@ async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch:
     assert not files_left(scratch)
 
 
-def short_mission(deploy_file: Path) -> Path:
-    """The same with three steps at most."""
-    short = deploy_file.with_name("short.yaml")
-    short.write_text(deploy_file.read_text().replace("step_limit: 30", "step_limit: 3"))
-    return short
+@pytest.fixture(scope="module")
+def slow_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The deploy file of a robot that goes on as a test wants it to, for three steps: it computes nothing."""
+    return slow_deploy_file(tmp_path_factory.mktemp("slow"), step_limit=3)
+
+
+def let_it_go_on(deploy_file: Path) -> None:
+    """Gives the slow robot more turns than it needs."""
+    (deploy_file.parent / "turns").write_bytes(b"." * 9)
 
 
 def pids_of(deploy_file: Path) -> dict[str, int]:
@@ -257,25 +269,29 @@ def summary_of(deploy_file: Path) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("victim", ["router", "registry", "middleware", "solver"])
-def test_a_service_that_dies_is_started_again_and_the_mission_goes_on(deploy_file: Path, victim: str) -> None:
-    with up(short_mission(deploy_file)) as running:
+def test_a_service_that_dies_is_started_again_and_the_mission_goes_on(slow_file: Path, victim: str) -> None:
+    with up(slow_file) as running:
         running.until("decision")
-        os.kill(pids_of(deploy_file)[victim], signal.SIGKILL)
+        os.kill(pids_of(slow_file)[victim], signal.SIGKILL)
+        running.until_ready(victim)
+        let_it_go_on(slow_file)
         assert running.rest() in ENDINGS.values()
     assert max(event.get("step", 0) for event in running.events) > 1
-    assert f"{victim}" in [end["name"] for end in summary_of(deploy_file)["process_ends"]]
+    assert victim in [end["name"] for end in summary_of(slow_file)["process_ends"]]
 
 
-def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was(deploy_file: Path) -> None:
-    with up(short_mission(deploy_file)) as running:
+def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was(slow_file: Path) -> None:
+    with up(slow_file) as running:
         running.until("decision")
         os.kill(running.process.pid, signal.SIGKILL)
         running.process.wait()
     asyncio.run(until_ended(running.pids))
-    run = latest(deploy_file)
+    run = latest(slow_file)
     with up(run, "--resume") as resumed:
+        resumed.until_ready("solver")
+        let_it_go_on(slow_file)
         assert resumed.rest() in ENDINGS.values()
-    assert latest(deploy_file) == run
+    assert latest(slow_file) == run
     steps = [event["step"] for event in resumed.events if event["event"] == "decision"]
     assert steps == sorted(steps)
     assert steps[0] == 1
@@ -288,12 +304,13 @@ def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was(deploy_file: Path) -
         assert "AOS810" in refused_run.error_text()
 
 
-def test_the_engine_child_may_be_killed(deploy_file: Path) -> None:
-    with up(short_mission(deploy_file)) as running:
+def test_the_engine_child_may_be_killed(slow_file: Path) -> None:
+    with up(slow_file) as running:
         running.until("decision")
-        for pid in descendants(pids_of(deploy_file)["solver"]):
+        for pid in descendants(pids_of(slow_file)["solver"]):
             with contextlib.suppress(ProcessLookupError):  # It has ended with the one before.
                 os.kill(pid, signal.SIGKILL)
+        let_it_go_on(slow_file)
         assert running.rest() in ENDINGS.values()
     assert max(event.get("step", 0) for event in running.events) > 1
 
@@ -338,29 +355,33 @@ def test_a_missing_deploy_file_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("file", "old", "new", "place"),
+    "mistakes",
     [
-        ("pick.sd", "__reward = -2;", "__reward = minus_two;", "pick.sd:"),
-        ("pick.sd", "state.easy_can_at", "state.easy_cann_at", "pick.sd:4:27"),
-        ("pick.am", "__input.success", "__input.success(", "pick.am:"),
-        ("armadillo.ef", "project: armadillo", "projekt: armadillo", "armadillo.ef:1"),
+        [("pick.sd", "__reward = -2;", "__reward = minus_two;", "pick.sd:")],
+        [
+            ("pick.sd", "state.easy_can_at", "state.easy_cann_at", "pick.sd:4:27"),
+            ("pick.am", "__input.success", "__input.success(", "pick.am:"),
+            ("armadillo.ef", "project: armadillo", "projekt: armadillo", "armadillo.ef:1"),
+        ],
     ],
-    ids=["C++", "name", "Python", "key"],
+    ids=["of the compiler", "of the registry"],
 )
-def test_a_mistake_in_a_document_is_shown_at_its_place(
-    root: Path, deploy_file: Path, tmp_path: Path, file: str, old: str, new: str, place: str
+def test_mistakes_in_documents_are_shown_at_their_places(
+    root: Path, deploy_file: Path, tmp_path: Path, mistakes: list[tuple[str, str, str, str]]
 ) -> None:
     bundle = tmp_path / "bundle"
     bundle.mkdir()
     for document in (root / "deploy/bundles/armadillo-finer").iterdir():
         (bundle / document.name).write_bytes(document.read_bytes())
-    text = (bundle / file).read_text()
-    assert old in text
-    (bundle / file).write_text(text.replace(old, new, 1))
+    for file, old, new, _ in mistakes:
+        text = (bundle / file).read_text()
+        assert old in text
+        (bundle / file).write_text(text.replace(old, new, 1))
     changed = deploy_file.read_text().replace(str(root / "deploy/bundles/armadillo-finer"), str(bundle))
     result = refused(deploy_file, changed)
     assert result.status == 1
-    assert place in result.text
+    for *_, place in mistakes:
+        assert place in result.text
 
 
 def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path) -> None:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_deploy.commands.machine import examine_machine
 from aos_protocol import __version__
@@ -19,7 +19,7 @@ BIN = Path(sys.executable).parent
 def run(*command: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
     name, *arguments = command
     return subprocess.run(
-        [BIN / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=HANG_S
+        [BIN / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=COMMAND_S
     )
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from models import built_bundle, engine_of
-from processes import HANG_S
+from processes import COMMAND_S
 from reference_problems import MODELS, expected_reward, initial_belief, observed
 
 from aos_language.load import load_bundle
@@ -73,7 +73,7 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_d
 
 def test_the_rocksample_bundles_are_as_their_script_writes_them(bundles: Path) -> None:
     script = bundles / "bench" / "write_rocksamples.py"
-    subprocess.run([sys.executable, script, "--check"], check=True, timeout=HANG_S)
+    subprocess.run([sys.executable, script, "--check"], check=True, timeout=COMMAND_S)
 
 
 @pytest.mark.parametrize("problem", [*MODELS, "rocksample-11-11", "rocksample-15-15", "pocman", *NORMAL])

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from models import built_bundle, engine_of
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_lab.bench.baseline import PROBLEMS, Baselines
 from aos_lab.bench.rows import figure, with_ratios
@@ -24,7 +24,7 @@ AOS = Path(sys.executable).parent / "aos"
 def run_bench(cache_dir: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir)}
     return subprocess.run(
-        [AOS, "bench", *arguments], capture_output=True, text=True, timeout=HANG_S, env=environment
+        [AOS, "bench", *arguments], capture_output=True, text=True, timeout=COMMAND_S, env=environment
     )
 
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 from walk import steps_of
 
 from aos_deploy.run_directory import RunDirectory, Summary
@@ -56,7 +56,7 @@ def run(command: list[str], folder: Path, cache_dir: Path) -> int:
     environment = os.environ | {"AOS_CACHE_DIR": str(cache_dir)}
     program = [str(BIN / command[0]), *command[1:]]
     return subprocess.run(
-        program, cwd=folder, env=environment, capture_output=True, timeout=HANG_S, check=False
+        program, cwd=folder, env=environment, capture_output=True, timeout=COMMAND_S, check=False
     ).returncode
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_lab.calibration.calibrate import Calibration, calibrate
 from aos_lab.calibration.draws import draws_of
@@ -133,7 +133,7 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache
             cwd=tmp_path,
             capture_output=True,
             text=True,
-            timeout=HANG_S,
+            timeout=COMMAND_S,
             env={**os.environ, "AOS_CACHE_DIR": str(cache_dir), "COLUMNS": "120"},
         )
 
@@ -153,7 +153,7 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache
 
 def test_a_folder_without_missions_is_refused(tmp_path: Path) -> None:
     run = subprocess.run(
-        [AOS, "calibrate", tmp_path, FINER], capture_output=True, text=True, timeout=HANG_S, check=False
+        [AOS, "calibrate", tmp_path, FINER], capture_output=True, text=True, timeout=COMMAND_S, check=False
     )
     assert run.returncode == 1
     assert "AOS801" in run.stderr

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from engine_checks import UNITS, engine_checks
-from processes import HANG_S
+from processes import COMMAND_S
 
 SENTENCES = re.compile(r'^TEST\("(.+)"\)', re.MULTILINE)
 
@@ -21,7 +21,7 @@ sentences = [
 @pytest.fixture(scope="module")
 def results(cache_dir: Path) -> dict[str, list[str]]:
     """The expectations of each test that were in vain."""
-    done = subprocess.run([engine_checks(cache_dir)], capture_output=True, text=True, timeout=HANG_S)
+    done = subprocess.run([engine_checks(cache_dir)], capture_output=True, text=True, timeout=COMMAND_S)
     entries = [json.loads(line) for line in done.stdout.splitlines()]
     return {entry["test"]: entry["failures"] for entry in entries}
 

@@ -18,7 +18,7 @@ from exam.jobs import job
 from exam.problem import RUNNING, Problem
 from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
 from exam.told import Told, Values
-from processes import HANG_S
+from processes import COMMAND_S
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def executable(cache_dir: Path) -> Path:
 
 @pytest.fixture
 def truth(executable: Path) -> Iterator[Driver]:
-    driver = Driver(executable, "values", {"truth": 5}, HANG_S)
+    driver = Driver(executable, "values", {"truth": 5}, COMMAND_S)
     yield driver
     driver.close()
 
@@ -132,7 +132,7 @@ async def test_with_a_broken_skill_no_goal_is_claimed_falsely_and_others_stand_i
 def reports(
     executable: Path, what: str, options: dict[str, object], asked: list[Problem]
 ) -> Iterator[tuple[Problem, dict[str, object]]]:
-    driver = Driver(executable, what, options, HANG_S)
+    driver = Driver(executable, what, options, COMMAND_S)
     try:
         yield from ((problem, driver.report(problem)) for problem in asked)
     finally:

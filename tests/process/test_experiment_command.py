@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from processes import HANG_S
+from processes import COMMAND_S
 
 AOS = Path(sys.executable).parent / "aos"
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
@@ -39,7 +39,7 @@ def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(
         experiment.write_text(EXPERIMENT.replace("CHECK", check))
         command = [AOS, "experiment", "run", experiment, "--seeds", str(seeds), "--out", out, "--json"]
         environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir)}
-        done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, env=environment)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, env=environment)
         assert done.returncode == 0, done.stderr
         part: dict[str, Any] = json.loads(done.stdout)["parts"][0]
         return part

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from processes import HANG_S
+from processes import COMMAND_S
 
 RUNS = ("failpoint:journal.intended.after:1", "readonly:middleware.started.before:1")
 
@@ -19,7 +19,7 @@ def test_missions_keep_what_is_promised(root: Path, cache_dir: Path) -> None:
         env=os.environ | {"AOS_CACHE_DIR": str(cache_dir)},
         capture_output=True,
         text=True,
-        timeout=HANG_S,
+        timeout=COMMAND_S,
         check=False,
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr

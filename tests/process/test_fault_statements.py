@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from mappings import mapping_text
 from models import built_text, engine_of
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
@@ -91,7 +91,7 @@ FAULTS = {
 @pytest.fixture(autouse=True)
 def _has_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """A busy machine takes longer to meet the fault again, which says nothing of the statement."""
-    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
+    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
 
 
 def line_of(text: str, mark: str) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from processes import HANG_S
+from processes import COMMAND_S
 
 pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
 
@@ -151,11 +151,11 @@ def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
 
 def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> None:
     command = [Path(sys.executable).parent / "aos", "gym", str(kettle), "--steps", "100", "--worlds", "10"]
-    text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=HANG_S).stdout
+    text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=COMMAND_S).stdout
     assert "actions       Discrete(1): heat" in text
     assert "observations  Discrete(3): DefaultObservation, cold, warm" in text
     program = text[text.index("from aos_lab") :]
-    subprocess.run([sys.executable, "-c", program], check=True, timeout=HANG_S)
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=COMMAND_S)
 
 
 def test_a_world_has_the_values_of_mission_parameters(root: Path) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import typer
-from processes import HANG_S
+from processes import COMMAND_S
 from typer.testing import CliRunner
 
 from aos_deploy import reachability
@@ -121,7 +121,7 @@ def test_a_fault_of_model_code_names_its_document_line(
     error_code: str,
     text: str,
 ) -> None:
-    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
+    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
@@ -152,7 +152,7 @@ def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
     code: str,
     error_code: str,
 ) -> None:
-    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
+    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     severity, place, _ = linted(app, hall(code), exit_code=1)[error_code]
     assert (severity, place) == ("error", "walk.sd:5")
 

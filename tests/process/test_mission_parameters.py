@@ -13,7 +13,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from models import built_bundle, built_text, engine_of
-from processes import HANG_S
+from processes import COMMAND_S, HANG_S
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
@@ -315,7 +315,7 @@ def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_kille
         up.kill()
     (tmp_path / "may_give").touch()
     run = (tmp_path / "runs" / "latest").resolve()
-    resumed = subprocess.run([BIN / "aos-up", "--resume", run], check=False, timeout=HANG_S)
+    resumed = subprocess.run([BIN / "aos-up", "--resume", run], check=False, timeout=COMMAND_S)
     assert resumed.returncode == 0
     with Journal.read(run / "journal.db") as journal:
         begun = [msgspec.json.decode(row.payload, type=MissionBegun) for row in journal.rows("begun")]
@@ -328,6 +328,6 @@ def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_kille
         check=True,
         capture_output=True,
         text=True,
-        timeout=HANG_S,
+        timeout=COMMAND_S,
     )
     assert "target=bob" in listed.stdout

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-from processes import HANG_S
+from processes import COMMAND_S
 
 AOS = Path(sys.executable).parent / "aos"
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
@@ -38,7 +38,7 @@ def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path, cache_dir
             [AOS, "test", missions, "--keep", tmp_path / "kept", *options],
             capture_output=True,
             text=True,
-            timeout=HANG_S,
+            timeout=COMMAND_S,
             env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
         )
 
@@ -98,7 +98,7 @@ def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(
         [AOS, "test", tmp_path / "missions.yaml", "--keep", tmp_path / "kept"],
         capture_output=True,
         text=True,
-        timeout=HANG_S,
+        timeout=COMMAND_S,
         env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
     )
     assert done.returncode == 0, done.stdout + done.stderr

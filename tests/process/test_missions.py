@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import HANG_S, kill
+from processes import COMMAND_S, HANG_S, kill
 
 from aos_deploy.history_check.files import violations_of_run
 from aos_protocol.access import OPERATOR
@@ -98,7 +98,7 @@ class System:
             env=self._environment,
             capture_output=True,
             text=True,
-            timeout=HANG_S,
+            timeout=COMMAND_S,
         )
         return done.returncode, done.stdout, done.stderr
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from gateway import environment
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_deploy.started_system import started_system
 from aos_protocol.errors import DeployError
@@ -48,7 +48,7 @@ def test_the_notebook_starts_follows_steers_studies_and_plots(
         env=environment(tmp_path, cache_dir),
         capture_output=True,
         text=True,
-        timeout=HANG_S,
+        timeout=COMMAND_S,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr

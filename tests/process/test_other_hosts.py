@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 from ssh_host import refusing_ssh, ssh_server, stand_in
 
 BIN = Path(sys.executable).parent
@@ -53,7 +53,7 @@ def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=HANG_S,
+        timeout=COMMAND_S,
     )
     return done.returncode, done.stdout + done.stderr
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import HANG_S, descendants, kill, until_ended
+from processes import COMMAND_S, HANG_S, descendants, kill, until_ended
 from supervised_system import System, command, small
 
 from aos_deploy.own_programs import ReadyPart
@@ -217,7 +217,7 @@ def project(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     for words in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
-        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=HANG_S)
+        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=COMMAND_S)
     (tmp_path / "sim.py").write_text(SIMULATOR)
     robot = tmp_path / "fetch_robot.py"
     robot.write_text(
@@ -242,7 +242,7 @@ with socket.create_server(("127.0.0.1", 0)) as server:
 
 def up(*options: str) -> subprocess.CompletedProcess[str]:
     words = [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0", *options]
-    return subprocess.run(words, capture_output=True, text=True, timeout=HANG_S)
+    return subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
 
 
 def test_a_robot_finds_its_simulator(project: Path) -> None:

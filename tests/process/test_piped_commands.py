@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from models import built_bundle
-from processes import HANG_S
+from processes import COMMAND_S
 
 AOS = Path(sys.executable).parent / "aos"
 COMMANDS = (
@@ -32,7 +32,7 @@ def test_a_piped_command_says_nothing_beside_its_result(
         [AOS, command[0], str(bundle), *command[1:], "--json"],
         capture_output=True,
         text=True,
-        timeout=HANG_S,
+        timeout=COMMAND_S,
         env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
     )
     assert done.returncode == 0, done.stderr

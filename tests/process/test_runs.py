@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S, HANG_S
 
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.run_directory import RunDirectory, RunRecord
@@ -116,7 +116,7 @@ class Place:
             env=self.environment,
             capture_output=True,
             text=True,
-            timeout=HANG_S,
+            timeout=COMMAND_S,
         )
 
 

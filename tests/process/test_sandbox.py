@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hostile.cases import MODELS
 from models import built_text, engine_of
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_protocol.errors import CodeFaultError, ModelError
 from aos_runtime.sandbox.support import sandbox_support
@@ -89,11 +89,11 @@ def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Pa
     script = Path(__file__).parents[1] / "without_landlock.py"
     aos = str(Path(sys.executable).with_name("aos"))
     command = [sys.executable, str(script), aos, "lint", str(tmp_path)]
-    refused = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, check=False)
     assert refused.returncode == 3
     assert "AOS805" in refused.stderr
     assert "no Landlock" in refused.stderr
     command.append("--trust-documents")
-    trusted = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
+    trusted = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, check=False)
     assert trusted.returncode == 0, trusted.stderr
     assert "no Landlock" in trusted.stderr

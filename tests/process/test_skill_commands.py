@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S, HANG_S
 
 BIN = Path(sys.executable).parent
 
@@ -64,7 +64,7 @@ class Running:
 
     def aos(self, *arguments: str) -> str:
         command = [BIN / "aos", *arguments, "--runs", "runs"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=HANG_S)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=COMMAND_S)
         return done.stdout + done.stderr
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_lab.formats.graph_writers import c_header, graphviz
 from aos_lab.formats.policy_graph import OVER, PolicyGraph, policy_graph
@@ -318,7 +318,7 @@ def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(
     compiler = asyncio.run(find_compiler())
     options = ["-x", "c", "-std=c99", "-pedantic-errors", "-Wall", "-Werror"]
     command = [*compiler.command, *options, "walk.c", "-o", "walk"]
-    subprocess.run(command, cwd=tmp_path, check=True, timeout=HANG_S)
+    subprocess.run(command, cwd=tmp_path, check=True, timeout=COMMAND_S)
     observations = np.random.default_rng(1).integers(0, 2, 500).tolist()
     expected, node = [tiger_graph.nodes[0].action], 0
     for observation in observations:

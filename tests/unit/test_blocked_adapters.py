@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 PROGRAM = """
 import asyncio, time
@@ -28,7 +28,7 @@ asyncio.run(call())
 def test_only_a_loop_that_stands_still_ends_the_process(tmp_path: Path, takes_time: str, status: int) -> None:
     robot = tmp_path / "robot.py"
     robot.write_text(PROGRAM.format(takes_time=takes_time))
-    done = subprocess.run([sys.executable, robot], capture_output=True, text=True, timeout=HANG_S)
+    done = subprocess.run([sys.executable, robot], capture_output=True, text=True, timeout=COMMAND_S)
     assert done.returncode == status, done.stderr
     assert ("went on" in done.stdout) == (status == 0)
     if status:

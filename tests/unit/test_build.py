@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from kept_cache import link_engines
 from mappings import mapping_of_model, mapping_text
-from processes import HANG_S, until_ended
+from processes import COMMAND_S, HANG_S, until_ended
 from scripted_models import bundle_project, json_text, lowered, text_project
 
 from aos_protocol.errors import ModelError
@@ -225,7 +225,13 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
         options = [*build_module._OPTIONS["quick"], *more, "-H"]
         command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *options)
         done = await asyncio.to_thread(
-            subprocess.run, command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=HANG_S
+            subprocess.run,
+            command,
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=COMMAND_S,
         )
         assert ("/aos/base/" in done.stderr) == (not more), done.stderr
         objects.append((tmp_path / "model.o").read_bytes())

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from processes import HANG_S
+from processes import COMMAND_S
 
 LINT = Path(sys.executable).parent / "lint-imports"
 
@@ -15,7 +15,7 @@ LINT = Path(sys.executable).parent / "lint-imports"
 def broken(root: Path, configuration: Path) -> list[str]:
     """The contracts that the sources do not keep."""
     command = [LINT, "--config", configuration, "--no-cache"]
-    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=HANG_S, check=False)
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=COMMAND_S, check=False)
     assert "Contracts: " in done.stdout, done.stdout + done.stderr
     return sorted(re.findall(r"^(.+) BROKEN$", done.stdout, re.MULTILINE))
 

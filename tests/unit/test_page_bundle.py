@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 from page_sources import installed_sources
-from processes import HANG_S
+from processes import COMMAND_S
 
 MADE = "services/gateway/aos_gateway/page"
 SOURCES = "services/gateway/page"
@@ -41,7 +41,7 @@ def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path: Path
     shutil.copytree(root / SOURCES, sources, ignore=shutil.ignore_patterns("node_modules"))
     (sources / "node_modules").symlink_to(libraries)
     made = tmp_path / "made"
-    subprocess.run(["node", "build.mjs", made], cwd=sources, check=True, timeout=HANG_S)
+    subprocess.run(["node", "build.mjs", made], cwd=sources, check=True, timeout=COMMAND_S)
     names = {path.name for path in (root / MADE).iterdir()}
     assert {path.name for path in made.iterdir()} == names
     _, other, missing = filecmp.cmpfiles(root / MADE, made, sorted(names), shallow=False)

@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 import pytest
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.armadillo import KIND
@@ -103,7 +103,7 @@ def test_the_frequencies_are_json_and_nothing_else(root: Path) -> None:
     module = "aos_skills.pybullet.worlds.armadillo.frequencies"
     command = [sys.executable, "-m", module, "deploy/worlds/armadillo.yaml"]
     ended = subprocess.run(
-        [*command, "1", "--json"], cwd=root, capture_output=True, timeout=HANG_S, check=True
+        [*command, "1", "--json"], cwd=root, capture_output=True, timeout=COMMAND_S, check=True
     )
     counts = json.loads(ended.stdout)
     assert counts["picks"] == 1
