@@ -177,8 +177,8 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "aos_solver.bus_ports.ACTIVATION_MARGIN_S", "s", "outcome `unknown`",
         ),
         Row(
-            "solver asks registry or middleware something small",
-            "aos_solver.registry_watch.ASK_TIMEOUT_S", "s", "AOS601",
+            "solver or middleware asks the registry something small",
+            "aos_runtime.registry_watch.ASK_TIMEOUT_S", "s", "AOS601",
         ),
         Row(
             "solver waits for the middleware to generate the mappings before the first step",

@@ -23,22 +23,20 @@ from aos_middleware.motion_gate import MotionGate
 from aos_middleware.served_paths import ServedPaths
 from aos_middleware.settings import Settings
 from aos_middleware.surroundings import Surroundings
-from aos_protocol.errors import AosError, BusError, SkillError
+from aos_protocol.errors import BusError, SkillError
 from aos_protocol.messages import (
     Activate,
     ActivationId,
     MappingQuery,
     MappingState,
     Outcome,
-    ProjectQuery,
     ProjectRevision,
 )
 from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
+from aos_runtime.registry_watch import RegistryWatch
 
 __all__ = ["serve"]
-
-ASK_TIMEOUT_S = 5.0
 
 FIRST_MAPPINGS_S = 20.0
 """An activation waits this long for the first mappings of a middleware that was started again."""
@@ -95,13 +93,14 @@ class _Middleware:
 
     async def run(self) -> None:
         bus, keys = self._service.bus, self._service.keys
+        registry = RegistryWatch(bus, keys, self._settings.project, self._mappings.adopt)
         async with bus.listen(keys.announced, ProjectRevision) as announced, asyncio.TaskGroup() as tasks:
             await bus.answer(keys.activate_any, Activate, self._activate)
             await bus.answer(keys.mapping_state, MappingQuery, self._answer_state)
             await self._service.ready()
             tasks.create_task(self._served.follow())
             tasks.create_task(self._monitors.run())
-            tasks.create_task(self._follow_registry())
+            tasks.create_task(registry.follow())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
                     tasks.create_task(self._mappings.adopt(revision))
@@ -110,27 +109,6 @@ class _Middleware:
         # The ledger first: what an activation makes of its vanishing worker is no outcome to remember.
         self._ledger.close()
         await self._mappings.close()
-
-    async def _follow_registry(self) -> None:
-        """Asks for the documents, and again when the registry comes: what it told meanwhile is lost."""
-        await self._adopt_current()
-        registry = self._service.keys.live("registry")
-        async with self._service.bus.presence(registry) as presence:
-            async for _, is_there in presence:
-                if is_there:
-                    await self._adopt_current()
-
-    async def _adopt_current(self) -> None:
-        """Takes what the registry holds already; without it the announcement will come."""
-        question = ProjectQuery(self._settings.project)
-        try:
-            revision = await self._service.bus.ask(
-                self._service.keys.project, question, ProjectRevision, timeout_s=ASK_TIMEOUT_S
-            )
-        except AosError as error:
-            _log.info("no documents yet: %s", error)
-            return
-        await self._mappings.adopt(revision)
 
     def _make_evaluator(self, emitted: EmittedMapping) -> Evaluator:
         return Evaluator(emitted, self._logs / f"mapping-{emitted.skill}.log", self._limits)

@@ -12,6 +12,7 @@ import msgspec
 
 from aos_protocol.errors import AosError, MissionRunsError
 from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartMission
+from aos_runtime.registry_watch import RegistryWatch
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.search import Search
 from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
@@ -26,7 +27,6 @@ from aos_solver.mission.succession import Succession
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
-from aos_solver.registry_watch import RegistryWatch
 from aos_solver.settings import Settings
 
 __all__ = ["MissionRunner"]
@@ -174,7 +174,7 @@ class MissionRunner:
     async def _until_accepted_documents_are_ready(self) -> None:
         """Waits for what the registry has accepted before the start of a mission, here and in the
         middleware."""
-        await self._registry.make_current()
+        await self._registry.adopt_current()
         await self._shelf.made()
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(MAPPING_DEADLINE_S):

@@ -30,6 +30,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.failpoints import reach
 from aos_runtime.lifecycle import Service
+from aos_runtime.registry_watch import RegistryWatch
 from aos_solver.building.build import BuiltModel
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.answers import Progress
@@ -39,7 +40,6 @@ from aos_solver.mission.history import history_page
 from aos_solver.mission.logbook import Logbooks
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission_runner import MissionRunner
-from aos_solver.registry_watch import RegistryWatch
 from aos_solver.settings import Settings
 from aos_solver.steering_desk import SteeringDesk
 from aos_solver.study_desk import StudyDesk

@@ -17,8 +17,8 @@ from aos_protocol.messages import (
 )
 from aos_runtime.bus import Bus
 from aos_runtime.journal import Journal
+from aos_runtime.registry_watch import RegistryWatch
 from aos_solver.mission.logbook import Logbooks
-from aos_solver.registry_watch import RegistryWatch
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import NICENESS, ReplayedMission

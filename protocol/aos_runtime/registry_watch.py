@@ -1,4 +1,4 @@
-"""The registry as the solver sees it: the newest documents of a project, and those of each revision."""
+"""The registry as other services see it: the newest documents of a project, and those of each revision."""
 
 from __future__ import annotations
 
@@ -19,37 +19,32 @@ ASK_TIMEOUT_S = 5.0
 
 
 class RegistryWatch:
-    """Asks for the documents of one project; `make` builds a revision."""
+    """Asks for the documents of one project; each newest revision goes to `adopt`."""
 
     def __init__(
-        self, bus: Bus, keys: Keys, project: str, make: Callable[[ProjectRevision], Awaitable[None]]
+        self, bus: Bus, keys: Keys, project: str, adopt: Callable[[ProjectRevision], Awaitable[None]]
     ) -> None:
         self._bus = bus
         self._keys = keys
         self._project = project
-        self._make = make
+        self._adopt = adopt
 
     async def follow(self) -> None:
         """Asks for the documents, and again when the registry comes: what it told meanwhile is lost."""
-        await self.make_current()
+        await self.adopt_current()
         async with self._bus.presence(self._keys.live("registry")) as presence:
             async for _, is_there in presence:
                 if is_there:
-                    await self.make_current()
+                    await self.adopt_current()
 
-    async def make_current(self) -> None:
-        """Builds what the registry holds already. Where it holds nothing, an announcement will come."""
+    async def adopt_current(self) -> None:
+        """Gives what the registry holds already. Where it holds nothing, an announcement will come."""
         try:
-            revision = await self._bus.ask(
-                self._keys.project,
-                ProjectQuery(self._project),
-                ProjectRevision,
-                timeout_s=ASK_TIMEOUT_S,
-            )
+            revision = await self._ask(ProjectQuery(self._project))
         except AosError as error:
             log.info("no documents yet: %s", error)
             return
-        await self._make(revision)
+        await self._adopt(revision)
 
     async def documents(self, revision: int) -> Project:
         """The documents of a revision."""
