@@ -147,3 +147,20 @@ async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
         assert plan.best.q == pytest.approx(-2 * five_steps, abs=0.15)
     else:  # which costs 1; the last of five may still be a reading, and no more than two
         assert -five_steps - 0.95**3 - 0.95**4 - 0.15 < plan.best.q < -five_steps + 0.15
+
+
+async def test_what_holds_in_every_particle_is_certain_whatever_their_weights_sum_up_to(
+    cache_dir: Path,
+) -> None:
+    counted = (
+        "state_variable: int hour\nextrinsic_code:\nstate_.hour++;\n"
+        "reward_code:\nif (state.hour >= 5) __isGoalState = true, __reward = 1;\n"
+    )
+    files = {**GAUGE, "gauge.ef": GAUGE["gauge.ef"].replace("initial_belief", f"{counted}\ninitial_belief")}
+    async with engine_of(await built_text(files, cache_dir), seed=2) as engine:
+        for response in ("high", "low", "high", "high"):
+            before = await engine.update("read", response)
+            assert before.summary.goal_probability == 0
+        after = await engine.update("read", "low")
+        assert not after.summary.is_exact
+        assert after.summary.goal_probability == 1

@@ -23,6 +23,10 @@ NUMBERS_WIDTH = 38
 """The width of all but the action, the bounds and the bar, with the lines between."""
 BOUNDS_WIDTH = 24
 
+STORY_WIDTH = 120
+FIRST_STEPS, LAST_STEPS = 8, 6
+"""A mission with more steps is told without those between; `--json` has them."""
+
 _LESS_THAN_THE_PLAN = (
     "Some plan returns `at least` so much. A mission plans anew at each step, with a whole horizon to go: "
     "it may put off what that plan does at its end, and return less."
@@ -90,12 +94,9 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
     table = Table()
     for name in ("seed", "world", "mission", "steps", "return"):
         table.add_column(name, justify="left" if name in ("world", "mission") else "right")
-    table.add_column("actions and observations")
+    table.add_column("actions and observations", max_width=STORY_WIDTH)
     for run in runs:
-        story = ", ".join(
-            f"{action} → {observation}"
-            for action, observation in zip(run.actions, _observations(run), strict=True)
-        )
+        story = ", ".join(_story(run))
         world = run.world_ending.value if run.world_ending is not None else "goes on"
         table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
     out = console(is_wide=True)
@@ -106,6 +107,17 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
         f"discounted return {summary['mean_discounted_return']:+.2f} ± {summary['stderr']:.2f}, "
         f"{summary['mean_steps']:.1f} steps"
     )
+
+
+def _story(run: SimulatedRun) -> list[str]:
+    steps = [
+        f"{action} → {observation}"
+        for action, observation in zip(run.actions, _observations(run), strict=True)
+    ]
+    between = len(steps) - FIRST_STEPS - LAST_STEPS
+    if between > 1:
+        steps[FIRST_STEPS:-LAST_STEPS] = [f"… {between} steps more …"]
+    return steps
 
 
 def _observations(run: SimulatedRun) -> list[str]:

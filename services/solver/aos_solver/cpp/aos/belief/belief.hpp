@@ -207,8 +207,14 @@ class Belief {
 
   double probability_of(Ending ending) const {
     double sum = 0;
-    for (const auto& [state, weight] : particles_) sum += Model::ending(state) == ending ? weight : 0;
-    return sum;
+    bool is_certain = !particles_.empty();
+    for (const auto& [state, weight] : particles_) {
+      const bool has_it = Model::ending(state) == ending;
+      sum += has_it ? weight : 0;
+      is_certain = is_certain && has_it;
+    }
+    // Rounded weights sum up to a little less than one: a mission that wants certainty would never end.
+    return is_certain ? 1 : std::min(sum, 1.0);
   }
 
   // The entropy in nats.
