@@ -12,6 +12,7 @@ from models import built_bundle, built_text, engine_of
 from scripted_missions import Surroundings, jammed, observed
 from test_taking_up import rows_of
 
+from aos_deploy.commands.steering import _held
 from aos_deploy.constraints import constrained, constraint_of_option
 from aos_deploy.history_check.steering_rules import SteeringRules
 from aos_deploy.views.lines import decision_line
@@ -124,6 +125,33 @@ async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tige
     assert (held[0].phase, held[0].step, held[0].held_by) == ("holding", 2, "ana")
     assert (state.ending, state.held_by) == ("step_limit", "")
     assert violations(around) == []
+
+
+async def test_a_hold_during_a_search_is_told_to_wait_and_nothing_of_the_search_is_done(
+    tiger: BuiltModel,
+) -> None:
+    around = Steered()
+    wishes = in_turn(lambda: None, lambda: around.steer("hold"), lambda: None, *[lambda: None] * 9)
+    told: list[MissionState] = []
+
+    def publish_state(state: MissionState) -> None:
+        told.append(state)
+        if state.phase == "planning":
+            wishes()
+
+    around.publish_state = publish_state
+    around.on_hold = in_turn(lambda: around.steer("resume"))
+    await run(tiger, around, step_limit=2)
+    waiting = next(state for state in told if state.held_by)
+    assert (waiting.phase, waiting.step) == ("planning", 1)
+    assert waiting.remark == (
+        "the search that goes on ends first, and its choice is dropped; ana holds the mission"
+    )
+    assert "the search that goes on ends first" in _held(waiting)
+    held = told[told.index(waiting) + 1]
+    assert (held.phase, held.step, held.remark) == ("holding", 1, "ana holds the mission")
+    assert [by for _, by in around.chosen] == ["planner", "planner"]
+    assert [search.is_dropped for search in around.decisions[1].searches] == [True, False]
 
 
 async def test_an_action_of_the_operator_is_observed_like_any_other(tiger: BuiltModel) -> None:

@@ -12,7 +12,7 @@ from study.played import Played, play
 
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
-from aos_protocol.messages import TreeQuery, WhatIfQuery, WhyQuery
+from aos_protocol.messages import PredictedObservation, TreeQuery, WhatIfQuery, WhyQuery
 from aos_runtime.journal import JournalRow
 from aos_solver.study.study import Study
 
@@ -131,5 +131,42 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
         other = await study.what_if(WhatIfQuery(1, forbid=("observe_holding",)))
         assert (other.action, other.before) == (chosen.action, "observe_holding")
         assert other.value_before == pytest.approx(why.value)
+    finally:
+        await study.close()
+
+
+async def test_an_action_of_a_script_is_explained_where_values_are_searched(
+    bundles: Path, cache_dir: Path
+) -> None:
+    played = await play(
+        read_bundle_files(bundles / "bench" / "tiger")[0],
+        cache_dir,
+        steps=1,
+        planner="pomcp",
+        simulations=4000,
+    )
+    opened = "open(door=left_door)"
+    asked = msgspec.structs.replace(
+        played.mission.decision(1),
+        action=opened,
+        skill="open",
+        chosen_by="script",
+        actions=(),
+        searches=(),
+        planner="",
+        predicted=(PredictedObservation("opened", 1.0),),
+    )
+    rows = [row for row in played.rows if row.kind == "begun"]
+    text = msgspec.json.encode(asked).decode()
+    played.rows = [*rows, JournalRow(len(rows) + 1, 0, "decision", text)]
+    study = Study(played, cache_dir)
+    try:
+        why = await study.why(WhyQuery(1))
+        assert (why.action, why.chosen_by, why.other, why.planner) == (opened, "script", "listen", "pomcp")
+        assert why.margin < 0
+        assert why.is_close == (why.simulations_to_tell > 0)
+        found = await study.what_if(WhatIfQuery(1, forbid=("listen",)))
+        assert found.before == opened
+        assert "listen" not in {value.action for value in found.actions}
     finally:
         await study.close()

@@ -57,3 +57,12 @@ def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart() -> 
     wide = Flip("holding", "true", 0.5, 0.1, 0.3, True)
     lines = why_lines(msgspec.structs.replace(WHY, flips=(wide,), is_exact=False))
     assert "below a value in 0.1-0.3, now 0.5" in lines[-2]
+
+
+def test_what_an_operator_asked_for_may_be_the_worse_action_and_says_who_chose() -> None:
+    asked = msgspec.structs.replace(WHY, chosen_by="operator", margin=-0.83, value=0.63, other_value=1.46)
+    lines = why_lines(asked)
+    assert lines[0] == (
+        "step 3: look, asked for by an operator, is worth exactly +0.63, pick +1.46: margin -0.83"
+    )
+    assert lines[-2] == "  look is better where P(holding=true) is below 0.0356, now 0.17"

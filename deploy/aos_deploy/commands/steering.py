@@ -126,6 +126,8 @@ def _steer(
 def _held(state: MissionState) -> str:
     if state.phase == "acting":
         return f"{state.held_by} holds it after step {state.step}, which is under way: {state.remark}"
+    if state.phase == "planning":
+        return f"after {count(state.step, 'step')}: {state.remark}"
     return f"{state.held_by} holds it after {count(state.step, 'step')}"
 
 

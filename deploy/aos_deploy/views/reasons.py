@@ -25,7 +25,9 @@ def _verdict(why: Why) -> str:
     here = _worth(why.value, why.stderr)
     there = _worth(why.other_value, why.other_stderr)
     exact = "exactly " if why.is_exact else ""
-    head = f"step {why.step}: {why.action} is worth {exact}{here}, {why.other} {there}"
+    asked = {"operator": ", asked for by an operator,", "script": ", asked for by a script,"}
+    chosen = why.action + asked.get(why.chosen_by, "")
+    head = f"step {why.step}: {chosen} is worth {exact}{here}, {why.other} {there}"
     if not why.is_close:
         return f"{head}: margin {_worth(why.margin, why.margin_stderr)}"
     more = (
@@ -77,11 +79,15 @@ def _flips(why: Why) -> str:
         if why.remark or why.is_close:
             return ""
         found = "is known to make" if not why.is_exact else "makes"
-        return f"  no probability of one value {found} {why.other} better"
+        return f"  no probability of one value {found} {_better_elsewhere(why)} better"
     flip = why.flips[0]
-    return (
-        f"  {why.other} is better where P({flip.variable}={flip.value}) is {_side(flip)}, now {flip.now:.4g}"
-    )
+    place = f"P({flip.variable}={flip.value}) is {_side(flip)}, now {flip.now:.4g}"
+    return f"  {_better_elsewhere(why)} is better where {place}"
+
+
+def _better_elsewhere(why: Why) -> str:
+    """The action that is not the better one now: that may be what a person has asked for."""
+    return why.action if why.margin < 0 else why.other
 
 
 def _side(flip: Flip) -> str:

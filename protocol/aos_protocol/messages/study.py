@@ -61,7 +61,8 @@ class ValueTerm(Message, frozen=True):
 
 
 class Flip(Message, frozen=True):
-    """The probability of a variable's value at which the other action becomes the better one.
+    """The probability of a variable's value at which the choice changes: the other action becomes the better
+    one, or where that is the better one now, this action.
 
     The probability is `now`; all ratios among the states with the value are kept, and among those without it
     (Jeffrey's rule). The choice changes between `low` and `high`. `is_checked`: planning on both sides gave
@@ -79,10 +80,11 @@ class Flip(Message, frozen=True):
 class Why(Message, frozen=True):
     """A decision explained: the action's value, that of another action, and their margin.
 
-    Values are exact where `is_exact`. `is_close`: the margin is within two standard errors, and about
-    `simulations_to_tell` would tell, where any number would. `terms` add up to the values, up to `rest` and
-    `other_rest`, which are what later steps are worth where only the first step's rewards could be told
-    apart. `flips` are the nearest first. `remark` says what could not be told, and why.
+    Where an operator or a script has chosen it (`chosen_by`), the `margin` may be negative: the other action
+    is worth more. Values are exact where `is_exact`. `is_close`: the margin is within two standard errors,
+    and about `simulations_to_tell` would tell, where any number would. `terms` add up to the values, up to
+    `rest` and `other_rest`, which are what later steps are worth where only the first step's rewards could be
+    told apart. `flips` are the nearest first. `remark` says what could not be told, and why.
     """
 
     mission: str

@@ -7,6 +7,9 @@ import { at, record } from "./store.js";
 import { addressOf, route } from "./route.js";
 
 const known = new Map();
+// What a person has asked for need not be the better one now.
+const elsewhere = (why) => (why.margin < 0 ? why.action : why.other);
+const asker = (why) => ({ operator: ", which an operator has asked for", script: ", which a script has asked for" })[why.chosen_by] ?? "";
 
 export function Why() {
   const [instead, setInstead] = useState("");
@@ -42,7 +45,7 @@ export function Why() {
   if (!step) return html`<p class="empty">There is no decision yet.</p>`;
   const others = (record.value?.decided?.actions ?? []).map((each) => each.action).filter((each) => each !== at.value.action);
   return html`<div class="why" aria-busy=${!found && !problem}>
-    <p class="why-head">Why <span class="action">${at.value.action}</span>
+    <p class="why-head">Why <span class="action">${at.value.action}</span>${found && asker(found)}
       <label> and not <select value=${instead} onChange=${(event) => setInstead(event.target.value)}>
         <option value="">the runner-up${found && !instead ? `, ${found.other}` : ""}</option>
         ${others.map((each) => html`<option value=${each}>${each}</option>`)}
@@ -57,7 +60,7 @@ export function Why() {
 const Answer = ({ why }) => html`<div class="columns even">
   <${Card} id="margin" title="Where the margin comes from" note=${verdict(why)}><${Terms} why=${why} /><//>
   <div class="stack">
-    <${Card} id="flips" title="At which belief the choice changes" note=${why.flips?.length ? "Coloured: this action. Grey: the other one. The line is the belief now." : ""}><${Flips} why=${why} /><//>
+    <${Card} id="flips" title="At which belief the choice changes" note=${why.flips?.length ? "Coloured: the action that is better now. Grey: the other one. The line is the belief now." : ""}><${Flips} why=${why} /><//>
     <${Card} id="leads" title="What each response leads to"><${Leads} why=${why} /><//>
   </div>
 </div>`;
@@ -101,14 +104,14 @@ function Flips({ why }) {
   const x = (value) => value * room;
   const flips = (why.flips ?? []).slice(0, 5);
   return html`<div class="flips" ref=${ref}>
-    ${!flips.length && html`<p class="empty">${why.remark || `No probability of one value makes ${why.other} better.`}</p>`}
+    ${!flips.length && html`<p class="empty">${why.remark || `No probability of one value makes ${elsewhere(why)} better.`}</p>`}
     ${flips.map((flip) => {
       const rises = (flip.low + flip.high) / 2 > flip.now;
       const [from, to] = rises ? [flip.high, 1] : [0, flip.low];
       const side = rises ? "above" : "below";
       const words = flip.high - flip.low > 1e-3 ? `${side} a probability between ${chance(flip.low)} and ${chance(flip.high)}` : `${side} ${chance((flip.low + flip.high) / 2)}`;
       return html`<figure class="flip">
-        <figcaption>P(<span class="code">${flip.variable} = ${flip.value}</span>) is ${chance(flip.now)}; ${briefAction(why.other)} wins ${words}${flip.is_checked ? "" : ", not checked by planning"}</figcaption>
+        <figcaption>P(<span class="code">${flip.variable} = ${flip.value}</span>) is ${chance(flip.now)}; ${briefAction(elsewhere(why))} wins ${words}${flip.is_checked ? "" : ", not checked by planning"}</figcaption>
         <svg width=${room} height="22" aria-hidden="true">
           <rect class="this" x="0" y="3" width=${room} height="16" rx="3" />
           <rect class="between" x=${x(flip.low)} y="3" width=${Math.max(1, x(flip.high) - x(flip.low))} height="16" />

@@ -114,7 +114,15 @@ class Mission:
             self._holding.resume()
         if self._to_stop:
             self._abandoning.begin()
-        self._reports.tell()
+        self._reports.tell(self._wait_for_search())
+
+    def _wait_for_search(self) -> str | None:
+        """Tells people of a search that goes on while somebody steers; None where none does."""
+        if self.state.phase != "planning" or self._to_stop:
+            return None
+        holder = self._helm.now.held_by if self._helm.now.waits else ""
+        then = f"{holder} holds the mission" if holder else "it is decided as the mission is steered then"
+        return f"the search that goes on ends first, and its choice is dropped; {then}"
 
     async def until_decided(self, request: str) -> None:
         """Returns once the actions of a request were decided for; SteeringError where they will not be."""

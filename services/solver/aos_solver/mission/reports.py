@@ -117,9 +117,9 @@ class Reports:
         """Takes note of how the mission is steered now; `tell` and each other state tell of it."""
         self._steering = steering
 
-    def tell(self) -> None:
-        """Reports the state once more, with what is new of it."""
-        self._change_state()
+    def tell(self, remark: str | None = None) -> None:
+        """Reports the state once more, with what is new of it, and another remark where there is one."""
+        self._change_state(**({} if remark is None else {"remark": remark}))
 
     def stand_at(self, step: int) -> None:
         """Takes up a mission at this step, which was reported before."""

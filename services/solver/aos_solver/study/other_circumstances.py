@@ -61,7 +61,9 @@ async def _decided(
         search = search.after_takeover()
     belief = await engine.summary()
     plan = await search.run(engine, decision.step, within)
-    actions = _told(plan.actions, plan.planner)
+    names = [action.name for action in engine.description.actions]
+    barred = {names[number] for number in (*within.barred, *within.without_actions)}
+    actions = tuple(each for each in _told(plan.actions, plan.planner) if each.action not in barred)
     best = next(value for value in actions if value.action == plan.best.action)
     return WhatIf(
         decision.mission,

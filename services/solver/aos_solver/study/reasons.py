@@ -84,8 +84,8 @@ class Reasons:
         anew at each step."""
         if self._valuing.is_exact:
             return dict(await self._valuing.values(self._engine, anywhere=True))
-        if deciding_search(self._decision) is None:
-            return dict(await self._valuing.values(self._engine, anywhere=True))
+        if self._valuing.begun is not None:
+            return dict(self._valuing.begun)
         return {value.action: Value(value.q, value.stderr, value.n) for value in self._decision.actions}
 
     def _other(self, instead: str, values: dict[str, Value]) -> str:
@@ -107,11 +107,9 @@ class Reasons:
         return best_of(left, but=self._decision.action)
 
     def _simulations_to_tell(self, margin: Margin) -> int:
-        made = deciding_search(self._decision)
-        if self._valuing.is_exact or not margin.is_close or made is None or margin.value == 0:
+        if self._valuing.is_exact or not margin.is_close or margin.value == 0:
             return 0
-        spent = sum(made.simulations) + made.known
-        return math.ceil(spent * (2 * margin.stderr / margin.value) ** 2)
+        return math.ceil(self._valuing.spent * (2 * margin.stderr / margin.value) ** 2)
 
     async def _flips(self, other: str, margin: Margin, begun_s: float) -> tuple[Flip, ...]:
         decision, valuing = self._decision, self._valuing

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import msgspec
 
 from aos_protocol.messages import DecisionRecord, SearchMade
+from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
 from aos_solver.study.replaying import ReplayedMission
@@ -58,6 +59,10 @@ class Valuing:
         self.within = replay.restriction_of(made) if made is not None else Restriction()
         self.is_exact = decision.planner == "exact" and not self.within.without
         self.horizon = decision.horizon
+        self.spent = sum(made.simulations) + made.known if made is not None else 0
+        """The simulations that the values of the decision stand on."""
+        self.begun: Mapping[str, Value] | None = None
+        """The values at the decision's belief, where nothing was searched for it in the mission."""
         numbers = {action.name: n for n, action in enumerate(replay.engine.description.actions)}
         self.barred = {name for name, number in numbers.items() if number in self.within.barred}
 
@@ -68,6 +73,8 @@ class Valuing:
         plan = await self._search.run(engine, self._step, self.within)
         self.is_exact = plan.planner == "exact" and not self.within.without
         self.horizon = plan.horizon
+        self.spent = plan.simulations + plan.known_simulations
+        self.begun = _values_of(plan)
         return plan.planner
 
     async def values(
@@ -82,7 +89,7 @@ class Valuing:
                 msgspec.structs.replace(self.within, barred=(), cautious=False) if anywhere else self.within
             )
             plan = await self._with(share).run(engine, self._step, within)
-            values = {value.action: Value(value.q, value.stderr, value.n) for value in plan.actions}
+            values = _values_of(plan)
         return values if anywhere else {name: v for name, v in values.items() if name not in self.barred}
 
     def _with(self, share: float) -> Search:
@@ -92,6 +99,10 @@ class Valuing:
         return msgspec.structs.replace(
             self._search, simulations=max(round(self._search.simulations * share), 1)
         )
+
+
+def _values_of(plan: Plan) -> dict[str, Value]:
+    return {value.action: Value(value.q, value.stderr, value.n) for value in plan.actions}
 
 
 def best_of(values: Mapping[str, Value], but: str = "") -> str:
