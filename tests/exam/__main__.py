@@ -91,7 +91,11 @@ def _add_models(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         if name == "solve":
             command.add_argument("--time", type=float, default=0.5, metavar="SECONDS", help="of solving")
         if name in ("regret", "values"):
-            command.add_argument("--planner", action="append", help="auto, pomcp, despot, sarsop, look-ahead")
+            command.add_argument(
+                "--planner",
+                action="append",
+                help="auto, pomcp, despot, sarsop, options, belief-tree, look-ahead",
+            )
             command.add_argument("--seconds", type=float, help="of processor time for a decision; 0.1")
             missions = 4 if name == "regret" else 30
             command.add_argument("--missions", type=int, default=missions, metavar="N", help="of each model")

@@ -9,7 +9,7 @@ from typing import Any
 
 from .problem import Problem
 
-__all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets"]
+__all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets", "times_text"]
 
 MEAN_TARGET, WORST_TARGET = 0.01, 0.10
 """A planner may lose this much more of the range than exact look-ahead."""
@@ -107,8 +107,9 @@ class Regrets:
     worst: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
     sound: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
     by_decisions: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
-    seconds: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
-    longest: dict[str, float] = dataclasses.field(default_factory=lambda: defaultdict(float))
+    times: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
+    """The processor time of each decision, in seconds."""
+
     used: dict[str, Counter[str]] = dataclasses.field(default_factory=lambda: defaultdict(Counter))
     rejected: Counter[str] = dataclasses.field(default_factory=Counter)
     crashes: list[str] = dataclasses.field(default_factory=list)
@@ -127,8 +128,7 @@ class Regrets:
         for name, entry in played.items():
             self.regrets[_family(problem)][name].append(entry["regret"])
             self.by_decisions[name].append(entry["by_decisions"])
-            self.seconds[name].append(entry["seconds"])
-            self.longest[name] = max(self.longest[name], entry["longest"])
+            self.times[name] += entry["times"]
             self.used[name][entry["used"]] += 1
             if name != "look-ahead":
                 # A model in which look-ahead itself goes wrong makes up for no other.
@@ -183,8 +183,7 @@ class Regrets:
                 f"its decisions by themselves lose {100 * fmean(self.by_decisions[name]):.2f} %",
                 f"    where look-ahead is near the optimum ({len(self.sound[name])} models): "
                 f"{_mean_and_worst(self.sound[name])}",
-                f"    {1000 * fmean(self.seconds[name]):.0f} ms a decision, "
-                f"longest {self.longest[name]:.2f} s; began with {began}",
+                f"    {times_text(self.times[name])}; began with {began}",
             ]
         lines += [f"  {count} models left out: {why}" for why, count in self.rejected.items()]
         lines += [f"  crashed: {', '.join(self.crashes)}"] if self.crashes else []
@@ -206,6 +205,14 @@ class Regrets:
             "rejected": self.rejected,
             "crashes": self.crashes,
         }
+
+
+def times_text(times_s: list[float]) -> str:
+    """Percentiles of decision times, for people."""
+    ranked = sorted(1000 * time_s for time_s in times_s)
+    half, most = (ranked[int(share * (len(ranked) - 1))] for share in (0.5, 0.95))
+    shares = f"50 % within {half:.0f} ms, 95 % within {most:.0f} ms, longest {ranked[-1]:.0f} ms"
+    return f"{len(ranked)} decisions: {shares}"
 
 
 def _mean_and_worst(excesses: list[tuple[float, str]]) -> str:

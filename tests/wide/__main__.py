@@ -1,49 +1,39 @@
 """Measures planners on problems whose states cannot be listed, beside rules by hand.
 
-python -m tests.wide                      # all problems, 8 missions each at 0.1 s a decision
+python -m tests.wide                      # all problems, 8 missions each, 0.1 s of processor time a decision
 python -m tests.wide clutter --size 60 --runs 30
 python -m tests.wide write FOLDER         # writes the bundles
 """
 
 import argparse
-import json
-import subprocess
-import sys
+import asyncio
+import random
 import tempfile
 from pathlib import Path
 
-from tests.wide import rules
-from tests.wide.problems import PROBLEMS, SIZES
+import numpy as np
+from tests.exam.summary import times_text
+
+from .apart import APART, APART_SIZES
+from .apart_rules import APART_RULES
+from .missions import Played, played
+from .problems import PROBLEMS, SIZES
+from .rules import RULES
 
 _STEPS = 120  # at most, in a mission
+
+_BUNDLES = PROBLEMS | APART
+_SIZES = SIZES | APART_SIZES
+_RULES = RULES | APART_RULES
 
 
 def write(folder: Path, problem: str, size: int) -> Path:
     """Writes the bundle of a problem into a folder of its own and returns that."""
     bundle = folder / f"{problem}{size}"
     bundle.mkdir(parents=True, exist_ok=True)
-    for name, text in PROBLEMS[problem](size).items():
+    for name, text in _BUNDLES[problem](size).items():
         (bundle / name).write_text(text)
     return bundle
-
-
-def simulated(bundle: Path, arguments: argparse.Namespace) -> dict[str, dict[str, float]]:
-    """The report of `aos simulate` on a bundle."""
-    command = [
-        str(Path(sys.executable).with_name("aos")),
-        "simulate",
-        str(bundle),
-        "--goal-probability",
-        "1",
-        "--json",
-    ]
-    command += ["--time", str(arguments.time), "--runs", str(arguments.runs), "--seed", str(arguments.seed)]
-    command += ["--step-limit", str(_STEPS), "--planner", arguments.planner]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(done.stderr or done.stdout)
-    report: dict[str, dict[str, float]] = json.loads(done.stdout)
-    return report
 
 
 def main() -> None:
@@ -58,18 +48,32 @@ def main() -> None:
     parser.add_argument("--planner", default="auto")
     arguments = parser.parse_args()
     if arguments.problem[:1] == ["write"]:
-        for problem, size in SIZES.items():
+        for problem, size in _SIZES.items():
             write(Path(arguments.problem[1]), problem, arguments.size or size)
         return
-    for problem in arguments.problem or PROBLEMS:
-        size = arguments.size or SIZES[problem]
-        rule, rule_error = rules.returned(problem, size, 200, arguments.seed)
+    for problem in arguments.problem or _BUNDLES:
+        size = arguments.size or _SIZES[problem]
+        rule, rule_error = ruled(problem, size, 200, arguments.seed)
+        seeds = range(arguments.seed, arguments.seed + arguments.runs)
         with tempfile.TemporaryDirectory() as folder:
-            report = simulated(write(Path(folder), problem, size), arguments)
-        summary = report["summary"]
-        ours = f"{summary['mean_discounted_return']:.1f} +- {summary['stderr']:.1f}"
-        line = f"{problem} {size}: rule {rule:.1f} +- {rule_error:.1f}, {arguments.planner} {ours}"
-        print(line, flush=True)
+            bundle = write(Path(folder), problem, size)
+            found = asyncio.run(played(bundle, arguments.planner, arguments.time, seeds, _STEPS))
+        print(f"{problem} {size}: rule {rule:.1f} +- {rule_error:.1f}, {_text(found)}", flush=True)
+
+
+def ruled(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
+    """The mean discounted return of a rule over missions, and its standard error."""
+    returns = [_RULES[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)]
+    return float(np.mean(returns)), float(np.std(returns, ddof=1) / missions**0.5)
+
+
+def _text(found: Played) -> str:
+    assert found.first is not None
+    told = found.first.best
+    return (
+        f"{' and '.join(sorted(found.planners))} {found.mean:.1f} +- {found.error:.1f} "
+        f"(told {told.q:.1f} +- {told.stderr:.1f}); {times_text(found.times_s)}"
+    )
 
 
 if __name__ == "__main__":

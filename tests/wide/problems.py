@@ -2,68 +2,12 @@
 
 from collections.abc import Callable
 
-Bundle = dict[str, str]  # file name to text
-
-
-def _mapping(
-    project: str, skill: str, parameters: list[str], responses: list[str], numbers: list[str]
-) -> str:
-    lines = [f"project: {project}", "", "module_activation: skill", f"path: /{skill}", "max_duration: 60"]
-    for name in parameters:
-        lines += [f"parameter: the_{name}", "code:", f"chosen_{name}", ""]
-    for name in parameters:
-        lines += [f"local_variable: chosen_{name}", f"action_parameter: {name}", ""]
-    lines += [
-        "local_variable: code",
-        "type: string",
-        "from_ros_service_response: true",
-        "code:",
-        "code = __input.code",
-        "",
-    ]
-    for name in numbers:
-        lines += [f"local_variable: {name}", "type: float", "from_ros_service_response: true", "code:"]
-        lines += [f"{name} = __input.{name}", ""]
-    for response in responses:
-        lines += [f"response: {response}", f'response_rule: code == "{response}"']
-    return "\n".join(lines) + "\n"
-
-
-class _Writer:
-    """Collects the documents of a bundle."""
-
-    def __init__(self, project: str, environment: str) -> None:
-        self.project = project
-        self.files: Bundle = {"e.ef": f"project: {project}\n{environment}"}
-
-    def skill(
-        self,
-        name: str,
-        responses: list[str],
-        model: str,
-        *,
-        over: dict[str, str] | None = None,
-        numbers: list[str] | None = None,
-    ) -> None:
-        over = over or {}
-        values = "".join(f"parameter: int {parameter}\n" for parameter in over)
-        loops = "".join(
-            f"for (int {parameter} = 0; {parameter} < {count}; {parameter}++) "
-            for parameter, count in over.items()
-        )
-        listed = (
-            "available_parameters_code:\n"
-            f"{loops}__possibleParameters.push_back(std::make_tuple({', '.join(over)}));\n"
-            if over
-            else ""
-        )
-        self.files[f"{name}.sd"] = f"project: {self.project}\n{values}\n{listed}\ndynamic_model:\n{model}\n"
-        self.files[f"{name}.am"] = _mapping(self.project, name, list(over), responses, numbers or [])
+from .writing import Bundle, BundleWriter
 
 
 def parcels(count: int = 14) -> Bundle:
     """Many parcels, each for one of three places: scan them (noisy), open them (dear), send them off."""
-    writer = _Writer(
+    writer = BundleWriter(
         f"parcels{count}",
         f"""horizon: 80
 discount: 0.97
@@ -115,7 +59,7 @@ if (over) {{
 
 def clutter(count: int = 40) -> Bundle:
     """A thing in one of many spots, each of them covered or not: look, lift the cover, pick."""
-    writer = _Writer(
+    writer = BundleWriter(
         f"clutter{count}",
         f"""horizon: {2 * count + 20}
 discount: 0.985
@@ -162,7 +106,7 @@ if (state.covered[spot]) {
 
 def open_field(light: int = 9) -> Bundle:
     """A robot in the open that measures its place better in the north, and shall stop in the south."""
-    writer = _Writer(
+    writer = BundleWriter(
         f"open-field{light}",
         """horizon: 60
 discount: 0.97
@@ -199,7 +143,7 @@ __observed.north = AOS.SampleNormal(state__.y, deviation);"""
 
 def scales(settings: int = 17) -> Bundle:
     """A load of unknown weight: weigh it on a coarse and on a fine scale, then choose a setting."""
-    writer = _Writer(
+    writer = BundleWriter(
         f"scales{settings}",
         """horizon: 40
 discount: 0.97
@@ -237,7 +181,7 @@ __observed.kg = AOS.SampleNormal(state.weight, {deviation});"""
 
 def harbour(length: int = 60) -> Bundle:
     """A boat on a line that knows of its place the depth below it, and shall anchor at one place."""
-    writer = _Writer(
+    writer = BundleWriter(
         f"harbour{length}",
         f"""horizon: 60
 discount: 0.98

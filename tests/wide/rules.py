@@ -140,9 +140,3 @@ RULES: dict[str, Callable[[int, random.Random], float]] = {
     "scales": scales,
     "harbour": harbour,
 }
-
-
-def returned(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
-    """The mean discounted return of a rule over missions, and its standard error."""
-    returns = [RULES[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)]
-    return float(np.mean(returns)), float(np.std(returns, ddof=1) / missions**0.5)

@@ -12,8 +12,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -100,9 +102,7 @@ class Regret {
     double by_decisions = 0;
     Played worst;
     double highest = -INFINITY;
-    double seconds = 0;
-    double longest = 0;
-    int decisions = 0;
+    std::vector<double> times;  // of decisions, in seconds of processor time
     Decision first{};
     std::optional<Planner> planner;
     if (name != "look-ahead") planner.emplace();
@@ -113,10 +113,8 @@ class Regret {
         const double before = processor_seconds();
         const Decision decision = planner ? searched(*planner, name, belief, mission, step)
                                           : Decision{looked_ahead(exact), "look-ahead", "", {}};
-        const double spent = processor_seconds() - before;
-        seconds += spent;
-        longest = std::max(longest, spent);
-        if (++decisions == 1) first = decision;
+        times.push_back(processor_seconds() - before);
+        if (times.size() == 1) first = decision;
         return decision.action;
       };
       const Played played = play(start, mission, planner ? &*planner : nullptr, decide, fault);
@@ -135,8 +133,10 @@ class Regret {
     json.member("returned", returned.mean).member("returned_error", returned.error);
     json.member("told", first.told.q).member("told_error", first.told.standard_error);
     json.member("at_least", first.told.at_least).member("at_most", first.told.at_most);
-    json.member("used", first.name).member("why", first.why).member("decisions", decisions);
-    json.member("seconds", seconds / std::max(decisions, 1)).member("longest", longest);
+    json.member("used", first.name).member("why", first.why);
+    json.key("times").begin_array();
+    for (const double time : times) json.value(time);
+    json.end_array();
     json.member("worst_actions", worst.actions).member("fault", fault).end_object();
   }
 
@@ -209,11 +209,18 @@ class Regret {
     aos::Budget budget;
     budget.seconds = options_.seconds;
     budget.simulations = options_.simulations;
-    planner.search(*aos::planner_kind(name), belief, budget, problem_.horizon, random);
+    planner.search(kind_of(name), belief, budget, problem_.horizon, random);
     const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
     const int action = planner.choice(estimates);
     const auto told = planner.values(belief, estimates, action)[static_cast<std::size_t>(action)];
     return {action, planner.name(), planner.why(), told};
+  }
+
+  // Also of planners that cannot be asked for by name.
+  static aos::PlannerKind kind_of(const std::string& name) {
+    const auto* const found = std::ranges::find(aos::planner_names, name);
+    if (found == std::end(aos::planner_names)) throw std::runtime_error("there is no planner " + name);
+    return static_cast<aos::PlannerKind>(found - aos::planner_names);
   }
 
   // Against the best action, with a whole horizon to go.

@@ -211,6 +211,7 @@ class Planner {
     is_near_ = false;
     if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon, random);
     why_ = "it was asked for";
+    if (asked_for == PlannerKind::options) return options_or_pomcp(belief, budget, horizon, random);
     if (asked_for != PlannerKind::sarsop) return asked_for;
     const std::string obstacle = point_based_obstacle(belief, horizon);
     if (obstacle.empty()) return PlannerKind::sarsop;
@@ -222,6 +223,7 @@ class Planner {
     if (!space_.reach(belief)) {
       why_ = space_.obstacle();
       if (serves_near(belief, horizon)) return PlannerKind::sarsop;
+      if (Model::has_rollout_policy || pomcp_.has_wide_values(belief, horizon)) return PlannerKind::pomcp;
       return options_or_pomcp(belief, budget, horizon, random);
     }
     why_ = "all " + std::to_string(space_.size()) + " states can be listed";
@@ -250,7 +252,6 @@ class Planner {
   }
 
   PlannerKind options_or_pomcp(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
-    if (Model::has_rollout_policy || pomcp_.has_wide_values(belief, horizon)) return PlannerKind::pomcp;
     const auto start = thread_time();
     const std::string obstacle = options_.prepare(belief, budget, horizon, random);
     searching_ += thread_time() - start;

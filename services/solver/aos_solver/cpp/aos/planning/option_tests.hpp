@@ -1,0 +1,113 @@
+// What can be observed where the robot is: actions that change nothing, and what they tell of the state.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/leaf_cells.hpp"
+#include "aos/planning/option_regret.hpp"
+#include "aos/planning/repeated_observation.hpp"
+#include "aos/planning/sampled_belief.hpp"
+#include "aos/planning/step_reports.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionTests {
+ public:
+  using State = typename Model::State;
+  static constexpr double least_information = 1e-3;  // in nats
+  static constexpr int most_repeats = 8;
+
+  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret) : belief_(belief), regret_(regret) {}
+
+  // Takes each action once from each state, and notes what is observed. `steps` is counted down.
+  void observe_all(const LeafCells<Model>& cells, const BarredActions& barred, double& steps, Sampler& random) {
+    const auto actions = static_cast<std::size_t>(Model::action_count());
+    reports_.resize(actions);
+    informations_.assign(actions, 0);
+    tests_.clear();
+    moves_.clear();
+    for (std::size_t a = 0; a < actions; ++a) {
+      reports_[a].resize(belief_.size());
+      if (barred.contains(a)) continue;
+      double reward = 0;
+      const bool changes = take(static_cast<int>(a), cells, reward, random);
+      steps -= 2 * static_cast<double>(belief_.size());
+      if (changes) {
+        moves_.push_back(static_cast<int>(a));
+        continue;
+      }
+      informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
+      if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
+    }
+    std::ranges::stable_sort(tests_, std::greater<>{}, &Test::information);
+  }
+
+  bool empty() const { return tests_.empty(); }
+  // The actions that change the state.
+  const std::vector<int>& moves() const { return moves_; }
+  bool is_move(int action) const { return std::ranges::find(moves_, action) != moves_.end(); }
+  double information_of(int action) const { return informations_[static_cast<std::size_t>(action)]; }
+
+  // Adds the tests of each skill that tell most, made once or several times in a row.
+  void add_to(std::vector<OptionCandidate>& candidates, Sampler& random) const {
+    std::vector<std::size_t> tried(static_cast<std::size_t>(Model::skill_count));
+    for (const Test& test : tests_) {
+      if (tried[static_cast<std::size_t>(Model::skill_of(test.action))]++ >= tried_tests) continue;
+      const std::vector<StepReports>& reports = reports_[static_cast<std::size_t>(test.action)];
+      const RepeatedObservation observation{reports};
+      double paid = 0;
+      double discount = 1;
+      for (int repeats = 1, done = 0; repeats <= most_repeats; repeats *= 2) {
+        for (; done < repeats; ++done, discount *= Model::discount) paid += discount * test.reward;
+        const double left = regret_.after(observation, repeats, random, [&](std::size_t k, StateWeights& weights) {
+          for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
+        });
+        candidates.push_back({test.action, paid + discount * (regret_.value_seen() - regret_.share() * left), "what can be observed"});
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t tried_tests = 8;  // of each skill
+
+  struct Test {
+    int action;
+    double reward;
+    double information;
+  };
+
+  // Takes an action from all states. Returns whether it changes any of them.
+  bool take(int action, const LeafCells<Model>& cells, double& reward, Sampler& random) {
+    before_.resize(cells.size());
+    after_.resize(cells.size());
+    bool changes = false;
+    for (std::size_t k = 0; k < belief_.size(); ++k) {
+      State state = belief_.states()[k];
+      cells.write(state, before_.data());
+      reward += belief_.weights()[k] * step_.take(state, action, reports_[static_cast<std::size_t>(action)][k], random);
+      cells.write(state, after_.data());
+      changes = changes || before_ != after_ || Model::ending(state) != Ending::running;
+    }
+    return changes;
+  }
+
+  const SampledBelief<Model>& belief_;
+  const OptionRegret<Model>& regret_;
+  ReportedStep<Model> step_;
+  std::vector<std::vector<StepReports>> reports_;  // [action][state]
+  std::vector<double> informations_;               // by action
+  std::vector<Test> tests_;
+  std::vector<int> moves_;
+  std::vector<std::uint64_t> before_;
+  std::vector<std::uint64_t> after_;
+};
+
+}  // namespace aos
