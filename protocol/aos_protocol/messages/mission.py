@@ -112,7 +112,8 @@ class MissionBegun(Message, frozen=True, omit_defaults=True):
 
     `revision` and `model_digest` are of the documents at this moment, `seed` is the mission's.
     `mission_parameters` are its values of all parts of mission parameters, which newer documents do not
-    change. `start` is what a mission of a system that stays was asked to begin with.
+    change. `start` is what a mission of a system that stays was asked to begin with. A mission `is_retraced`
+    where it is taken up through all the models that it had; else this one has replayed its past.
     """
 
     mission: str
@@ -122,6 +123,7 @@ class MissionBegun(Message, frozen=True, omit_defaults=True):
     model_digest: str
     mission_parameters: dict[str, str] = {}
     start: StartMission | None = None
+    is_retraced: bool = False
 
 
 TakeoverWay = Literal["import", "replay", "projection"]

@@ -15,6 +15,7 @@ from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartM
 from aos_runtime.registry_watch import RegistryWatch
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.search import Search
+from aos_solver.earlier_models import earlier_models
 from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules
@@ -23,6 +24,7 @@ from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN, MissionMemory
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Past
+from aos_solver.mission.retracing import Earlier
 from aos_solver.mission.succession import Succession
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
@@ -103,11 +105,10 @@ class MissionRunner:
             if self.mission is not None or book is None:
                 return  # Whoever has started the system was quicker.
             running, past = await self._first_model(), None
+            earlier = await self._earlier(book, running)
             if book.number:
-                begun = await self._succession.at_start_of(running, book.number)
-                running, past = RunningModel(running.revision, begun.engine), begun.past
-                await self._shelf.turn_to(running, self._succession.values(book.start))
-            self._begin(book, running, book.start, past)
+                running, past, earlier = await self._at_its_start(book, running, earlier)
+            self._begin(book, running, book.start, past, earlier=earlier)
 
     async def running(self) -> Mission | None:
         """Returns the mission that runs, once it is taken up where its solver was started again."""
@@ -157,8 +158,35 @@ class MissionRunner:
 
     async def _begin_only(self) -> None:
         """Begins the only mission of a system that ends with it, or takes it up."""
-        assert self._books.newest is not None
-        self._begin(self._books.newest, await self._first_model(), None)
+        book = self._books.newest
+        assert book is not None
+        running = await self._first_model()
+        self._begin(book, running, None, earlier=await self._earlier(book, running))
+
+    async def _earlier(self, book: Logbook, running: RunningModel) -> tuple[Earlier, ...]:
+        """The models that the mission had before, as far as its belief has come through them."""
+        documents = self._registry.documents
+        return await earlier_models(
+            book.memory, running, documents, self._settings, lambda text: log.info("%s", text)
+        )
+
+    async def _at_its_start(
+        self, book: Logbook, running: RunningModel, earlier: tuple[Earlier, ...]
+    ) -> tuple[RunningModel, Past, tuple[Earlier, ...]]:
+        """Brings the first of the models to the belief that one of several missions began with.
+
+        Returns the running one with an engine of its own, the past of that belief, and the earlier ones.
+        """
+        first = earlier[0].model if earlier else running
+        begun = await self._succession.at_start_of(first, book.number)
+        first = RunningModel(first.revision, begun.engine)
+        if earlier:
+            await earlier[0].model.engine.close()
+            earlier = (Earlier(first, earlier[0].until), *earlier[1:])
+            own = await running.engine.anew(book.seed, book.memory.mission_parameters)
+            first = RunningModel(running.revision, own)
+        await self._shelf.turn_to(first, self._succession.values(book.start))
+        return first, begun.past, earlier
 
     async def _begin_next(self, start: StartMission) -> None:
         """Begins the next mission of a system that stays; nothing has changed where that fails."""
@@ -191,6 +219,7 @@ class MissionRunner:
         start: StartMission | None,
         past: Past | None = None,
         drift: DriftTests | None = None,
+        earlier: tuple[Earlier, ...] = (),
     ) -> None:
         """Begins a mission or takes it up; that it begins is in the journal."""
         terms = self._terms(book.name, book.seed, book.memory.epoch + 1, running)
@@ -202,10 +231,11 @@ class MissionRunner:
             running.digest,
             running.engine.description.mission_parameters,
             start,
+            bool(earlier),
         )
         book.append(BEGUN, begun)
         memory, book.memory = book.memory, MissionMemory()
-        self.mission = Mission(terms, running, self._ports, memory, past, drift)
+        self.mission = Mission(terms, running, self._ports, memory, past, drift, earlier)
         self.ended.clear()
         self._started.set()
         self._has_begun.set()

@@ -7,7 +7,7 @@ move before anything moves.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import msgspec
 
@@ -33,9 +33,10 @@ from aos_solver.mission.failures import Failures
 from aos_solver.mission.helm import Helm
 from aos_solver.mission.holding import Holding
 from aos_solver.mission.memory import MissionMemory, Pending
-from aos_solver.mission.past import Past, evidence_of, replayed, updated
+from aos_solver.mission.past import Past, evidence_of, updated
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.reports import Reports
+from aos_solver.mission.retracing import Earlier, retraced
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.steering import LIFTS, Asked
 from aos_solver.mission.takeover import RunningModel
@@ -64,15 +65,18 @@ class Mission:
         memory: MissionMemory = _NOTHING,
         before: Past | None = None,
         drift: DriftTests | None = None,
+        earlier: Sequence[Earlier] = (),
     ) -> None:
         """`memory` is what the mission has behind it, which has not ended. `before` is the past of the belief
         that it begins with, where that is not the initial one. `drift` are the tests of the mission before.
+        `earlier` are the models through which the belief comes to that of `model`, where it is taken up so.
         """
         state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
         self._reports = Reports(state, ports, memory)
         self._memory = memory
         self._terms = terms
         self._model = model
+        self._earlier = earlier
         self._ports = ports
         self._failures = Failures(terms.failures)
         self._abandoning = Abandoning()
@@ -175,19 +179,21 @@ class Mission:
     async def _take_up(self) -> bool:
         """Brings the mission to where the memory ends, and the step that is not over to its end.
 
-        The belief is the posterior of the model that runs now, given every action and observation. Returns
-        whether the mission goes on.
+        The belief comes through the earlier models, or is the posterior of the model that runs now, given
+        every action and observation. Returns whether the mission goes on.
         """
         memory, self._memory = self._memory, _NOTHING
         known = len(self.past)
         self.past.steps += [evidence_of(step.decision, step.outcome, self._failures) for step in memory.steps]
         steps = iter(memory.steps)
-        async for update in replayed(self._model.engine, self.past, known):
+        async for update in retraced(self._earlier, self._model, self.past, known):
             decision, observed, observed_ns = next(steps)
             self._budget.take_up(decision.constraints)
             self._take_failure(decision, observed, update, self._s_of(observed_ns))
             self.belief = update.summary
             self._reports.stand_at(decision.step)
+        if self._earlier:
+            self.belief = await self._model.engine.summary()  # It may have taken over after the last step.
         if memory.pending is not None and self._can_finish(memory.pending):
             decision, intention, outcome = memory.pending
             self._budget.take_up(decision.constraints)

@@ -19,11 +19,13 @@ from aos_protocol.messages import (
     DriftTests,
     MissionBegun,
     MissionState,
+    ModelAdopted,
     Outcome,
     Steer,
 )
 from aos_runtime.journal import JournalRow
 from aos_solver.mission.drift import DRIFT, after_use
+from aos_solver.mission.retracing import Stretch, after
 from aos_solver.mission.steering import LIFTS, REFUSED, STEERED, Steering
 
 __all__ = ["BEGUN", "MissionMemory", "PastStep", "Pending", "folded"]
@@ -33,6 +35,7 @@ BEGUN = "begun"
 
 _KINDS: dict[str, type[Any]] = {
     BEGUN: MissionBegun,
+    "adopted": ModelAdopted,
     "decision": DecisionRecord,
     "intended": Activate,
     "outcome": Outcome,
@@ -72,7 +75,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     `begun` is the row with which the first solver began the mission, None where none has. `sequence` is the
     number of the next record, and `goal_probability` that of the last one's belief. `mission_parameters` are
     the values that the mission began with. With `is_lifted` somebody has looked after what it held for.
-    `drift` are the tests of the model, None where the journal has none.
+    `drift` are the tests of the model, None where the journal has none. `stretches` are the models in order.
     """
 
     epoch: int = 0
@@ -86,6 +89,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     steering: Steering = Steering()
     is_lifted: bool = False
     drift: DriftTests | None = None
+    stretches: tuple[Stretch, ...] = ()
 
     @property
     def has_ended(self) -> bool:
@@ -105,11 +109,14 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     parameters: dict[str, str] = {}
     steering, is_lifted = Steering(), False
     drift: DriftTests | None = None
+    stretches: tuple[Stretch, ...] = ()
     for row in rows:
         if row.kind not in _KINDS:
             continue
         said = _decoded(row)
         steering = _steered(steering, said, state)
+        if isinstance(said, MissionBegun | ModelAdopted):
+            stretches = after(stretches, said, len(steps))
         match said:
             case MissionBegun():
                 epoch, parameters, begun = said.epoch, said.mission_parameters, begun or said
@@ -147,6 +154,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
         steering,
         is_lifted,
         drift,
+        stretches,
     )
 
 

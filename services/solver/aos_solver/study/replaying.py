@@ -26,14 +26,15 @@ from aos_protocol.messages import (
 )
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
-from aos_solver.building.project_build import build_project
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
+from aos_solver.earlier_models import built_for
 from aos_solver.mission.belief_rows import exported_of
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, Failures
-from aos_solver.mission.past import Evidence, Past, evidence_of, replayed, updated
+from aos_solver.mission.past import Evidence, Past, evidence_of, updated
+from aos_solver.mission.retracing import Earlier, Stretch, after, models_before, retraced
 from aos_solver.mission.takeover import RunningModel, Successor
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
@@ -176,13 +177,8 @@ class ReplayedMission:
         """The model of a revision, with the mission's values."""
         begun = self.mission.begun
         assert begun is not None
-        project = msgspec.structs.replace(
-            await self.documents.revision(revision), constraints=self.settings.constraints, mission_values=()
-        )
-        built = await build_project(project, Path(self.settings.cache_dir), self._on_progress)
-        known = built.emitted.parameters
-        values = {name: text for name, text in begun.mission_parameters.items() if name in known}
-        return msgspec.structs.replace(built, mission_values=values)
+        project = await self.documents.revision(revision)
+        return await built_for(begun, project, self.settings, self._on_progress)
 
     async def _engine(self, revision: int, digest: str) -> RunningModel:
         begun = self.mission.begun
@@ -203,18 +199,33 @@ class ReplayedMission:
         return RunningModel(revision, engine)
 
     async def _begin(self, begun: MissionBegun) -> BeliefSummary:
-        """Begins the mission, or takes it up as another solver did, with the model of that time."""
+        """Begins the mission, or takes it up as another solver did, with the models of that time."""
         await self.close()
         running = await self._engine(begun.revision, begun.model_digest)
         self._running, self.engine = running, running.engine
         if begun.epoch == 1:
             await self._start(begun.start)
-        elif self.past.steps:
+        elif self.past.steps or begun.is_retraced:
             if begun.start is not None and not _is_plain(begun.start):
                 raise StudyError("a mission that kept a belief was taken up by another solver")
-            async for _ in replayed(self.engine, self.past):
+            async for _ in retraced(await self._earlier(begun), running, self.past):
                 pass
         return await self.engine.summary()
+
+    async def _earlier(self, begun: MissionBegun) -> tuple[Earlier, ...]:
+        """The models through which the solver of that time had brought the belief."""
+        if not begun.is_retraced:
+            return ()
+        stretches: tuple[Stretch, ...] = ()
+        steps = 0
+        for event in self.mission.events[: self._next - 1]:
+            if isinstance(event.said, MissionBegun | ModelAdopted):
+                stretches = after(stretches, event.said, steps)
+            steps += isinstance(event.said, DecisionRecord) and event.said.outcome is not None
+        before = models_before(stretches, begun.model_digest, steps)
+        return tuple(
+            [Earlier(await self._engine(each.revision, each.model_digest), until) for each, until in before]
+        )
 
     async def _start(self, start: StartMission | None) -> None:
         """The belief that a mission began with: the initial one, or that which its journal has."""
