@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import re
+import socket as sockets
 import tempfile
+import time
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["SOCKET", "place_of_socket", "remove_socket"]
+__all__ = ["SOCKET", "place_of_socket", "remove_left_sockets", "remove_socket"]
 
 SOCKET = "bus"
 """The name of the socket in the run directory."""
@@ -18,6 +22,10 @@ _LONGEST_BYTES = 107
 _PLAIN = re.compile(r"/[A-Za-z0-9_./@+,=~-]+")
 """Zenoh reads other characters of an endpoint as the beginning of options."""
 _PREFIX = "aos-bus-"
+_LEFT_S = 60.0
+"""A folder that is younger may be one that is being made."""
+_KEPT: dict[Path, int] = {}
+"""Locks of the folders that this process has made, which end with it, also by SIGKILL."""
 
 
 def place_of_socket(run: Path) -> Path:
@@ -28,10 +36,15 @@ def place_of_socket(run: Path) -> Path:
     inside = run / SOCKET
     if _can_be(inside):
         return inside
-    for folder in (os.environ.get("XDG_RUNTIME_DIR", ""), tempfile.gettempdir(), "/tmp"):
-        name = Path(folder) / f"{_PREFIX}12345678" / SOCKET
-        if folder and _can_be(name) and os.access(folder, os.W_OK | os.X_OK):
-            return Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder)) / SOCKET
+    remove_left_sockets()
+    for folder in _folders():
+        name = folder / f"{_PREFIX}12345678" / SOCKET
+        if _can_be(name) and os.access(folder, os.W_OK | os.X_OK):
+            made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+            lock = _locked(made)
+            if lock is not None:
+                _KEPT[made] = lock
+            return made / SOCKET
     raise OSError(36, f"no folder has a path that is short enough for the socket of {run}")
 
 
@@ -43,6 +56,63 @@ def remove_socket(socket: Path) -> None:
     if socket.parent.name.startswith(_PREFIX):
         with suppress(OSError):
             socket.parent.rmdir()
+        if (lock := _KEPT.pop(socket.parent, None)) is not None:
+            os.close(lock)
+
+
+def remove_left_sockets() -> None:
+    """Removes the folders of sockets whose `aos-up` was killed."""
+    for folder in _folders():
+        with suppress(OSError):
+            for left in folder.glob(f"{_PREFIX}*"):
+                _remove_if_left(left)
+
+
+def _remove_if_left(folder: Path) -> None:
+    status = folder.lstat()
+    if status.st_uid != os.getuid() or time.time() - status.st_mtime < _LEFT_S:
+        return
+    lock = _locked(folder)
+    if lock is None:
+        return
+    try:
+        if not _is_listened_at(folder / SOCKET):
+            remove_socket(folder / SOCKET)
+    finally:
+        os.close(lock)
+
+
+def _folders() -> Iterator[Path]:
+    """The folders in which a socket's own folder may be, the first ones first."""
+    named = (os.environ.get("XDG_RUNTIME_DIR", ""), tempfile.gettempdir(), "/tmp")
+    yield from dict.fromkeys(Path(name) for name in named if name)
+
+
+def _locked(folder: Path) -> int | None:
+    """A descriptor that holds the folder's lock; None where somebody else does, or it is no folder."""
+    try:
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(descriptor)
+        return None
+    return descriptor
+
+
+def _is_listened_at(path: Path) -> bool:
+    """Says whether a router is there, of an `aos-up` that takes no lock."""
+    with sockets.socket(sockets.AF_UNIX) as client:
+        client.settimeout(1.0)
+        try:
+            client.connect(str(path))
+        except (FileNotFoundError, ConnectionRefusedError):
+            return False
+        except OSError:
+            return True
+    return True
 
 
 def _can_be(socket: Path) -> bool:

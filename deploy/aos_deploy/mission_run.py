@@ -322,6 +322,9 @@ class MissionRun:
         return round(self._clock.monotonic_s() - self._begun_s, 3)
 
 
+_STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
 class _End(Protocol):
     @property
     def exit_code(self) -> int: ...
@@ -336,7 +339,10 @@ class Stoppable(Protocol):
 
 
 async def run_until_interrupted(mission: Stoppable) -> int:
-    """The exit code. The first signal stops everything in order, any further one at once."""
+    """The exit code. The first signal stops everything in order, any further one at once.
+
+    A signal after the end changes nothing: the process ignores it from then on.
+    """
     loop = asyncio.get_running_loop()
     work = loop.create_task(mission.run())
     has_interrupted = False
@@ -349,9 +355,14 @@ async def run_until_interrupted(mission: Stoppable) -> int:
             has_interrupted = True
             work.cancel()
 
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in _STOPPING:
         loop.add_signal_handler(number, interrupt)
-    return (await work).exit_code
+    try:
+        return (await work).exit_code
+    finally:
+        for number in _STOPPING:
+            loop.remove_signal_handler(number)
+            signal.signal(number, signal.SIG_IGN)
 
 
 def _nothing() -> None:

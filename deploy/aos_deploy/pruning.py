@@ -8,6 +8,7 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.bus_socket import remove_left_sockets
 from aos_deploy.run_directory import LATEST, RunDirectory
 from aos_protocol.errors import StorageError
 
@@ -39,8 +40,10 @@ class Pruned(msgspec.Struct, frozen=True):
 def pruned(folder: Path, keep: int) -> Pruned:
     """Removes all runs of a folder but the `keep` newest; StorageError AOS701 if one cannot be removed.
 
-    A run that goes on stays, however old it is. Nothing else in the folder is touched.
+    A run that goes on stays, however old it is. Nothing else in the folder is touched. The sockets of runs
+    that were killed are removed as well, where they had a folder of their own.
     """
+    remove_left_sockets()
     runs = sorted(_runs_in(folder), key=lambda path: path.stat().st_mtime)
     runs.sort(key=lambda path: path.name[: path.name.index("-")])
     removed = []

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 import shutil
+import socket as sockets
 import subprocess
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from aos_deploy.bus_socket import place_of_socket, remove_socket
+from aos_deploy.bus_socket import place_of_socket, remove_left_sockets, remove_socket
 from aos_deploy.cli import aos_app
 from aos_deploy.passes import Outsider, Passes
 from aos_deploy.run_directory import RunDirectory
@@ -118,3 +123,39 @@ def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path: Path) ->
         pytest.skip("needs systemd-analyze, which reads the unit as systemd does")
     done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
     assert unit.name not in done.stderr.replace("Failed to prepare filename", ""), done.stderr
+
+
+@pytest.fixture
+def short_folder() -> Iterator[Path]:
+    """A folder whose path leaves place for that of a socket."""
+    with tempfile.TemporaryDirectory(dir="/tmp") as folder:
+        yield Path(folder)
+
+
+def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
+    short_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
+    names = ("killed", "listened", "locked", "young", "filled")
+    folders = {name: short_folder / f"aos-bus-{name}" for name in names}
+    living = []
+    for name, folder in folders.items():
+        folder.mkdir()
+        bound = sockets.socket(sockets.AF_UNIX)
+        bound.bind(str(folder / "bus"))
+        if name == "listened":
+            bound.listen()
+            living.append(bound)
+        else:
+            bound.close()  # What is left of it is the file.
+    (folders["filled"] / "else").touch()
+    for name in names:
+        if name != "young":
+            os.utime(folders[name], (0, 0))
+    lock = os.open(folders["locked"], os.O_RDONLY)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    remove_left_sockets()
+    os.close(lock)
+    living[0].close()
+    assert {name for name, folder in folders.items() if folder.exists()} == set(names) - {"killed"}
+    assert (folders["filled"] / "else").exists()
