@@ -15,7 +15,7 @@ from aos_skills.dds.node import DdsNode
 from aos_skills.ros.types import RosTypes
 
 STRING = "std_msgs/msg/String"
-DEADLINE_S = 20.0
+DEADLINE_S = 120.0
 
 
 async def talk(domain: int) -> None:

@@ -21,7 +21,7 @@ from aos_runtime.parent import PARENT_VARIABLE
 __all__ = ["PYTHON", "roscore", "skip_without_ros1"]
 
 PYTHON = "/usr/bin/python3"
-START_S = 30.0
+START_S = 120.0
 NEEDED = "rospy, roslaunch, rosservice, actionlib, std_srvs.srv, geometry_msgs.msg"
 
 
@@ -29,7 +29,10 @@ NEEDED = "rospy, roslaunch, rosservice, actionlib, std_srvs.srv, geometry_msgs.m
 def _has_ros1() -> bool:
     if not Path(PYTHON).exists() or shutil.which("roscore") is None:
         return False
-    return subprocess.run([PYTHON, "-c", f"import {NEEDED}"], capture_output=True, timeout=60).returncode == 0
+    return (
+        subprocess.run([PYTHON, "-c", f"import {NEEDED}"], capture_output=True, timeout=START_S).returncode
+        == 0
+    )
 
 
 def skip_without_ros1() -> None:

@@ -17,7 +17,7 @@ from aos_runtime.parent import die_with_parent
 
 REQUEST = "float64 x\nfloat64 y\nfloat64 yaw\n"
 RESPONSE = "bool success\nstring message\n"
-PATIENCE_S = 60.0
+PATIENCE_S = 120.0
 
 
 def main() -> None:

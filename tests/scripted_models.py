@@ -12,6 +12,7 @@ from typing import Any
 
 import msgspec
 from exam.programs import PATIENCE_S, run, what_decides
+from processes import COMMAND_S
 
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
@@ -93,7 +94,7 @@ class ScriptedModel(msgspec.Struct, frozen=True):
             input=script,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=COMMAND_S,
             check=True,
         )
         return json.loads(done.stdout)

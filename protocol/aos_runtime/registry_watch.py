@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from collections.abc import Awaitable, Callable
 
 from aos_protocol.documents import Project
-from aos_protocol.errors import AosError
+from aos_protocol.errors import AosError, LateAnswerError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import ProjectQuery, ProjectRevision
 from aos_runtime.bus import Bus
@@ -31,18 +32,31 @@ class RegistryWatch:
 
     async def follow(self) -> None:
         """Asks for the documents, and again when the registry comes: what it told meanwhile is lost."""
-        await self.adopt_current()
+        await self._adopt_when_told()
         async with self._bus.presence(self._keys.live("registry")) as presence:
             async for _, is_there in presence:
                 if is_there:
-                    await self.adopt_current()
+                    await self._adopt_when_told()
 
     async def adopt_current(self) -> None:
         """Gives what the registry holds already. Where it holds nothing, an announcement will come."""
+        with contextlib.suppress(LateAnswerError):
+            await self._adopt_if_told()
+
+    async def _adopt_when_told(self) -> None:
+        """Asks until the registry has said what it holds: nothing else would tell of it once more."""
+        while True:
+            with contextlib.suppress(LateAnswerError):
+                return await self._adopt_if_told()
+
+    async def _adopt_if_told(self) -> None:
+        """Gives what the registry holds, if it holds any; LateAnswerError if it does not say so in time."""
         try:
             revision = await self._ask(ProjectQuery(self._project))
         except AosError as error:
             log.info("no documents yet: %s", error)
+            if isinstance(error, LateAnswerError):
+                raise
             return
         await self._adopt(revision)
 

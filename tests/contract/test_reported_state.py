@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 
 import pytest
+from processes import HANG_S
 
 from aos_protocol.errors import BusError, NobodyAnswersError
 from aos_protocol.keys import Keys
@@ -39,7 +40,7 @@ def teller(other: Bus, keys: Keys) -> Teller:
     return Teller(other, keys)
 
 
-async def revision_from(bus: Bus, keys: Keys, least: int, timeout_s: float = 10.0) -> int:
+async def revision_from(bus: Bus, keys: Keys, least: int, timeout_s: float = HANG_S) -> int:
     state = await state_when(
         bus,
         keys.mapping_state,
