@@ -228,7 +228,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         Row("topic messages that wait", "aos_middleware.heard_topics.QUEUE_SIZE", "", "the oldest are lost"),
         Row(
             "topic messages an adapter has not sent",
-            "aos_runtime.adapters.host.MAX_UNSENT_MESSAGES", "", "the oldest are lost",
+            "aos_runtime.adapters.outbox.MAX_UNSENT_MESSAGES", "", "the oldest are lost",
         ),
         Row(
             "an adapter stops a call that is cancelled",

@@ -1,0 +1,67 @@
+"""The messages of an adapter that wait to be sent, from any thread, in order."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections import Counter, deque
+from typing import Any
+
+from aos_protocol.keys import Keys
+from aos_protocol.messages import TopicMessage
+from aos_runtime.adapters.sendable import sendable
+from aos_runtime.bus import Bus
+
+__all__ = ["MAX_UNSENT_MESSAGES", "Outbox"]
+
+MAX_UNSENT_MESSAGES = 10_000
+"""The oldest topic messages give way where more than these wait to be sent."""
+
+_log = logging.getLogger("aos.adapter")
+
+
+class Outbox:
+    """Sends topic messages from the thread of the running event loop, numbered for each topic."""
+
+    def __init__(self, bus: Bus, keys: Keys) -> None:
+        self._bus = bus
+        self._keys = keys
+        self._loop = asyncio.get_running_loop()
+        self._sent: Counter[str] = Counter()
+        self._unsent: deque[tuple[str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
+        self._sending = threading.Lock()
+        self._is_sending = False
+        self._lost = 0
+
+    @property
+    def sent(self) -> dict[str, int]:
+        """The number of messages so far on each topic."""
+        return dict(self._sent)
+
+    def publish(self, topic: str, fields: dict[str, Any]) -> None:
+        """Sends a message on a topic. From any thread, in order.
+
+        SkillError AOS510 if a field is nothing that the bus can carry.
+        """
+        fields = sendable(fields, f"a message on {topic}")
+        with self._sending:
+            if len(self._unsent) == MAX_UNSENT_MESSAGES:
+                self._lost += 1
+            self._unsent.append((topic, fields))
+            is_first, self._is_sending = not self._is_sending, True
+        if is_first:
+            self._loop.call_soon_threadsafe(self.send)
+
+    def send(self) -> None:
+        """Sends what waits, numbered for each topic; what comes meanwhile goes with the next turn."""
+        with self._sending:
+            waiting, self._is_sending = list(self._unsent), False
+            self._unsent.clear()
+        for topic, fields in waiting:
+            self._sent[topic] += 1
+            message = TopicMessage(self._sent[topic], fields)
+            self._bus.tell(self._keys.topic(topic), message)
+        if self._lost:
+            _log.warning("%d topic messages came too fast to be sent", self._lost)
+            self._lost = 0

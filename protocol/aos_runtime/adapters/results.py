@@ -1,0 +1,41 @@
+"""The result of a call, from what an adapter has answered."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aos_protocol.errors import SkillError
+from aos_protocol.messages import SkillResult
+from aos_runtime.adapters.adapter import Call, Observed
+from aos_runtime.adapters.expressions import translated
+from aos_runtime.adapters.sendable import sendable
+from aos_runtime.adapters.settings import Binding
+
+__all__ = ["result_of"]
+
+
+def result_of(
+    call: Call, binding: Binding, answer: Any, published: dict[str, int], adapter: str
+) -> SkillResult:
+    """The result of a call whose adapter has given this answer; SkillError AOS510 if the bus cannot carry it.
+
+    `published` is the number of messages so far on each topic.
+    """
+    if isinstance(answer, Observed):
+        what = f"the observation of {call.path}"
+        response = sendable({"response": answer.response}, what)["response"]
+        if not isinstance(response, str):
+            raise SkillError(f"{what} is {response!r}, which is no word", code="AOS510")
+        numbers = sendable(answer.numbers, what)
+        return SkillResult(call.id, {}, published, response, numbers, dict(answer.monitors))
+    try:
+        given = dict(answer)
+    except (TypeError, ValueError) as error:
+        raise SkillError(
+            f"{call.path} answered {answer!r}, which is no mapping of field names to values",
+            code="AOS510",
+            hint=f"Mend the adapter {adapter}",
+        ) from error
+    fields = translated(binding.result, given, f"the result of {call.path}")
+    fields = sendable(fields, f"the result of {call.path}")
+    return SkillResult(call.id, fields, published)
