@@ -20,31 +20,25 @@ from typing import Any
 
 import msgspec
 
+from aos_deploy.consequence import STARTED_AGAIN, THE_RUN_ENDS, RunningProgram, consequence, fatal_end
 from aos_deploy.events import Report, ServiceChanged
 from aos_deploy.passes import Outsider, Passes
-from aos_deploy.process_end import end_of, look_at_log, status_text
+from aos_deploy.process_end import look_at_log, status_text
 from aos_deploy.process_start import ROUTER_MODULE, start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
-from aos_deploy.remote import is_lost
-from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
 from aos_deploy.run_directory import ProcessEnd, RunDirectory
 from aos_protocol.access import OPERATOR, Party
-from aos_protocol.errors import AosError, DeployError
+from aos_protocol.errors import DeployError
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Access, Bus
-from aos_runtime.children import Child
 from aos_runtime.clock import Clock
 from aos_runtime.failpoints import reach
-from aos_runtime.guard import NOT_STARTED
-from aos_runtime.lifecycle import ROUTER_S, STORAGE_STATUS, ServiceSettings
+from aos_runtime.lifecycle import ROUTER_S, ServiceSettings
 from aos_runtime.subscription import merged
 
-__all__ = ["ROUTER", "STARTED_AGAIN", "Supervisor", "supervised"]
-
-STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
-"""The consequences of a process that ends by itself."""
+__all__ = ["ROUTER", "Supervisor", "supervised"]
 
 ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
 
@@ -54,25 +48,6 @@ FROZEN_S = 5.0
 _CANCEL_TIMEOUT_S = 2.5
 _HOST_S = 2.0
 """A program on another host may take this much longer to end than one here."""
-_MISTAKES = (2, 126, NOT_STARTED)
-"""Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
-_HOPELESS = ("AOS1", "AOS7", "AOS8")
-"""The beginnings of the codes of faults that the next start would find again."""
-
-
-class _Running:
-    """A program's process. `starts` counts how often it was started, `ready` is set once it was ready."""
-
-    child: Child
-
-    def __init__(self, program: Program) -> None:
-        self.program = program
-        self.restarts = Restarts()
-        self.started_s = 0.0
-        self.ready = asyncio.Event()
-        self.is_ready = False
-        self.seeking: asyncio.Task[None] | None = None
-        self.silence: asyncio.Task[None] | None = None
 
 
 @asynccontextmanager
@@ -132,7 +107,7 @@ class Supervisor:
         self._clock = clock
         self._tasks = tasks
         self._started_s = clock.monotonic_s()
-        self._running: dict[str, _Running] = {}
+        self._running: dict[str, RunningProgram] = {}
         self._watches: list[asyncio.Task[None]] = []
         self._is_stopping = False
         self._bus: Bus | None = None
@@ -217,12 +192,12 @@ class Supervisor:
         await asyncio.wait(self._watches, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
 
     async def _spawn(self, program: Program) -> None:
-        running = self._running[program.name] = _Running(program)
+        running = self._running[program.name] = RunningProgram(program)
         await self._launch(running)
         self._changed(program.name, "starting")
         self._watches.append(self._tasks.create_task(self._watch(running)))
 
-    async def _launch(self, running: _Running) -> None:
+    async def _launch(self, running: RunningProgram) -> None:
         program = running.program
         running.started_s = self._clock.monotonic_s()
         running.restarts.start(running.started_s)
@@ -235,7 +210,7 @@ class Supervisor:
         if program.on_exit:
             running.seeking = self._beside(self._seek_ready(running, log_start))
 
-    async def _seek_ready(self, running: _Running, log_start: int) -> None:
+    async def _seek_ready(self, running: RunningProgram, log_start: int) -> None:
         """Looks whether a program of the user's own is ready; DeployError AOS802 if it takes too long."""
         program, ready = running.program, running.program.ready
         try:
@@ -271,7 +246,7 @@ class Supervisor:
                 elif running is not None and not is_alive and serving is None:
                     self._is_silent(running)
 
-    def _command_behind(self, serving: Serving) -> _Running | None:
+    def _command_behind(self, serving: Serving) -> RunningProgram | None:
         """The command that serves a path, by its name in the token or by what is bound to it."""
         for running in self._running.values():
             program = running.program
@@ -280,13 +255,13 @@ class Supervisor:
                 return running
         return None
 
-    def _is_silent(self, running: _Running) -> None:
+    def _is_silent(self, running: RunningProgram) -> None:
         """A service has left the bus: it ends, or it is frozen."""
         running.is_ready = False
         if running.program.is_restarted and running.silence is None:
             running.silence = self._beside(self._kill_if_frozen(running))
 
-    async def _kill_if_frozen(self, running: _Running) -> None:
+    async def _kill_if_frozen(self, running: RunningProgram) -> None:
         child, router = running.child, self._running[ROUTER.name]
         await asyncio.sleep(FROZEN_S)
         # Without a router nobody is heard, and with a new one not at once.
@@ -297,7 +272,7 @@ class Supervisor:
             self._changed(running.program.name, "frozen", f"silent for {FROZEN_S:g} s; it is killed")
             child.kill()
 
-    def _is_ready(self, running: _Running, state: str = "ready") -> None:
+    def _is_ready(self, running: RunningProgram, state: str = "ready") -> None:
         if running.silence is not None:
             running.silence.cancel()
             running.silence = None
@@ -305,7 +280,7 @@ class Supervisor:
         running.ready.set()
         self._changed(running.program.name, state)
 
-    async def _watch(self, running: _Running) -> None:
+    async def _watch(self, running: RunningProgram) -> None:
         """Raises when the process ends though nobody stopped it, and neither starts again nor is given up."""
         program = running.program
         while True:
@@ -318,12 +293,13 @@ class Supervisor:
                 self._is_ready(running, "done")
                 return
             running.is_ready = False
-            then = self._what_follows(running, status)
+            others = [other for other in self._running.values() if other is not running]
+            then = consequence(running, status, others, self._run, self._clock.monotonic_s())
             self._changed(program.name, "ended", f"{status_text(status)}; {then}")
             after_s = round(self._clock.monotonic_s() - self._started_s, 3)
             self.ends.append(ProcessEnd(program.name, after_s, status_text(status), then))
             if then == THE_RUN_ENDS:
-                raise self._end_of(running, status)
+                raise fatal_end(running, status, self._run)
             if then != STARTED_AGAIN:
                 return
             await asyncio.sleep(running.restarts.delay_s(self._clock.monotonic_s()))
@@ -332,43 +308,6 @@ class Supervisor:
             self._run.forget_fault(program.name)
             await self._launch(running)
             self._changed(program.name, "starting", f"for the {running.restarts.count}. time")
-
-    def _what_follows(self, running: _Running, status: int) -> str:
-        """Returns the consequence of a program that ended by itself."""
-        program, was_ready = running.program, running.ready.is_set()
-        if program.on_exit == "ignore" and was_ready:
-            return IGNORED
-        # Before it was ready, only what the next start may find otherwise is tried again.
-        is_mistake = status in _MISTAKES or self._run.fault(program.name) is not None
-        may_succeed = (
-            not self._is_hopeless(program, status) if was_ready else bool(program.command) and not is_mistake
-        )
-        # A link that is cut again and again is no fault of the program: how long to wait, the mission says.
-        is_cut = was_ready and is_lost(program, status)
-        has_starts = is_cut or running.restarts.are_left(self._clock.monotonic_s())
-        if may_succeed and program.is_restarted and has_starts:
-            return STARTED_AGAIN
-        # What an adapter served is unavailable; the mission goes on with the rest.
-        return GIVEN_UP if was_ready and self._has_other_adapters(running) else THE_RUN_ENDS
-
-    def _is_hopeless(self, program: Program, status: int) -> bool:
-        if program.is_adapter:
-            return False
-        fault = self._run.fault(program.name)
-        # On a full disk there may be no space for the fault.
-        return fault.code.startswith(_HOPELESS) if fault is not None else status == STORAGE_STATUS
-
-    def _has_other_adapters(self, running: _Running) -> bool:
-        others = (other for other in self._running.values() if other is not running)
-        return running.program.is_adapter and any(
-            other.program.is_adapter and other.child.returncode is None for other in others
-        )
-
-    def _end_of(self, running: _Running, status: int) -> AosError:
-        error = end_of(running.program, self._run, status, was_ready=running.ready.is_set())
-        if running.restarts.count >= STARTS:
-            error.message += f", and was started {STARTS} times within {WITHIN_S:g} s"
-        return error
 
     def look_at_log(self, name: str) -> str:
         """Returns the place of a service's log, and its last lines."""

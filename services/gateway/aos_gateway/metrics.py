@@ -14,7 +14,7 @@ from collections import Counter as Multiset
 
 import msgspec
 
-from aos_deploy.supervisor import STARTED_AGAIN
+from aos_deploy.consequence import STARTED_AGAIN
 from aos_gateway.exposition import exposition
 from aos_gateway.metric_families import Families
 from aos_gateway.runs import KeptRun, Run, RunEntry, RunShelf
