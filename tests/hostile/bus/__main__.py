@@ -11,12 +11,13 @@ import math
 import random
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 from .cell import STEPS, cell
 from .cost import cost
-from .far import far_mission, is_possible
+from .far import FarMission, far_mission, is_possible
 from .forgeries import FORGERIES, faults_of
 from .malformed import flooded_keys, flooding
 from .matrix import PARTIES, attempts, wrong
@@ -25,6 +26,7 @@ from .routed import routed
 MAY_ANSWER_S = 0.1
 MAY_GROW_BYTES = 20_000_000
 MAY_HOLD_S, MAY_GO_ON_S = 4.0, 5.0
+LINKS = (("a good link", 0.0, 0.0), ("200 ms of delay", 0.2, 0.0), ("5 % of the packets lost", 0.0, 0.05))
 
 
 def matrix(folder: Path, _: argparse.Namespace) -> int:
@@ -85,27 +87,43 @@ def costs(folder: Path, options: argparse.Namespace) -> int:
 
 
 def far(folder: Path, options: argparse.Namespace) -> int:
-    """Cuts of the link to an adapter on another host."""
+    """A bad link to an adapter on another host: cuts, a delay, lost packets, and cuts with these."""
     if not is_possible():
-        print("far: needs ip, sshd and ssh, and to be root")
+        print("far: needs ip, sshd, ssh and /dev/net/tun, and to be root")
         return 0
-    chance, broken = random.Random(1), 0
+    broken = 0
     with far_mission(folder) as mission:
-        for _ in range(options.cuts):
-            cut = mission.cut(math.exp(chance.uniform(math.log(0.2), math.log(30.0))))
-            is_held_late = cut.cut_s > MAY_HOLD_S and (cut.held_s is None or cut.held_s > MAY_HOLD_S)
-            is_late = is_held_late or cut.went_on_s is None or cut.went_on_s > MAY_GO_ON_S
-            broken += is_late
-            held, went_on = ("-" if one is None else f"{one:.1f} s" for one in cut[1:])
+        for words, delay_s, loss in LINKS:
+            mission.link.delay_s, mission.link.loss = delay_s, loss
+            since_s = time.monotonic()
+            has_moved = mission.until_moved(options.motions)
+            took_s = (time.monotonic() - since_s) / max(options.motions, 1)
             print(
-                f"  cut for {cut.cut_s:.1f} s: held after {held}, went on {went_on} after its end", flush=True
+                f"{words}: {options.motions} motions, {took_s:.2f} s each, "
+                f"held {mission.holds_since(since_s)} times",
+                flush=True,
             )
+            broken += (not has_moved) + late_cuts(mission, options.cuts)
             if mission.has_ended:
                 print((folder / "aos-up.log").read_text())
                 return broken + 1
         twice = len(mission.moved) - len(set(mission.moved))
-    print(f"far: {options.cuts} cuts, {broken} late; {twice} motions twice")
+    print(f"far: {len(LINKS) * options.cuts} cuts, {broken} late; {twice} motions twice")
     return broken + twice
+
+
+def late_cuts(mission: FarMission, cuts: int) -> int:
+    """Cuts of 0.2 to 30 s; those after which the mission held too late, or went on too late."""
+    chance, late = random.Random(1), 0
+    for _ in range(cuts):
+        cut = mission.cut(math.exp(chance.uniform(math.log(0.2), math.log(30.0))))
+        is_held_late = cut.cut_s > MAY_HOLD_S and (cut.held_s is None or cut.held_s > MAY_HOLD_S)
+        late += is_held_late or cut.went_on_s is None or cut.went_on_s > MAY_GO_ON_S
+        held, went_on = ("-" if one is None else f"{one:.1f} s" for one in cut[1:])
+        print(f"  cut for {cut.cut_s:.1f} s: held after {held}, went on {went_on} after its end", flush=True)
+        if mission.has_ended:
+            break
+    return late
 
 
 PARTS: dict[str, Callable[[Path, argparse.Namespace], int]] = {
@@ -124,7 +142,8 @@ def main() -> int:
     parser.add_argument("--messages", type=int, default=20_000, help="malformed messages on each key")
     parser.add_argument("--questions", type=int, default=3000)
     parser.add_argument("--sessions", type=int, default=200)
-    parser.add_argument("--cuts", type=int, default=20, help="of the link to an adapter on another host")
+    parser.add_argument("--cuts", type=int, default=20, help="of each link to an adapter on another host")
+    parser.add_argument("--motions", type=int, default=20, help="over each of these links without a cut")
     options = parser.parse_args()
     broken = 0
     for part in options.parts or PARTS:

@@ -1,4 +1,4 @@
-"""An adapter on another host whose link is cut: a network namespace with an SSH server of its own."""
+"""An adapter on another host, behind a bad link: a network namespace with an SSH server of its own."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .counting import counting
+from .wire import Wire, wire
 
-__all__ = ["Cut", "far_mission", "is_possible"]
+__all__ = ["Cut", "FarMission", "far_mission", "is_possible"]
 
 _NAME = "aosfar"
 _HERE, _THERE = "10.213.77.1", "10.213.77.2"
 _PORT = 2222
 _PATIENCE_S = 120.0
+_START_S = 900.0
+"""The first mission on a busy machine compiles its engine."""
 _STEPS = 100_000
 
 _FILES = {
@@ -74,17 +77,18 @@ class Cut(NamedTuple):
 
 
 def is_possible() -> bool:
-    """Says whether namespaces and an SSH server can be had here."""
+    """Says whether namespaces, their devices and an SSH server can be had here."""
     programs = all(
         shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin") for name in ("ip", "sshd", "ssh")
     )
-    return programs and os.getuid() == 0
+    return programs and os.getuid() == 0 and Path("/dev/net/tun").exists()
 
 
 class FarMission:
-    """A mission whose robot is in the namespace."""
+    """A mission whose robot is in the namespace, at the other end of `link`."""
 
-    def __init__(self, folder: Path, process: subprocess.Popen[str]) -> None:
+    def __init__(self, folder: Path, process: subprocess.Popen[str], link: Wire) -> None:
+        self.link = link
         self._folder = folder
         self._process = process
         self._events: list[tuple[float, dict[str, Any]]] = []
@@ -96,18 +100,30 @@ class FarMission:
         """Cuts the link for so long. The mission has to hold, unless it is over before."""
         self._until(lambda event: event.get("phase") == "acting", time.monotonic())
         down_s = time.monotonic()
-        # The far end: ours stays up, as a network card does whose cable is pulled somewhere else.
-        _ip("-n", _NAME, "link", "set", f"{_NAME}1", "down")
+        self.link.is_cut = True
         held_s = self._until(_is_held, down_s, min(cut_s, _PATIENCE_S))
         time.sleep(max(0.0, down_s + cut_s - time.monotonic()))
         up_s = time.monotonic()
-        _ip("-n", _NAME, "link", "set", f"{_NAME}1", "up")
+        self.link.is_cut = False
         went_on_s = self._until(_is_observed, up_s)
         return Cut(
             cut_s,
             None if held_s is None else held_s - down_s,
             None if went_on_s is None else went_on_s - up_s,
         )
+
+    def until_moved(self, times: int) -> bool:
+        """Waits until the robot has moved so many times more; False where it stops to."""
+        wanted = len(self.moved) + times
+        while len(self.moved) < wanted:
+            if self._until(_is_observed, time.monotonic()) is None:
+                return False
+        return True
+
+    def holds_since(self, since_s: float) -> int:
+        """The number of times that the mission has held since then, in time.monotonic()."""
+        with self._news:
+            return sum(at_s >= since_s and _is_held(event) for at_s, event in self._events)
 
     @property
     def has_ended(self) -> bool:
@@ -155,7 +171,7 @@ def far_mission(folder: Path) -> Iterator[FarMission]:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         text = text.replace("STEPS", str(_STEPS)).replace("PYTHON", python).replace("FOLDER", str(folder))
         (folder / name).write_text(text)
-    with _namespace(), _server(folder) as programs:
+    with wire(_NAME, _HERE, _THERE) as link, _server(folder) as programs:
         environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
         command = [Path(sys.executable).with_name("aos-up"), "far.yaml", "--json"]
         with (folder / "aos-up.log").open("w") as log:
@@ -163,33 +179,13 @@ def far_mission(folder: Path) -> Iterator[FarMission]:
                 command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE, stderr=log
             )
         with process:
-            mission = FarMission(folder, process)
+            mission = FarMission(folder, process, link)
             try:
-                if mission._until(_is_observed, 0.0) is None:
+                if mission._until(_is_observed, 0.0, _START_S) is None:
                     raise RuntimeError((folder / "aos-up.log").read_text())
                 yield mission
             finally:
                 process.terminate()
-
-
-@contextmanager
-def _namespace() -> Iterator[None]:
-    _ip("netns", "add", _NAME)
-    try:
-        _ip("link", "add", _NAME, "type", "veth", "peer", "name", f"{_NAME}1")
-        _ip("link", "set", f"{_NAME}1", "netns", _NAME)
-        _ip("addr", "add", f"{_HERE}/24", "dev", _NAME)
-        _ip("link", "set", _NAME, "up")
-        for words in (
-            ("addr", "add", f"{_THERE}/24", "dev", f"{_NAME}1"),
-            ("link", "set", f"{_NAME}1", "up"),
-        ):
-            _ip("-n", _NAME, *words)
-        _ip("-n", _NAME, "link", "set", "lo", "up")
-        yield
-    finally:
-        _ip("netns", "del", _NAME)
-        subprocess.run(["ip", "link", "del", _NAME], check=False, capture_output=True)
 
 
 @contextmanager
@@ -224,7 +220,3 @@ def _server(folder: Path) -> Iterator[str]:
             yield str(programs)
         finally:
             server.terminate()
-
-
-def _ip(*words: str) -> None:
-    subprocess.run(["ip", *words], check=True)
