@@ -22,6 +22,7 @@ from aos_language.reading.files import (
     is_document_name,
     read_documents,
 )
+from aos_language.reading.picture_file import PICTURE
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
@@ -70,16 +71,17 @@ def load_files(
     findings = Findings()
     documents = read_documents(files, findings, known) if files else {}
     has_unread_files = findings.has_errors and any(
-        is_document_name(file) and file not in documents for file in files
+        is_document_name(file) and file not in documents and file != PICTURE for file in files
     )
     assembly = assemble(documents, findings, bundle=name, has_unread_files=has_unread_files)
     check(assembly, findings)
     project = None if findings.has_errors else assembly.project()
-    digests = {file: hashlib.sha256(files[file]).hexdigest() for file in documents}
+    kept = [*documents, *([PICTURE] if PICTURE in files else [])]
+    digests = {file: hashlib.sha256(files[file]).hexdigest() for file in kept}
     versions = {
         file: document.version.text for file, document in documents.items() if document.version is not None
     }
-    digest = bundle_digest(files, documents)
+    digest = bundle_digest(files, kept)
     return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions)
 
 

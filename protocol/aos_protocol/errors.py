@@ -94,6 +94,7 @@ CODES: dict[str, str] = {
     "AOS145": "shared code that is no constant, function, enum or name of a type",
     "AOS146": "a mission parameter that the documents do not have, or a value that it cannot have",
     "AOS147": "a precondition whose violation costs nothing",
+    "AOS148": "a state that cannot be drawn",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

@@ -128,6 +128,16 @@ def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(
         assert served.ask(f"/v1/missions/{run.name}").json["state"]["ending"] == "goal"
 
 
+def test_the_state_is_drawn_as_the_documents_say(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    assert served.ask(f"/v1/missions/{name}/trace").json["draws"] is True
+    drawn = served.ask(f"/v1/missions/{name}/decisions/1/picture")
+    assert (drawn.status, drawn.headers["content-type"]) == (200, "image/svg+xml")
+    assert "sandbox" in drawn.headers["content-security-policy"]
+    assert b">alice</text>" in drawn.body
+    assert served.ask(f"/v1/missions/{name}/decisions/999/picture").json["code"] == "AOS902"
+
+
 def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]) -> None:
     served, name = past
     found = served.ask(f"/v1/missions/{name}/documents").json

@@ -99,6 +99,7 @@ def test_slider_and_keys_move_all_views_and_the_address(browser: Browser, past: 
     page.get_by_role("slider", name="Step").fill("1")
     expect(page.locator(".decision .action")).to_have_text(steps[0]["action"])
     expect(page.locator(".value.is-chosen")).to_have_attribute("aria-label", re.compile("chosen"))
+    expect(page.get_by_alt_text("The state after step 1")).to_be_visible()
     page.keyboard.press("Tab")
     page.locator("h1").click()
     page.keyboard.press("End")

@@ -113,13 +113,14 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
     """Generates and compiles the model and returns what that finds."""
     import asyncio  # These would make the other commands start slower.
 
+    from aos_deploy.picture_findings import picture_findings
     from aos_deploy.program import cache_dir
     from aos_deploy.reachability import reachability_findings
     from aos_solver.building.project_build import build_project, lowered
 
     async def findings() -> tuple[Diagnostic, ...]:
         built = await build_project(project, cache_dir(), tell)
-        return await reachability_findings(project, built)
+        return (*await reachability_findings(project, built), *await picture_findings(files, built))
 
     def tell(progress: str) -> None:
         typer.echo(f"aos: {progress}", err=True)

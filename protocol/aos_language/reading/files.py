@@ -10,6 +10,7 @@ import msgspec
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind
 from aos_language.reading.json_document import read_json
+from aos_language.reading.picture_file import PICTURE, check_picture
 from aos_language.reading.sdl_document import read_sdl
 from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.source import open_source
@@ -30,6 +31,8 @@ MAX_BUNDLE_BYTES = 8 * 1024 * 1024
 
 def is_document_name(name: str) -> bool:
     """Returns whether a file of this name is read; hidden files are not."""
+    if name == PICTURE:
+        return True
     suffix = PurePath(name).suffix.lower()
     return not PurePath(name).name.startswith(".") and (suffix == ".json" or suffix in GRAMMARS)
 
@@ -99,6 +102,9 @@ def _read(name: str, data: bytes, findings: Findings) -> Document | None:
         return None
     source = open_source(name, data, findings)
     if source is None:
+        return None
+    if name == PICTURE:
+        check_picture(source, findings)
         return None
     if not source.text.strip():
         findings.error("AOS104", "this file is empty", Span(name))

@@ -12,12 +12,13 @@ import msgspec
 from aos_gateway.runs import KeptRun, Run
 from aos_gateway.shared import Gateway
 from aos_language.load import load_files
+from aos_language.reading.picture_file import PICTURE
 from aos_protocol.documents import Project, Snippet
-from aos_protocol.errors import GatewayError, StorageError
+from aos_protocol.errors import AosError, GatewayError, StorageError
 from aos_protocol.messages import Catalogue, CatalogueEntry, CatalogueQuery
 from aos_registry.catalogue import Catalogue as KeptCatalogue
 
-__all__ = ["bundles", "documents"]
+__all__ = ["bundles", "documents", "draws_state", "picture_of"]
 
 _ANSWER_S = 5.0
 
@@ -83,6 +84,25 @@ def _catalogue(run: KeptRun) -> KeptCatalogue:
     except sqlite3.Error as error:
         raise StorageError(f"the catalogue {path}: {error}", code="AOS702") from error
     return KeptCatalogue(connection)
+
+
+def picture_of(run: KeptRun, number: int) -> str | None:
+    """The `picture.py` of a revision; None where its documents have none."""
+    with closing(_catalogue(run)) as catalogue:
+        for entry in catalogue.entries():
+            found = catalogue.revision(entry.project, number)
+            if found is not None:
+                data = found.files.get(PICTURE)
+                return data.decode("utf-8", "replace") if data is not None else None
+    return None
+
+
+def draws_state(run: KeptRun, number: int) -> bool:
+    """Says whether a revision has a `picture.py`; False where its documents cannot be read."""
+    try:
+        return picture_of(run, number) is not None
+    except (AosError, sqlite3.Error):
+        return False
 
 
 def _entries(run: KeptRun) -> tuple[CatalogueEntry, ...]:

@@ -23,6 +23,7 @@ from aos_protocol.errors import AosError, GatewayError
 __all__ = ["JSON", "Content", "Operation", "operation", "response_of", "route_of"]
 
 JSON = "application/json"
+SVG = "image/svg+xml"
 _COMPRESSED_FROM_BYTES = 1024
 _LEVEL = 5
 
@@ -114,6 +115,9 @@ def _response(result: Any, one: Operation, *, accepts_gzip: bool) -> Response:
         if result.max_age_s:
             headers["cache-control"] = f"private, max-age={result.max_age_s}"
         data, media = result.data, result.media
+        if media == SVG:
+            # A picture of documents is opened as a page, too: it must not speak for the gateway there.
+            headers["content-security-policy"] = "default-src 'none'; style-src 'unsafe-inline'; sandbox"
     else:
         data, media = msgspec.json.encode(result), one.media
     if accepts_gzip and len(data) >= _COMPRESSED_FROM_BYTES and not media.startswith("image/"):

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import msgspec
 
 from aos_deploy.run_directory import ProcessEnd, Summary
+from aos_gateway.documents import draws_state
 from aos_gateway.events import place_of, stream
 from aos_gateway.operations import Content
 from aos_gateway.runs import KeptRun, RunEntry
@@ -317,6 +318,9 @@ async def trace(gateway: Gateway, mission: str, query: OfTrace) -> Trace:
             break
         page = await found.page(mission, page.records[-1].sequence + 1)
     made = await asyncio.to_thread(steps_of, mission, records)
+    if records and isinstance(found, KeptRun):
+        draws = await asyncio.to_thread(draws_state, found, records[-1].revision)
+        made = msgspec.structs.replace(made, draws=draws)
     gateway.traces.keep(query.steps, made)
     return made
 

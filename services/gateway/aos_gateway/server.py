@@ -15,6 +15,7 @@ import uvicorn
 from aos_deploy.page_address import GatewayNote, gateway_folder
 from aos_gateway.access import access_of, kept_token
 from aos_gateway.app import make_app
+from aos_gateway.drawings import Drawings
 from aos_gateway.feed import Watches
 from aos_gateway.metrics import Metrics
 from aos_gateway.runs import RemoteRun, RunShelf
@@ -67,6 +68,7 @@ async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -
                 runs=settings.runs[0].resolve(),
                 studying=asyncio.Semaphore(1),
                 traces=Traces(),
+                drawings=Drawings(),
                 metrics=await asyncio.to_thread(Metrics, shelf) if settings.has_metrics else None,
             )
             config = uvicorn.Config(

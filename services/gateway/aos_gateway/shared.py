@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 
+from aos_gateway.drawings import Drawings
 from aos_gateway.feed import Watches
 from aos_gateway.metrics import Metrics
 from aos_gateway.runs import RunShelf
@@ -30,5 +31,6 @@ class Gateway(msgspec.Struct, frozen=True, kw_only=True):
     runs: Path
     studying: asyncio.Semaphore
     traces: Traces
+    drawings: Drawings
     metrics: Metrics | None = None
     max_body_bytes: int = 2 * MAX_BUNDLE_BYTES

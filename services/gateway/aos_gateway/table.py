@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from aos_gateway import documents, reading, study, writing
 from aos_gateway.operations import Operation, operation
+from aos_gateway.state_picture import state_picture
 
 __all__ = ["OPERATIONS"]
 
@@ -36,6 +37,7 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/missions/{mission}/documents", documents.documents),
     operation("GET", "/v1/missions/{mission}/decisions/{step}/why", study.why),
     operation("GET", "/v1/missions/{mission}/decisions/{step}/tree", study.tree),
+    operation("GET", "/v1/missions/{mission}/decisions/{step}/picture", state_picture, media="image/svg+xml"),
     operation("POST", "/v1/missions/{mission}/decisions/{step}/whatif", study.what_if),
     operation("GET", "/v1/events", reading.events, media="text/event-stream", gives=None),
 )

@@ -80,13 +80,15 @@ class Step(msgspec.Struct, omit_defaults=True):
 class Trace(msgspec.Struct, frozen=True):
     """The steps of a mission up to the record before `next`, the sequence number to go on from.
 
-    Where `first` is not 1, the steps before it are left out.
+    Where `first` is not 1, the steps before it are left out. `draws` says that the documents of the last one
+    draw the state.
     """
 
     mission: str
     next: int
     first: int
     steps: tuple[Step, ...]
+    draws: bool = False
 
 
 class Steps:

@@ -41,7 +41,7 @@ from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.failpoints import reach
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
-__all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
+__all__ = ["EvaluationLimits", "Evaluator", "MappingFault", "worker_confinement"]
 
 A = TypeVar("A", Begun, Done, Observed, Taken)
 
@@ -55,7 +55,7 @@ _FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
 _log = logging.getLogger("aos.middleware")
 
 
-def _confinement() -> Confinement:
+def worker_confinement() -> Confinement:
     """The sandbox of a worker: it reads Python, with all that is installed there, and AOS."""
     loader = loader_of(os.path.realpath(sys.executable))
     return Confinement(
@@ -168,7 +168,7 @@ class Evaluator:
         command = guarded(
             [sys.executable, "-I", "-m", "aos_middleware.worker"],
             Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
-            _confinement(),
+            worker_confinement(),
         )
         reach("middleware.worker.before")
         self._log_path.parent.mkdir(parents=True, exist_ok=True)

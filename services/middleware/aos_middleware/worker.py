@@ -37,7 +37,7 @@ from aos_middleware.frames import (
 )
 from aos_middleware.values import message_from, plain_from, put, text_of
 
-__all__ = ["LoadedMapping", "main"]
+__all__ = ["LoadedMapping", "main", "raised", "take_over_pipes"]
 
 _MAX_ERROR_CHARACTERS = 2000
 _MAX_PRINTED_BYTES = 1024 * 1024
@@ -287,7 +287,7 @@ class _Printed(io.TextIOBase):
         return len(text)
 
 
-def _take_over_pipes(error_output: int) -> tuple[BinaryIO, BinaryIO]:
+def take_over_pipes(error_output: int) -> tuple[BinaryIO, BinaryIO]:
     """The pipes to the service, moved to where prints and reads of mapping code do not reach them."""
     questions = os.fdopen(os.dup(0), "rb")
     answers = os.fdopen(os.dup(1), "wb")
@@ -319,7 +319,7 @@ def _answer_of(mapping: LoadedMapping | None, question: Question) -> tuple[Loade
 def main() -> None:
     """Answers questions until the input ends."""
     error_output = os.dup(2)
-    questions, answers = _take_over_pipes(error_output)
+    questions, answers = take_over_pipes(error_output)
     faulthandler.enable(file=error_output)
     faulthandler.register(signal.SIGALRM, file=error_output, chain=True)
     mapping: LoadedMapping | None = None

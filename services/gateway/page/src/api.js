@@ -40,6 +40,7 @@ async function asked(path, options = {}) {
 }
 
 export const read = async (path) => (await asked(path)).json();
+export const readBlob = async (path) => (await asked(path)).blob();
 export const readText = async (path) => (await asked(path)).text();
 
 export const write = async (path, body = {}) =>

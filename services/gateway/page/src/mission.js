@@ -13,6 +13,7 @@ import { Why } from "./why.js";
 import { Model } from "./model.js";
 import { Steps, Table } from "./steps.js";
 import { Documents } from "./documents.js";
+import { Drawn } from "./drawn.js";
 import { System } from "./system.js";
 
 const TITLES = { overview: "Overview", why: "Why", steps: "Steps", model: "Model", documents: "Documents", system: "System" };
@@ -88,6 +89,7 @@ function Overview() {
   return html`<div class="columns overview">
     <div class="stack">
       <${Card} id="belief" title="Belief" note=${beliefNote()}><${Ribbons} /><//>
+      <${Drawn} />
       <${Card} id="all-steps" title="Steps"><${Table} /><//>
     </div>
     <div class="stack">

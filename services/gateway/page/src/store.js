@@ -18,6 +18,7 @@ export const progress = signal(null);
 export const reports = signal([]);
 export const connection = signal("connecting"); // live, lost, over
 export const pictures = signal([]);
+export const draws = signal(false); // the documents have a picture.py
 export const successor = signal(null);
 export const loadedIn = signal(null);
 
@@ -105,6 +106,7 @@ export async function open(name, { again = false } = {}) {
       records.clear();
       mission.value = view;
       state.value = view.state ?? null;
+      draws.value = trace.draws;
       steps.value = trace.steps.map(whole);
       points.value = folded(steps.value);
       problem.value = null;
@@ -127,6 +129,7 @@ function forget() {
     mission.value = state.value = progress.value = successor.value = loadedIn.value = null;
     steps.value = points.value = reports.value = pictures.value = [];
     services.value = new Map();
+    draws.value = false;
   });
 }
 
