@@ -54,7 +54,7 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
     assert ours["return, pomcp", ""]["unit"] == "2 runs"
 
 
-def test_a_return_is_told_with_and_without_the_documents_rollout_policy(
+def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(
     bundles: Path, cache_dir: Path, tmp_path: Path
 ) -> None:
     folder = shutil.copytree(bundles / "bench" / "tiger", tmp_path / "tiger")
@@ -64,14 +64,10 @@ def test_a_return_is_told_with_and_without_the_documents_rollout_policy(
     one_mission = ("--metric", "return", "--runs", "1", "--time", "0.001", "--planner", "pomcp", "--json")
     done = run_bench(cache_dir, str(folder), *one_mission)
     assert done.returncode == 0, done.stderr
-    metrics = [row["metric"] for row in json.loads(done.stdout)["rows"] if row["name"] == "aos"]
+    rows = json.loads(done.stdout)["rows"]
+    assert {row["problem"] for row in rows} == {"tiger"}
+    metrics = [row["metric"] for row in rows if row["name"] == "aos"]
     assert metrics == ["return, pomcp", "return, pomcp, no rollout policy"]
-
-
-def test_a_bundle_of_ones_own_is_measured_by_its_folder(bundles: Path, cache_dir: Path) -> None:
-    done = run_bench(cache_dir, str(bundles / "bench" / "tiger"), "--metric", "steps", "--quick", "--json")
-    assert done.returncode == 0, done.stderr
-    assert {row["problem"] for row in json.loads(done.stdout)["rows"]} == {"tiger"}
 
 
 @pytest.mark.parametrize("name", ["lion", "no/such/bundle"])

@@ -29,16 +29,17 @@ def project(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv("PATH", f"{BIN}{os.pathsep}{os.environ['PATH']}")
 
 
-@pytest.fixture(params=["stand-in", "sshd"])
-def ssh(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
-    """The folder of an `ssh` that reaches robot@arm."""
-    if request.param == "stand-in":
+@pytest.fixture
+def ssh(tmp_path: Path) -> Iterator[str]:
+    """The folder of an `ssh` that reaches robot@arm.
+
+    It is the real one where OpenSSH's server is there and may be started, by root alone; else a stand-in.
+    """
+    if shutil.which("sshd", path="/usr/sbin") and shutil.which("ssh") and os.getuid() == 0:
+        with ssh_server(tmp_path) as folder:
+            yield folder
+    else:
         yield stand_in(tmp_path)
-        return
-    if not (shutil.which("sshd", path="/usr/sbin") and shutil.which("ssh") and os.getuid() == 0):
-        pytest.skip("needs an SSH server (Debian: openssh-server), and to be root to start it")
-    with ssh_server(tmp_path) as folder:
-        yield folder
 
 
 def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
