@@ -15,7 +15,8 @@ from xml.etree import ElementTree
 
 import msgspec
 
-from aos_middleware.worker import raised, take_over_pipes
+from aos_middleware.raised import raised
+from aos_middleware.worker_pipes import take_over_pipes
 
 __all__ = ["FILE_NAME", "MOST_BYTES", "Drawn", "NotDrawn", "Subject"]
 

@@ -10,15 +10,13 @@ from __future__ import annotations
 import builtins
 import copy
 import faulthandler
-import io
 import os
 import signal
-import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from types import CodeType, TracebackType
-from typing import Any, BinaryIO
+from types import CodeType
+from typing import Any
 
 from aos_middleware.frames import (
     Answer,
@@ -29,32 +27,22 @@ from aos_middleware.frames import (
     Load,
     Observed,
     Question,
-    Raised,
     Take,
     Taken,
     pack,
     read_question,
 )
+from aos_middleware.raised import NoTruthValue, raised
 from aos_middleware.values import message_from, plain_from, put, text_of
+from aos_middleware.worker_pipes import take_over_pipes
 
-__all__ = ["LoadedMapping", "main", "raised", "take_over_pipes"]
-
-_MAX_ERROR_CHARACTERS = 2000
-_MAX_PRINTED_BYTES = 1024 * 1024
+__all__ = ["LoadedMapping", "main"]
 
 Function = Callable[..., Any]
 
 
 class ImportRefused(Exception):
     """An import that the deployment does not allow; no ImportError, so that nothing stands in for it."""
-
-
-class NoTruthValue(TypeError):
-    """A condition that is neither True nor False; `code` is that of its function."""
-
-    def __init__(self, message: str, code: CodeType) -> None:
-        super().__init__(message)
-        self.code = code
 
 
 class LoadedMapping:
@@ -199,54 +187,6 @@ def _watched(deadline_s: float) -> Iterator[None]:
         signal.setitimer(signal.ITIMER_REAL, 0)
 
 
-def raised(
-    error: BaseException,
-    file_name: str,
-    lines: list[str],
-    unset: tuple[str, ...] = (),
-    local_variables: dict[str, str] | None = None,
-) -> Raised:
-    """Returns what an exception says, and where in the module it was: at the innermost of the module's
-    frames."""
-    if isinstance(error, NoTruthValue):
-        text, (line, column) = f"TypeError: {_said(error)}", _start(error.code, lines)
-    else:
-        text = f"{type(error).__name__}: {_said(error)}"
-        line, column = _place(error.__traceback__, file_name, lines)
-    text = text[:_MAX_ERROR_CHARACTERS].rstrip(": ")
-    return Raised(text, line, column, unset, local_variables or {})
-
-
-def _said(error: BaseException) -> str:
-    try:
-        return str(error)
-    except BaseException as failure:
-        return f"(its text raised {type(failure).__name__})"
-
-
-def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int]:
-    place = (0, 0)
-    while trace is not None:
-        code = trace.tb_frame.f_code
-        if code.co_filename == file_name:
-            line = trace.tb_lineno
-            start = list(code.co_positions())[trace.tb_lasti // 2][2]
-            text = lines[line - 1] if 0 < line <= len(lines) else ""
-            # Python counts bytes, documents characters.
-            column = len(text.encode()[: start or 0].decode(errors="ignore")) + 1
-            place = (line, column)
-        trace = trace.tb_next
-    return place
-
-
-def _start(code: CodeType, lines: list[str]) -> tuple[int, int]:
-    """The place of the expression that a function returns: behind the word, or on the line below it."""
-    numbers = [number for _, _, number in code.co_lines() if number is not None]
-    line = min(number for number in numbers if number > code.co_firstlineno)
-    text = lines[line - 1]
-    return line, len(text) - len(text.lstrip().removeprefix("return ")) + 1
-
-
 def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
     """The builtins of mapping code; its own imports are held to the list, not those of what it imports."""
     names = dict(vars(builtins))
@@ -261,42 +201,6 @@ def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
 
     names["__import__"] = guarded
     return names
-
-
-class _Printed(io.TextIOBase):
-    """The output that mapping code prints: it goes to the error output at once, up to a limit, and never
-    raises."""
-
-    def __init__(self, descriptor: int) -> None:
-        self._descriptor = descriptor
-        self._remaining_bytes = _MAX_PRINTED_BYTES
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, text: str) -> int:
-        if self._remaining_bytes > 0:
-            printed = text.encode(errors="backslashreplace")
-            self._remaining_bytes -= len(printed)
-            try:
-                os.write(self._descriptor, printed)
-                if self._remaining_bytes <= 0:
-                    os.write(self._descriptor, b"\n(the rest is left out)\n")
-            except OSError:
-                self._remaining_bytes = 0
-        return len(text)
-
-
-def take_over_pipes(error_output: int) -> tuple[BinaryIO, BinaryIO]:
-    """The pipes to the service, moved to where prints and reads of mapping code do not reach them."""
-    questions = os.fdopen(os.dup(0), "rb")
-    answers = os.fdopen(os.dup(1), "wb")
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
-    os.close(nothing)
-    os.dup2(2, 1)
-    sys.stdout = sys.stderr = _Printed(error_output)
-    return questions, answers
 
 
 def _answer_of(mapping: LoadedMapping | None, question: Question) -> tuple[LoadedMapping | None, bytes]:

@@ -1,0 +1,67 @@
+"""The error that code in a worker raised: its text, and the place in the generated module."""
+
+from __future__ import annotations
+
+from types import CodeType, TracebackType
+
+from aos_middleware.frames import Raised
+
+__all__ = ["NoTruthValue", "raised"]
+
+_MAX_ERROR_CHARACTERS = 2000
+
+
+class NoTruthValue(TypeError):
+    """A condition that is neither True nor False; `code` is that of its function."""
+
+    def __init__(self, message: str, code: CodeType) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+def raised(
+    error: BaseException,
+    file_name: str,
+    lines: list[str],
+    unset: tuple[str, ...] = (),
+    local_variables: dict[str, str] | None = None,
+) -> Raised:
+    """Returns what an exception says, and where in the module it was: at the innermost of the module's
+    frames."""
+    if isinstance(error, NoTruthValue):
+        text, (line, column) = f"TypeError: {_said(error)}", _start(error.code, lines)
+    else:
+        text = f"{type(error).__name__}: {_said(error)}"
+        line, column = _place(error.__traceback__, file_name, lines)
+    text = text[:_MAX_ERROR_CHARACTERS].rstrip(": ")
+    return Raised(text, line, column, unset, local_variables or {})
+
+
+def _said(error: BaseException) -> str:
+    try:
+        return str(error)
+    except BaseException as failure:
+        return f"(its text raised {type(failure).__name__})"
+
+
+def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int]:
+    place = (0, 0)
+    while trace is not None:
+        code = trace.tb_frame.f_code
+        if code.co_filename == file_name:
+            line = trace.tb_lineno
+            start = list(code.co_positions())[trace.tb_lasti // 2][2]
+            text = lines[line - 1] if 0 < line <= len(lines) else ""
+            # Python counts bytes, documents characters.
+            column = len(text.encode()[: start or 0].decode(errors="ignore")) + 1
+            place = (line, column)
+        trace = trace.tb_next
+    return place
+
+
+def _start(code: CodeType, lines: list[str]) -> tuple[int, int]:
+    """The place of the expression that a function returns: behind the word, or on the line below it."""
+    numbers = [number for _, _, number in code.co_lines() if number is not None]
+    line = min(number for number in numbers if number > code.co_firstlineno)
+    text = lines[line - 1]
+    return line, len(text) - len(text.lstrip().removeprefix("return ")) + 1
