@@ -25,7 +25,7 @@ _LONGEST_PACKET = 65536
 
 
 class Wire:
-    """What becomes of packets. `delay_s` is that of a round trip, `loss` the share lost on each way."""
+    """The fate of packets. `delay_s` is that of a round trip, `loss` the share lost on each way."""
 
     def __init__(self, ends: tuple[int, int], seed: int = 1) -> None:
         self.delay_s = 0.0
