@@ -86,7 +86,9 @@ def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
         yield served, run
 
 
-def test_slider_and_keys_move_all_views_and_the_address(browser: Browser, past: tuple[Gateway, str]) -> None:
+def test_slider_and_keys_move_all_views_and_the_address(
+    browser: Browser, past: tuple[Gateway, str], cache_dir: Path
+) -> None:
     served, name = past
     steps = served.ask(f"/v1/missions/{name}/trace").json["steps"]
     page = opened(browser, served)
@@ -100,6 +102,12 @@ def test_slider_and_keys_move_all_views_and_the_address(browser: Browser, past: 
     expect(page.locator(".decision .action")).to_have_text(steps[0]["action"])
     expect(page.locator(".value.is-chosen")).to_have_attribute("aria-label", re.compile("chosen"))
     expect(page.get_by_alt_text("The state after step 1")).to_be_visible()
+    page.get_by_role("link", name="Why", exact=True).click()
+    page.get_by_role("button", name="Show the tree").click()
+    expect(page.locator(".tree .branches").first).to_contain_text(f"{steps[0]['action']} ")
+    expect(page.locator(".tree details[open] > summary").last).to_contain_text("seen")
+    assert violations(page, cache_dir) == []
+    page.get_by_role("link", name="Overview", exact=True).click()
     page.keyboard.press("Tab")
     page.locator("h1").click()
     page.keyboard.press("End")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from collector import collector
 from gateway import BIN, ROOT, environment
-from processes import HANG_S
+from processes import COMMAND_S
 
 from aos_deploy.export.kept_missions import kept_missions
 
@@ -23,7 +23,7 @@ def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_i
             cwd=tmp_path,
             env=environment(tmp_path, cache_dir) | {"OTEL_EXPORTER_OTLP_HEADERS": "authorization=secret"},
             capture_output=True,
-            timeout=HANG_S,
+            timeout=COMMAND_S,
             check=False,
         )
     run = (tmp_path / "runs" / "latest").resolve()

@@ -159,6 +159,7 @@ class Metrics:
                 if place.has_ended or self._of(name).is_over:
                     continue
                 families.running.add(robot=run.robot)
-                families.holding.add(float(place.is_holding), robot=run.robot)
+                if isinstance(run, KeptRun):  # Of a system at an endpoint nobody knows it.
+                    families.holding.add(float(place.is_holding), robot=run.robot)
                 if place.goal_probability is not None:
                     families.goal.set(place.goal_probability, robot=run.robot, mission=mission)

@@ -5,6 +5,7 @@ import { read, write, hasToken } from "./api.js";
 import { briefAction, chance, percent, plain, signed } from "./format.js";
 import { at, record } from "./store.js";
 import { addressOf, route } from "./route.js";
+import { Tree } from "./tree.js";
 
 const known = new Map();
 // What a person has asked for need not be the better one now.
@@ -53,6 +54,7 @@ export function Why() {
     <${Findings} problem=${problem} />
     ${!found && !problem && html`<p class="empty">An engine of its own is brought to this step…</p>`}
     ${found && html`<${Answer} why=${found} />`}
+    ${step && html`<${Tree} key=${`tree ${name} ${step}`} name=${name} step=${step} seen=${at.value.seen} />`}
     ${step && html`<${WhatIf} key=${`${name} ${step}`} name=${name} step=${step} />`}
   </div>`;
 }
