@@ -66,7 +66,7 @@ async def flips_of(
 
         async def margin_at(p: float, variable: str = variable, value: str = value) -> Margin:
             await engine.believe(variable, value, p, from_aside=True, cautious=valuing.within.cautious)
-            values = await valuing.values(engine, share=1 / 4, anywhere=True)
+            values = await valuing.values(engine, share=valuing.share, anywhere=True)
             return Margin.of(values[actions[0]], values[actions[1]])
 
         if valuing.is_exact:

@@ -152,7 +152,7 @@ class Reasons:
         over = goal + update.summary.failure_probability + update.summary.over_probability
         if goal >= self._replay.goal_probability or over >= 1 - _TERM:
             return Consequence(response, probability, is_seen, goal)
-        values = await self._valuing.values(self._engine, share=1 / 4)
+        values = await self._valuing.values(self._engine, share=self._valuing.share)
         best = best_of(values)
         return Consequence(response, probability, is_seen, goal, best, values[best].q, values[best].stderr)
 

@@ -59,6 +59,9 @@ class Valuing:
         self.within = replay.restriction_of(made) if made is not None else Restriction()
         self.is_exact = decision.planner == "exact" and not self.within.without
         self.horizon = decision.horizon
+        self.share = 1 / 4
+        """The share of the decision's budget for each belief beside its own: of seven at most, so that all
+        searches of an explanation take twice the budget."""
         self.spent = sum(made.simulations) + made.known if made is not None else 0
         """The simulations that the values of the decision stand on."""
         self.begun: Mapping[str, Value] | None = None
@@ -75,6 +78,7 @@ class Valuing:
         self.horizon = plan.horizon
         self.spent = plan.simulations + plan.known_simulations
         self.begun = _values_of(plan)
+        self.share = 1 / 8  # A whole budget is spent.
         return plan.planner
 
     async def values(
