@@ -58,6 +58,7 @@ inline std::string report_of(const std::string& what, const exam::Problem& probl
   regret.missions = static_cast<int>(number_of(options, "missions", 4));
   regret.steps = static_cast<int>(number_of(options, "steps", 0));
   regret.truth_seconds = number_of(options, "truth", 5);
+  regret.judges_decisions = number_of(options, "judged", 1) != 0;
   const std::string names = options.at("planners");
   for (std::size_t first = 0; first <= names.size();) {
     const std::size_t last = std::min(names.find(',', first), names.size());

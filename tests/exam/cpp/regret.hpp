@@ -22,6 +22,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/planner.hpp"
 #include "flat.hpp"
@@ -33,12 +34,14 @@ namespace exam {
 
 struct RegretOptions {
   std::uint64_t seed = 1;
-  std::vector<std::string> planners;  // "look-ahead" is exact look-ahead
+  // "look-ahead" is exact look-ahead. In a build for ablations, "auto/prior+turns" is `auto` without these mechanisms.
+  std::vector<std::string> planners;
   double seconds = 0.1;               // of processor time for a decision; 0: without this limit
   std::uint64_t simulations = 0;      // 0: without this limit
   int missions = 4;
   int steps = 0;  // of a mission; 0: the horizon
   double truth_seconds = 5;
+  bool judges_decisions = true;  // `by_decisions`, which takes a tenth of a second of each
 };
 
 class Regret {
@@ -105,13 +108,14 @@ class Regret {
     std::vector<double> times;  // of decisions, in seconds of processor time
     Decision first{};
     std::optional<Planner> planner;
+    const std::string own_name = with_switches(name);
     if (name != "look-ahead") planner.emplace();
     std::string fault;
     for (int mission = 0; mission < options_.missions && fault.empty(); ++mission) {
       if (planner) planner->start_over();
       const auto decide = [&](const Mass& exact, const Belief& belief, int step) {
         const double before = processor_seconds();
-        const Decision decision = planner ? searched(*planner, name, belief, mission, step)
+        const Decision decision = planner ? searched(*planner, own_name, belief, mission, step)
                                           : Decision{looked_ahead(exact), "look-ahead", "", {}};
         times.push_back(processor_seconds() - before);
         if (times.size() == 1) first = decision;
@@ -138,6 +142,17 @@ class Regret {
     for (const double time : times) json.value(time);
     json.end_array();
     json.member("worst_actions", worst.actions).member("fault", fault).end_object();
+  }
+
+  // The planner's own name, with what is named after it switched off.
+  static std::string with_switches(const std::string& name) {
+#ifdef AOS_ABLATION
+    const std::size_t end = std::min(name.find('/'), name.size());
+    aos::switches::leave_out(end < name.size() ? name.substr(end + 1) : "");
+    return name.substr(0, end);
+#else
+    return name;
+#endif
   }
 
   struct Mean {
@@ -176,7 +191,7 @@ class Regret {
         later += reached.probability * values.back();
       }
       played.value += discount * (flat_.expected_reward(exact, a) + flat_.discount() * later - value);
-      played.by_decisions += discount * lost_by(exact, a);
+      if (options_.judges_decisions) played.by_decisions += discount * lost_by(exact, a);
       // One number for where the world goes, one for what is seen of it, whatever was decided.
       const double outcome_drawn = world.uniform();
       const double seen_drawn = world.uniform();

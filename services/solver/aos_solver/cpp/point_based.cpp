@@ -1,4 +1,5 @@
 // Point-based search for the engine; compiled once for all models, whatever the size of their states.
+#include "aos/base/switches.hpp"
 #include "point_based/online.hpp"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t 
 
 std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
                                                     std::uint64_t& work) {
-  if (!solver_->sarsop.has_start() || solver_->is_nearly_closed()) return std::nullopt;
+  if (!switches::simple_policies || !solver_->sarsop.has_start() || solver_->is_nearly_closed()) return std::nullopt;
   const std::uint64_t before = solver_->sarsop.graph().work();
   const auto done = [&] { return solver_->sarsop.graph().work() - before; };
   const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };

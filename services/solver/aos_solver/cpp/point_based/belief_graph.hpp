@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/switches.hpp"
 #include "point_based/belief_key.hpp"
 #include "point_based/belief_nodes.hpp"
 #include "point_based/bounds.hpp"
@@ -35,7 +36,7 @@ class BeliefGraph {
     for (const ActionValues& values : informed_) sizes_.push_back(size_of(values));
     add_tails(bounds.blind);
     for (const Region& region : regions.all) add_blind(region, bounds.blind);
-    if (is_endless()) add_certainty_equivalent();
+    if (switches::certainty_equivalent && is_endless()) add_certainty_equivalent();
     std::size_t largest = 0;
     for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
     posterior_.reserve(largest);

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/base_policies.hpp"
 #include "point_based/belief_graph.hpp"
@@ -277,7 +278,7 @@ class Sarsop {
   // Runs one trial. Returns false after three in a row, one by each rule, that learnt nothing.
   template <class IsOver>
   bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
-    const bool persists = persisted_ < model_.actions;
+    const bool persists = switches::repeated_trials && persisted_ < model_.actions;
     bool has_learnt = persists ? trial_.persist(number, persisted_++, is_over) : trial_.sample(number, precision, is_over);
     for (auto step = trial_.path().rbegin(); step != trial_.path().rend(); ++step) {
       if (backups_.backup(*step)) has_learnt = true;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/belief_graph.hpp"
 
@@ -56,7 +57,9 @@ class Trial {
   template <class IsOver>
   bool sample(std::uint32_t number, double precision, IsOver&& is_over) {
     begin();
-    const auto follows = static_cast<Follows>(sampled_++ % 3);
+    auto follows = static_cast<Follows>(sampled_++ % 3);
+    if (!switches::middle_trials && follows == Follows::middle) follows = Follows::upper;
+    if (!switches::lower_trials && follows == Follows::lower) follows = Follows::upper;
     const double gap = graph_[number].upper - graph_[number].lower;
     double allowed = std::max(precision, share_of_gap_ * gap);
     double low = graph_[number].lower;

@@ -8,6 +8,7 @@
 
 #include "aos/base/build_kind.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
@@ -106,10 +107,10 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int& left, S
   int times = 0;  // how often the action is still to be repeated
   const auto draw_action = [&] {
     action = detail::rollout_action<Model>(state, sums, count, draws);
-    times = repeats ? drawn_repeats(draws) - 1 : 0;
+    times = repeats && switches::rollout_repeats ? drawn_repeats(draws) - 1 : 0;
   };
   const auto take_action = [&]() -> Step {
-    if (!repeats) return Model::step(state, action, model_draws);
+    if (!repeats || !switches::rollout_ends) return Model::step(state, action, model_draws);
     typename Model::State before = state;
     const Step step = Model::step(state, action, model_draws);
     if (step.reward > 0 || Model::ending(state) == Ending::running) return step;

@@ -8,6 +8,8 @@
 #include <set>
 #include <vector>
 
+#include "aos/base/switches.hpp"
+
 namespace aos {
 
 inline constexpr std::uint32_t no_node = 0xffffffffu;
@@ -65,6 +67,7 @@ int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, 
     if (counts(estimate) && (best == nullptr || estimate.q > best->q)) best = &estimate;
   }
   if (best == nullptr) return 0;
+  if (!switches::sooner) return static_cast<int>(best - estimates.data());
   const ActionEstimate* soonest = best;
   for (const ActionEstimate& estimate : estimates) {
     if (!counts(estimate) || estimate.reward <= soonest->reward) continue;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "aos/base/switches.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/search_tree.hpp"
@@ -31,6 +32,7 @@ class ExplorationBonus {
 
   double of(const ActionNode& action) const {
     const double n = std::max<double>(action.n, 1);
+    if (!switches::own_spread) return std::sqrt(prior_ / prior_visits * action.share * root_n_ / n);
     const double squares = (action.squares + prior_) * action.share;
     return std::sqrt(squares * root_n_ / ((n + prior_visits) * n));
   }

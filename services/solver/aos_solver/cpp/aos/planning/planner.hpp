@@ -15,6 +15,7 @@
 #include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/rounded_text.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
@@ -116,7 +117,7 @@ class Planner {
       if (is_barred(estimate)) return false;
       if (used_ == PlannerKind::belief_tree) return is_well_visited(estimate.n, most.n);
       if (used_ != PlannerKind::pomcp || pomcp_.has_prior() || estimate.n == 0) return estimate.n > 0;
-      return is_well_visited(estimate.n, most.n) || (pomcp_.rolls_out() && is_certain(estimate, most));
+      return is_well_visited(estimate.n, most.n) || (switches::certain_actions && pomcp_.rolls_out() && is_certain(estimate, most));
     });
   }
 
@@ -223,7 +224,7 @@ class Planner {
     if (!space_.reach(belief)) {
       why_ = space_.obstacle();
       if (serves_near(belief, horizon)) return PlannerKind::sarsop;
-      if (Model::has_rollout_policy || pomcp_.has_wide_values(belief, horizon)) return PlannerKind::pomcp;
+      if (!switches::options || Model::has_rollout_policy || pomcp_.has_wide_values(belief, horizon)) return PlannerKind::pomcp;
       return options_or_pomcp(belief, budget, horizon, random);
     }
     why_ = "all " + std::to_string(space_.size()) + " states can be listed";
@@ -237,13 +238,14 @@ class Planner {
     }
     if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
       why_ += "; SARSOP cannot be used: " + obstacle;
+      if (!switches::despot_rule) return PlannerKind::pomcp;
       return space_.lists_observations() ? PlannerKind::despot : belief_tree_or_pomcp(belief, horizon);
     }
     return PlannerKind::sarsop;
   }
 
   bool fits_exact_search(const Belief<Model>& belief, Budget budget, int horizon) {
-    if (!space_.lists_observations() || !belief.is_exact() || !exact_.prepare(horizon)) return false;
+    if (!switches::exact || !space_.lists_observations() || !belief.is_exact() || !exact_.prepare(horizon)) return false;
     const auto start = thread_time();
     const bool fits = exact_.search(belief, budget, horizon);
     searching_ += thread_time() - start;
@@ -263,6 +265,7 @@ class Planner {
   }
 
   PlannerKind belief_tree_or_pomcp(const Belief<Model>& belief, int horizon) {
+    if (!switches::belief_tree) return PlannerKind::pomcp;
     if (const std::string obstacle = belief_tree_.prepare(belief, horizon); !obstacle.empty()) {
       why_ += "; their probabilities cannot be estimated: " + obstacle;
       return PlannerKind::pomcp;
@@ -279,7 +282,7 @@ class Planner {
   // horizon has, each of them with a whole horizon to go.
   bool serves_near(const Belief<Model>& belief, int horizon) {
     const int decisions = 2 * horizon;
-    is_near_ = near_.reach(belief, decisions) && near_search_.prepare(belief, horizon).empty();
+    is_near_ = switches::near_states && near_.reach(belief, decisions) && near_search_.prepare(belief, horizon).empty();
     if (is_near_) {
       why_ += "; the " + std::to_string(near_.space().size()) + " states that " + std::to_string(decisions) +
               " decisions can lead to are listed";

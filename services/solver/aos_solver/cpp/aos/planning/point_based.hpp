@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
@@ -199,7 +200,7 @@ class PointBased {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
     const double most_later = is_long() || is_large(model) ? much : next_to_nothing;
-    is_endless_ = may_be_endless_ && Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
+    is_endless_ = switches::endless && may_be_endless_ && Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
     try {
       search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {

@@ -13,6 +13,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
@@ -45,13 +46,14 @@ class Pomcp {
     prior_.clear();
     has_table_ = false;
     if (belief.probability_of(Ending::running) <= 0) return;
+    has_table_ = switches::step_table && source_ == ValueSource::listed && steps_.prepare(space_, belief);
+    if (!switches::prior) return;
     if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
     if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
-    has_table_ = source_ == ValueSource::listed && steps_.prepare(space_, belief);
   }
 
   // Whether the values of many states can be computed.
-  bool has_wide_values(const Belief<Model>& belief, int horizon) { return wide_values_.prepare(belief, horizon); }
+  bool has_wide_values(const Belief<Model>& belief, int horizon) { return switches::wide_values && wide_values_.prepare(belief, horizon); }
 
   // Searches from the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
@@ -87,7 +89,7 @@ class Pomcp {
       result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n,
                                              running * reward / n};
     }
-    if (prior_.empty()) return result;
+    if (prior_.empty() || !switches::prior_draw) return result;
     std::uint32_t max_visits = 0;
     for (const ActionEstimate& estimate : result) max_visits = std::max(max_visits, estimate.n);
     draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, max_visits); });
@@ -165,7 +167,7 @@ class Pomcp {
     const Operations step_cost = has_table_ ? cost_by_table : cost_of_code() + (rolls_out() ? 0 : cost_of_value);
     const Operations worth_cost = source_ == ValueSource::listed ? cost_of_listed_worth : step_cost;
     for (const auto& tree : threads_.trees()) {
-      tree->begin(horizon, prior_, source_ == ValueSource::wide, barred, step_cost, worth_cost);
+      tree->begin(horizon, prior_, source_ == ValueSource::wide && switches::first_state, barred, step_cost, worth_cost);
     }
     threads_.count_by(rolls_out() ? 0 : Budget::operations_of_simulation(horizon));
     if (has_table_) {
@@ -179,15 +181,15 @@ class Pomcp {
   // What states are worth, as well as it can be known; null if nothing is known of it.
   const StateValues<Model>* known_values(const Belief<Model>& belief, int horizon, Sampler& random) {
     source_ = ValueSource::none;
-    if (values_.prepare(belief, horizon)) {
+    if (switches::listed_values && values_.prepare(belief, horizon)) {
       source_ = ValueSource::listed;
       return &values_;
     }
-    if (wide_values_.prepare(belief, horizon)) {
+    if (has_wide_values(belief, horizon)) {
       source_ = ValueSource::wide;
       return &wide_values_;
     }
-    if (Model::has_rollout_policy || !estimates_.prepare(belief, horizon, random)) return nullptr;
+    if (!switches::learned_values || Model::has_rollout_policy || !estimates_.prepare(belief, horizon, random)) return nullptr;
     source_ = ValueSource::learned;
     return &estimates_;
   }

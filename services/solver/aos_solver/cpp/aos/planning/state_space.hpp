@@ -19,6 +19,7 @@
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
@@ -63,6 +64,10 @@ class StateSpace {
   // Lists what can be reached from a belief. Observations are left out if there are too many. Returns whether
   // everything is listed; otherwise `obstacle` tells why not.
   bool reach(const Belief<Model>& belief) {
+    if (!switches::lists) {
+      give_up("lists are switched off", belief);
+      return false;
+    }
     if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
     try {
       add_states_of(belief);

@@ -17,6 +17,7 @@
 
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
@@ -102,7 +103,7 @@ class TreeSearch {
   // Keeps the part of the tree below an action and an observation. Nothing is kept if these were never
   // simulated, or if numbers were observed: a cell says less than its numbers.
   void move_to(int action, Observation observation) {
-    if (reports_numbers_ || !has_actions()) return forget();
+    if (!switches::kept_tree || reports_numbers_ || !has_actions()) return forget();
     const std::uint32_t taken = tree_.history(0).first_action + static_cast<std::uint32_t>(action);
     const std::uint32_t kept = tree_.find_child(taken, observation);
     if (kept == no_node) return forget();
@@ -147,7 +148,7 @@ class TreeSearch {
     ObservationCells::Drawn drawn{random};
     while (true) {
       const std::optional<double> expected =
-          visits_.size() < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
+          switches::expected_rewards && visits_.size() < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
       Step step = step_of(state, static_cast<int>(a), random, drawn);
       if (expected) step.reward = *expected;
       work_ += step_cost_ + per_visit + per_action * action_count() + (expected ? few_paths * step_cost_ : 0);
@@ -159,7 +160,7 @@ class TreeSearch {
       if (!goes_on) break;
 
       const std::uint32_t action = tree_.history(history).first_action + a;
-      const Observation seen = reports_numbers_ ? cells_.cell(action, step.observation, drawn) : step.observation;
+      const Observation seen = switches::observation_cells && reports_numbers_ ? cells_.cell(action, step.observation, drawn) : step.observation;
       std::uint32_t child = tree_.find_child(action, seen);
       const bool is_new = child == no_node;
       if (is_new) {
@@ -167,7 +168,7 @@ class TreeSearch {
         work_ += per_history;
       }
       if (is_new || stays_leaf(child) || !give_actions(child, state, random)) {
-        if (child != no_node && !prior_.empty()) ask(child, state, random);
+        if (switches::asked_leaves && child != no_node && !prior_.empty()) ask(child, state, random);
         later = state.leaf(left, random);
         change = child == no_node ? later : add_return(tree_.history(child), later);
         break;
@@ -240,7 +241,7 @@ class TreeSearch {
 
     const double before = parent.n * parent.v;
     ++parent.n;
-    parent.v = parent.n < settled_visits ? parent.v + (seen - parent.v) / parent.n : actions[parent.best].q;
+    parent.v = !switches::max_backup || parent.n < settled_visits ? parent.v + (seen - parent.v) / parent.n : actions[parent.best].q;
     return parent.n * parent.v - before;
   }
 
@@ -258,7 +259,7 @@ class TreeSearch {
 
   // Every eighth simulation begins with the next of the root's actions in turn, so that all their values can be read.
   int turn() const {
-    if (spread_.simulations() % turns != 0) return -1;
+    if (!switches::turns || spread_.simulations() % turns != 0) return -1;
     const auto next = static_cast<int>(spread_.simulations() / turns % action_count());
     return barred_.contains(static_cast<std::size_t>(next)) ? -1 : next;
   }
@@ -275,7 +276,7 @@ class TreeSearch {
   // With a prior, a history stays a leaf until it has as many visits as there are actions. Fully observable
   // values are too high, and less so the deeper the tree. With few visits below each of many actions, the
   // values would tell apart how deep these visits went, and not the actions.
-  bool stays_leaf(std::uint32_t number) const { return !prior_.empty() && tree_.history(number).n < visits_of_leaf(); }
+  bool stays_leaf(std::uint32_t number) const { return switches::asked_leaves && !prior_.empty() && tree_.history(number).n < visits_of_leaf(); }
   static std::uint32_t visits_of_leaf() { return std::max(action_count(), asked_states); }
 
   // With a prior, the states of a leaf's last visits tell what its actions are worth (QMDP). The prior itself is that of
@@ -304,7 +305,7 @@ class TreeSearch {
     odds_.resize(action_count());
     ActionNode* const actions = tree_.actions(tree_.history(number));
     if (state.rollout_odds(odds_.data(), random)) {
-      share_exploration(actions, odds_);
+      if (switches::rollout_shares) share_exploration(actions, odds_);
     } else if (first_state_tells_ && number != 0) {
       work_ += action_count() * worth_cost_;
       state.advantages(odds_.data(), random);

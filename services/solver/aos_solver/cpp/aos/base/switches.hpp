@@ -1,0 +1,68 @@
+// Mechanisms of the planners that can be switched off in builds for tests (AOS_ABLATION), so that what each is worth can
+// be measured: `python -m tests.ablation`. In all other builds they are constants.
+#pragma once
+
+#ifdef AOS_ABLATION
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <string_view>
+#endif
+
+// Which planner decides:
+//   lists (of states), exact, near_states, belief_tree, options, despot_rule
+// SARSOP:
+//   endless, certainty_equivalent, repeated_trials, middle_trials, lower_trials, simple_policies
+// POMCP's values of states, and its prior:
+//   listed_values, wide_values, learned_values, prior, prior_draw, asked_leaves, first_state, step_table, expected_rewards
+// POMCP's search:
+//   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
+//   kept_tree
+#define AOS_MECHANISMS(of)                                                                                     \
+  of(lists) of(exact) of(near_states) of(belief_tree) of(options) of(despot_rule)                              \
+  of(endless) of(certainty_equivalent) of(repeated_trials) of(middle_trials) of(lower_trials) of(simple_policies) \
+  of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state)  \
+  of(step_table) of(expected_rewards)                                                                           \
+  of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns)              \
+  of(certain_actions) of(sooner) of(observation_cells) of(kept_tree)
+
+namespace aos::switches {
+
+#ifdef AOS_ABLATION
+
+#define AOS_SWITCH(name) inline bool name = true;
+AOS_MECHANISMS(AOS_SWITCH)
+#undef AOS_SWITCH
+
+// Whether a text of names between `+` has this one.
+inline bool has_name(std::string_view names, std::string_view name) {
+  for (std::size_t first = 0; first < names.size();) {
+    const std::size_t last = std::min(names.find('+', first), names.size());
+    if (names.substr(first, last - first) == name) return true;
+    first = last + 1;
+  }
+  return false;
+}
+
+// Switches these off, and all others on.
+inline void leave_out(std::string_view names) {
+#define AOS_SWITCH(name) name = !has_name(names, #name);
+  AOS_MECHANISMS(AOS_SWITCH)
+#undef AOS_SWITCH
+}
+
+inline const bool was_environment_read = [] {
+  const char* const names = std::getenv("AOS_WITHOUT");
+  if (names != nullptr) leave_out(names);
+  return names != nullptr;
+}();
+
+#else
+
+#define AOS_SWITCH(name) inline constexpr bool name = true;
+AOS_MECHANISMS(AOS_SWITCH)
+#undef AOS_SWITCH
+
+#endif
+
+}  // namespace aos::switches

@@ -1,0 +1,1 @@
+"""Ablations: what planners lose where one of their mechanisms is switched off."""

@@ -1,0 +1,120 @@
+"""The mechanisms of the planners, and the ways to a decision on which each is met.
+
+The names are those of `services/solver/aos_solver/cpp/aos/base/switches.hpp`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+__all__ = ["BUNDLES", "ROUTES", "BundleRoute", "Route"]
+
+
+class Route(NamedTuple):
+    """A planner on random models, with some mechanisms off from the start so that others come into play."""
+
+    name: str
+    planner: str
+    without: tuple[str, ...]
+    mechanisms: tuple[str, ...]
+
+    def variant(self, *mechanisms: str) -> str:
+        """The name by which the exam's driver plays the planner without these mechanisms, too."""
+        off = (*self.without, *mechanisms)
+        return f"{self.planner}/{'+'.join(off)}" if off else self.planner
+
+
+_UNLISTED = ("lists", "near_states", "wide_values")
+_ROLLED_OUT = (*_UNLISTED, "options", "learned_values")
+_SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")
+
+ROUTES = (
+    Route(
+        "auto",
+        "auto",
+        (),
+        (
+            "exact",
+            "endless",
+            "certainty_equivalent",
+            "repeated_trials",
+            "middle_trials",
+            "lower_trials",
+            "simple_policies",
+            "despot_rule",
+        ),
+    ),
+    Route("pomcp", "pomcp", (), ("listed_values", "step_table", *_SEARCH)),
+    Route("auto, states unlisted", "auto", _UNLISTED, ("options", "learned_values")),
+    Route(
+        "pomcp with learned values",
+        "auto",
+        (*_UNLISTED, "options"),
+        ("learned_values", "prior", "prior_draw", "asked_leaves", "expected_rewards"),
+    ),
+    Route(
+        "pomcp with rollouts",
+        "auto",
+        _ROLLED_OUT,
+        (
+            "expected_rewards",
+            "rollout_repeats",
+            "rollout_ends",
+            "rollout_shares",
+            "certain_actions",
+            *_SEARCH,
+        ),
+    ),
+)
+
+
+class BundleRoute(NamedTuple):
+    """Missions of a bundle: its name, the simulations of a decision, the steps, and what is switched off."""
+
+    bundle: str
+    simulations: int
+    steps: int
+    mechanisms: tuple[str, ...]
+    without: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return f"{self.bundle} without {'+'.join(self.without)}" if self.without else self.bundle
+
+
+_WITHOUT_OPTIONS = ("learned_values", "prior", "prior_draw", "asked_leaves")
+
+BUNDLES = (
+    BundleRoute(
+        "diagnosis200", 2000, 40, ("simple_policies", "repeated_trials", "lower_trials", "middle_trials")
+    ),
+    BundleRoute(
+        "lightdark",
+        2000,
+        60,
+        (
+            "endless",
+            "certainty_equivalent",
+            "repeated_trials",
+            "lower_trials",
+            "middle_trials",
+            "simple_policies",
+        ),
+    ),
+    BundleRoute("inventory", 2000, 60, ("near_states", "endless", "certainty_equivalent", "repeated_trials")),
+    BundleRoute("laser", 1000, 60, ("belief_tree",)),
+    BundleRoute("laser", 1000, 60, ("prior", "prior_draw", "asked_leaves"), ("belief_tree",)),
+    BundleRoute("ship10", 1000, 100, ("options", "learned_values")),
+    BundleRoute("ship10", 1000, 100, _WITHOUT_OPTIONS, ("options",)),
+    BundleRoute("kitchen12", 1000, 70, ("options",)),
+    BundleRoute("kitchen12", 1000, 70, _WITHOUT_OPTIONS, ("options",)),
+    BundleRoute("maint10", 1000, 60, ("wide_values", "first_state", "expected_rewards")),
+    BundleRoute("maint10", 1000, 60, ("learned_values", "prior"), ("wide_values", "options")),
+    BundleRoute("parcels", 1000, 60, ("options", "learned_values")),
+    BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
+    BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
+    BundleRoute("harbour", 1000, 60, ("options", "learned_values")),
+    BundleRoute(
+        "pocman", 1000, 60, ("rollout_shares", "max_backup", "turns", "own_spread", "learned_values")
+    ),
+)
