@@ -37,7 +37,7 @@ ENVIRONMENT = {
     "engine": (*_LANGUAGE, "MALLOC_ARENA_MAX", "AOS_WITHOUT"),
     "worker": (*_LANGUAGE, "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"),
 }
-"""The variables that each keeps of its starter's environment. Only engines of ablations read `AOS_WITHOUT`."""
+"""The variables that each keeps of its starter's environment. Engines of ablations read `AOS_WITHOUT`."""
 
 _THREAD = 0x10000
 _NAMESPACES = 0x7E020000
