@@ -177,7 +177,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "aos_solver.bus_ports.ACTIVATION_MARGIN_S", "s", "outcome `unknown`",
         ),
         Row(
-            "solver or middleware asks the registry something small",
+            "solver or middleware asks the registry something small, or the solver the middleware",
             "aos_runtime.registry_watch.ASK_TIMEOUT_S", "s", "AOS601",
         ),
         Row(

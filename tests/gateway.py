@@ -25,6 +25,7 @@ __all__ = [
     "slow_deploy_file",
     "slow_system",
     "worn_system",
+    "write_slow_tiger",
 ]
 
 BIN = Path(sys.executable).parent
@@ -224,13 +225,18 @@ def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -
     return (runs / "latest").resolve()
 
 
-def slow_deploy_file(folder: Path, step_limit: int = 1_000_000) -> Path:
-    """The deploy file of a robot that listens once for each byte written to the pipe `turns` beside it."""
-    os.mkfifo(folder / "turns")
-    (folder / "tiger").mkdir()
+def write_slow_tiger(folder: Path) -> None:
+    """Writes the bundle `tiger`, whose skills may take as long as a test wants them to."""
+    (folder / "tiger").mkdir(exist_ok=True)
     for path in (ROOT / "deploy/bundles/bench/tiger").iterdir():
         text = path.read_text().replace("max_duration: 10\n", "max_duration: 900\n")
         (folder / "tiger" / path.name).write_text(text)
+
+
+def slow_deploy_file(folder: Path, step_limit: int = 1_000_000) -> Path:
+    """The deploy file of a robot that listens once for each byte written to the pipe `turns` beside it."""
+    os.mkfifo(folder / "turns")
+    write_slow_tiger(folder)
     (folder / "robot.py").write_text(SLOW_ROBOT)
     deploy_file = folder / "tiger.yaml"
     deploy_file.write_text(SLOW.replace("1_000_000", str(step_limit)))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from gateway import write_slow_tiger
 from processes import COMMAND_S, HANG_S, kill
 
 from aos_deploy.history_check.files import violations_of_run
@@ -31,9 +32,9 @@ BIN = Path(sys.executable).parent
 DEPLOY = """\
 aos: 1
 robot: tiger
-bundles: [{root}/deploy/bundles/bench/tiger]
+bundles: [tiger]
 bus: {{listen: "tcp/127.0.0.1:0"}}
-mission: {{goal_probability: 1.0, step_limit: 3}}
+mission: {{goal_probability: 1.0, step_limit: 3, activation_timeout_s: 900}}
 solver: {{simulations: 200, planner: pomcp}}
 bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
 """
@@ -121,6 +122,7 @@ class System:
 @contextmanager
 def up(root: Path, folder: Path, cache_dir: Path, *options: str) -> Iterator[System]:
     environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder / "running")}
+    write_slow_tiger(folder)
     (folder / "tiger.yaml").write_text(DEPLOY.format(root=root))
     (folder / "errand.yaml").write_text(ERRAND.format(root=root))
     (folder / "robot.py").write_text(ROBOT)
