@@ -52,10 +52,17 @@ def main() -> int:
     models.add_argument("--simulations", type=int, default=1500, metavar="N", help="of a decision")
     bundles = commands.add_parser("bundles", help="returns of missions")
     bundles.add_argument("--from", dest="folder", type=Path, metavar="DIR", help="more bundles")
-    bundles.add_argument("--bundle", action="append", help="may be repeated")
+    names = sorted({route.bundle for route in BUNDLES})
+    bundles.add_argument("--bundle", action="append", choices=names, metavar="NAME", help="may be repeated")
     bundles.add_argument("--runs", type=int, default=8, metavar="N")
     for command in (models, bundles):
-        command.add_argument("--mechanism", action="append", help="may be repeated; without any, all")
+        command.add_argument(
+            "--mechanism",
+            action="append",
+            choices=sorted({name for route in (*ROUTES, *BUNDLES) for name in route.mechanisms}),
+            metavar="NAME",
+            help="may be repeated; without any, all",
+        )
         command.add_argument("--seed", type=int, default=1)
         command.add_argument("--json", action="store_true", help="a line for each row of the table")
     commands.add_parser("list", help="print where each mechanism is switched off")
