@@ -131,3 +131,19 @@ async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path)
         ]
     assert runs[0] == runs[1]
     assert [run.world_ending for run in runs] == ["goal", "goal"]
+
+
+async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_the_only_reward(
+    cache_dir: Path,
+) -> None:
+    """Which states lead to a reward is found state by state, and not in one pass for each step of the way."""
+    files = {
+        "count.ef": "project: count\nhorizon: 2\ndiscount: 0.9\nstate_variable: int count\n"
+        "initial_belief:\nif (AOS.Bernoulli(0.5)) state.count = 1;\n"
+        "reward_code:\nif (state.count >= 99000) { __reward = 10; __isGoalState = true; }\n",
+        "step.sd": "project: count\ndynamic_model:\nstate__.count++;\n__moduleResponse = done;\n",
+    }
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        plan = await engine.plan(simulations=20, seed=1, planner="sarsop")
+    assert plan.planner == "sarsop"
+    assert plan.actions[0].q == pytest.approx(0, abs=1e-6)

@@ -77,24 +77,43 @@ class Regions {
   std::vector<std::uint32_t> local_of;   // a state's number in its region
 
  private:
-  // The largest set of states without rewards that no action leaves.
+  // The largest set of states without rewards that no action leaves: those from which no reward can be reached.
   std::vector<bool> worthless_states() const {
-    std::vector<bool> worthless(model_.states);
-    for (std::size_t state = 0; state < model_.states; ++state) {
+    const Rows<std::uint32_t> before = predecessors();
+    std::vector<bool> worthless(model_.states, true);
+    std::vector<std::uint32_t> found;
+    const auto find = [&](std::uint32_t state) {
+      if (!worthless[state]) return;
+      worthless[state] = false;
+      found.push_back(state);
+    };
+    for (std::uint32_t state = 0; state < model_.states; ++state) {
       const auto first = model_.rewards.begin() + static_cast<std::ptrdiff_t>(model_.row(state, 0));
       const auto last = first + static_cast<std::ptrdiff_t>(model_.actions);
-      worthless[state] = std::all_of(first, last, [](double reward) { return reward == 0; });
+      if (std::any_of(first, last, [](double reward) { return reward != 0; })) find(state);
     }
-    for (bool has_changed = true; has_changed;) {
-      has_changed = false;
-      for (std::size_t state = 0; state < model_.states; ++state) {
-        const auto leads_on = [&](const Outcome& outcome) { return !worthless[outcome.next]; };
-        if (!worthless[state] || std::ranges::none_of(model_.outcomes_of(state), leads_on)) continue;
-        worthless[state] = false;
-        has_changed = true;
-      }
+    while (!found.empty()) {
+      const std::uint32_t state = found.back();
+      found.pop_back();
+      for (const std::uint32_t earlier : before[state]) find(earlier);
     }
     return worthless;
+  }
+
+  // The states from which each state is entered.
+  Rows<std::uint32_t> predecessors() const {
+    Rows<std::uint32_t> before;
+    before.first.assign(model_.states + 1, 0);
+    for (std::size_t state = 0; state < model_.states; ++state) {
+      for (const Outcome& outcome : model_.outcomes_of(state)) ++before.first[outcome.next + 1];
+    }
+    std::partial_sum(before.first.begin(), before.first.end(), before.first.begin());
+    before.elements.resize(before.first.back());
+    auto next = before.first;
+    for (std::uint32_t state = 0; state < model_.states; ++state) {
+      for (const Outcome& outcome : model_.outcomes_of(state)) before.elements[next[outcome.next]++] = state;
+    }
+    return before;
   }
 
   // The number of a key; a new key gets `number`. Different keys have different hashes.
