@@ -136,7 +136,7 @@ async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path)
 async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_the_only_reward(
     cache_dir: Path,
 ) -> None:
-    """Which states lead to a reward is found state by state, and not in one pass for each step of the way."""
+    """The states that lead to a reward are found one by one, and not in one pass for each step of the way."""
     files = {
         "count.ef": "project: count\nhorizon: 2\ndiscount: 0.9\nstate_variable: int count\n"
         "initial_belief:\nif (AOS.Bernoulli(0.5)) state.count = 1;\n"
