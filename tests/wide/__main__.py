@@ -72,7 +72,8 @@ def _text(found: Played) -> str:
     told = found.first.best
     return (
         f"{' and '.join(sorted(found.planners))} {found.mean:.1f} +- {found.error:.1f} "
-        f"(told {told.q:.1f} +- {told.stderr:.1f}); {times_text(found.times_s)}"
+        f"(told {told.q:.1f} +- {told.stderr:.1f}); {times_text(found.times_s)}; "
+        f"preparations took {max(found.preparations_s):.1f} s at most"
     )
 
 

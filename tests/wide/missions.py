@@ -21,13 +21,19 @@ class Played:
 
     returns: list[float] = dataclasses.field(default_factory=list)
     times_s: list[float] = dataclasses.field(default_factory=list)
+    """The processor time of each search, which the budget counts."""
+
+    preparations_s: list[float] = dataclasses.field(default_factory=list)
+    """The processor time of the lists and values before each search, which no budget counts."""
+
     planners: set[str] = dataclasses.field(default_factory=set)
     first: Plan | None = None
 
     def take(self, plan: Plan) -> None:
         """Adds a decision."""
         self.first = self.first or plan
-        self.times_s.append(plan.cpu_seconds)
+        self.times_s.append(plan.search_s)
+        self.preparations_s.append(plan.preparation_s)
         self.planners.add(plan.planner)
 
     @property

@@ -2,18 +2,16 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/leaf_cells.hpp"
 #include "aos/planning/option_regret.hpp"
 #include "aos/planning/option_search.hpp"
 #include "aos/planning/option_tests.hpp"
+#include "aos/planning/option_values.hpp"
 #include "aos/planning/repeated_observation.hpp"
 #include "aos/planning/sampled_belief.hpp"
 #include "aos/planning/step_reports.hpp"
@@ -27,16 +25,14 @@ class OptionMoves {
   static constexpr std::size_t few = 16;  // each is tried several times in a row
 
   OptionMoves(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OptionTests<Model>& tests,
-              const LeafCells<Model>& cells)
-      : belief_(belief), regret_(regret), tests_(tests), cells_(cells) {}
+              const OptionValues<Model>& values)
+      : belief_(belief), regret_(regret), tests_(tests), values_(values) {}
 
-  // Adds each move, once or several times in a row, where they are few. `steps` is counted down.
+  // Adds each move, once or several times in a row, where they are few, the latter while there are steps.
   void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) {
     if (tests_.moves().size() > few) return;
-    for (const int move : tests_.moves()) {
-      for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats; repeats *= 2) {
-        add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
-      }
+    for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats && (repeats == 1 || steps > 0); repeats *= 2) {
+      for (const int move : tests_.moves()) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
     }
   }
 
@@ -53,7 +49,7 @@ class OptionMoves {
         State state = now[k];
         step_.take(state, action, reports[k], random);
       }
-      steps -= 2 * static_cast<double>(now.size());
+      steps -= OptionTests<Model>::steps_of_information(now.size());
       const double told = information(belief_.weights(), reports, OptionRegret<Model>::observations, random);
       const double gained = told - tests_.information_of(action);
       if (gained <= most) continue;
@@ -64,10 +60,6 @@ class OptionMoves {
   }
 
  private:
-  static constexpr std::size_t valued_states = 12;
-  static constexpr int tries = 8;                // of a way from a next state
-  static constexpr double value_steps = 20'000;  // to find ways from a next state
-
   // Adds actions in a row, where at least half of the missions go on after them.
   void add_way(std::vector<OptionCandidate>& candidates, const Option& way, double& steps, Sampler& random) {
     std::vector<State> now = belief_.states();
@@ -85,15 +77,15 @@ class OptionMoves {
     for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
     if (share < 0.5) return;
     const RepeatedObservation last{share < 1 - 1e-9 || !tell_nothing(reports) ? std::vector<StepReports>{} : reports.back()};
-    const double left = regret_.after(last, 1, random, [&](std::size_t k, StateWeights& weights) {
+    const double left = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
       if (weights[k] <= 0) return;
       for (const auto& of_step : reports) observe(of_step, of_step[k].drawn(random), weights);
     });
     // What is at stake grows as the mission comes closer to what it can earn.
-    const double seen = share * (regret_.value_seen() + gain_of(now, steps, random));
+    const double seen = share * (regret_.value_seen() + values_.gain_of(now, way.size(), steps, random));
     const double stake = regret_.value_seen() > 0 ? std::max(seen / regret_.value_seen(), 0.0) : 1;
-    candidates.push_back({way.front(), earned + discount * (seen - regret_.share() * stake * left), "what can be observed elsewhere"});
+    candidates.push_back({way.front(), earned + discount * (seen - stake * left), discount, "what can be observed elsewhere"});
   }
 
   // Whether nothing is observed on the way but at its last step.
@@ -101,44 +93,10 @@ class OptionMoves {
     return std::all_of(reports.begin(), reports.end() - 1, [](const auto& of_step) { return RepeatedObservation{of_step}.tells_nothing(); });
   }
 
-  // How much more the next states are worth than those before, if they are seen.
-  double gain_of(const std::vector<State>& now, double& steps, Sampler& random) {
-    double gain = 0;
-    double count = 0;
-    const std::size_t stride = std::max<std::size_t>(now.size() / valued_states, 1);
-    for (std::size_t k = stride / 2; k < now.size(); k += stride) {
-      if (Model::ending(now[k]) != Ending::running) continue;
-      gain += value_of(now[k], steps, random) - regret_.value_seen(k);
-      ++count;
-    }
-    return count > 0 ? gain / count : 0;
-  }
-  double value_of(State state, double& steps, Sampler& random) {
-    OptionSearch<Model> search{cells_};
-    double value = 0;
-    double discount = 1;
-    double left = value_steps;
-    while (Model::ending(state) == Ending::running && left > 0) {
-      const std::vector<Option> ways = search.from(state, left, random);
-      if (ways.empty()) break;
-      State next = state;
-      double earned = 0;
-      for (int i = 0; i < tries; ++i) {
-        next = state;
-        earned += taken_option<Model>(ways.front(), next, random).earned / tries;
-      }
-      state = std::move(next);
-      value += discount * earned;
-      discount *= std::pow(Model::discount, ways.front().size());
-    }
-    steps -= value_steps - left;
-    return value;
-  }
-
   const SampledBelief<Model>& belief_;
   const OptionRegret<Model>& regret_;
   const OptionTests<Model>& tests_;
-  const LeafCells<Model>& cells_;
+  const OptionValues<Model>& values_;
   ReportedStep<Model> step_;
 };
 

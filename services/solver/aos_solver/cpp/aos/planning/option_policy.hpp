@@ -9,14 +9,14 @@
 //   take an option;
 //   observe, once or several times in a row (blinkered value of information: Hay, Russell, Tolpin and Shimony, 2012);
 //   move, and observe on the way or where it leads.
-//
-// Where some actions only observe, half of the regret counts, since more can be observed later.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +31,7 @@
 #include "aos/planning/option_regret.hpp"
 #include "aos/planning/option_search.hpp"
 #include "aos/planning/option_tests.hpp"
+#include "aos/planning/option_values.hpp"
 #include "aos/planning/sampled_belief.hpp"
 #include "aos/planning/step_cost.hpp"
 
@@ -47,14 +48,14 @@ class OptionPolicy {
     if (!obstacle_.empty()) return obstacle_;
     const ForgottenTexts forgotten;
     if (!is_prepared_) library_.prepare(belief, random);
-    const double affordable = affordable_steps(budget, horizon);
-    const auto states = std::clamp<double>(of_states * affordable / Model::action_count(), 16, 64);
+    affordable_ = affordable_steps(budget, horizon);
+    const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, 64);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
     library_.drop_unused(gains_);
-    double left = of_options * affordable;
+    double left = of_options * affordable_;
     const double found = library_.extend(belief_, left, random);
     gains_.measure(library_.options(), belief_.states(), library_.cells(), left, random);
-    steps_ = of_options * affordable - left;
+    steps_ = of_options * affordable_ - left;
     std::string obstacle = found < enough_found ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
     is_prepared_ = is_prepared_ || obstacle.empty();
@@ -66,18 +67,16 @@ class OptionPolicy {
     const ForgottenTexts forgotten;
     candidates_.clear();
     regret_.begin();
-    double left = 0;
-    tests_.observe_all(library_.cells(), barred, left, random);
-    regret_.count(tests_.empty() ? 1 : learned_later);
+    double left = affordable_ - steps_;
+    values_.begin(belief_, horizon, left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
-    for (const std::size_t option : likely) add_option(option);
-    tests_.add_to(candidates_, random);
-    moves_.add_to(candidates_, left, random);
-    for (const std::size_t option : likely) {
-      if (library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
-    }
+    if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
+    const double blind = regret_.value_seen() - regret_.now();
+    double gained = 0;
+    for (const OptionCandidate& candidate : candidates_) gained = std::max(gained, candidate.value - candidate.discount * blind);
+    for (const std::size_t option : likely) add_option(option, gained);
     settle(belief.probability_of(Ending::running));
-    return 1 + static_cast<std::uint64_t>((steps_ - left) / horizon);
+    return 1 + static_cast<std::uint64_t>((affordable_ - left) / horizon);
   }
 
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
@@ -96,7 +95,7 @@ class OptionPolicy {
   static constexpr double of_states = 0.05;
   static constexpr double enough_found = 0.5;   // of the belief
   static constexpr double most_touching = 0.5;  // of pairs of options
-  static constexpr double learned_later = 0.5;  // the share of the regret that counts, where something only observes
+  static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
 
   // How many steps of the model fit the budget.
@@ -131,25 +130,42 @@ class OptionPolicy {
     return options;
   }
 
-  void add_option(std::size_t option) {
+  // What can be gained by observing now can be gained after the option, too, while the mission goes on. So of both comes first
+  // what brings more.
+  void add_option(std::size_t option, double gained) {
     const StateWeights after = gains_.after(option, belief_.weights());
-    double seen = 0;
-    for (std::size_t k = 0; k < after.size(); ++k) seen += after[k] > 0 ? after[k] * gains_.best_in(k, option) : 0;
-    const double later = seen - regret_.share() * (seen - gains_.best(after, option));
+    const double goes_on = std::accumulate(after.begin(), after.end(), 0.0);
+    const double later = gains_.best(after, option) + goes_on * gained;
     const double value = gains_.earned(option, belief_.weights()) + gains_.discount(option) * later;
-    candidates_.push_back({library_.options()[option].front(), value, "what can be earned"});
+    candidates_.push_back({library_.options()[option].front(), value, gains_.discount(option), "what can be earned"});
   }
 
+  void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
+    tests_.observe_all(library_.cells(), barred, left, random);
+    tests_.add_to(candidates_, left, random);
+    moves_.add_to(candidates_, left, random);
+    for (const std::size_t option : likely) {
+      if (left > 0 && library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
+    }
+  }
+
+  // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
+  // they are seen. Half of that distance is what may be wrong about it.
   void settle(double running) {
     estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
     const OptionCandidate* best = nullptr;
     for (const OptionCandidate& candidate : candidates_) {
       if (best == nullptr || candidate.value > best->value) best = &candidate;
+    }
+    const double open = best != nullptr ? std::max(regret_.value_seen() - best->value, 0.0) / 2 : 0;
+    const double beyond = values_.beyond([this](std::size_t k) { return regret_.value_seen(k); });
+    const double error = std::hypot(open, beyond / 2, regret_.error());
+    for (const OptionCandidate& candidate : candidates_) {
       ActionEstimate& estimate = estimates_[static_cast<std::size_t>(candidate.action)];
-      const double value = running * candidate.value;
+      const double value = running * (candidate.value + open + beyond);
       if (estimate.n == 0 || value > estimate.q) estimate.q = value;
       estimate.n = static_cast<std::uint32_t>(belief_.size());
-      estimate.standard_error = running * regret_.now() / 2;
+      estimate.standard_error = running * error;
     }
     reason_ = best != nullptr ? best->reason : "nothing";
   }
@@ -158,13 +174,15 @@ class OptionPolicy {
   std::string obstacle_;
   OptionLibrary<Model> library_;
   OptionGains<Model> gains_;
-  double steps_ = 0;
+  double affordable_ = 0;  // steps of the model
+  double steps_ = 0;       // that `prepare` took
   Operations step_cost_ = 0;  // 0: not known yet
   // Of the last decision:
   SampledBelief<Model> belief_;
   OptionRegret<Model> regret_{belief_, gains_};
   OptionTests<Model> tests_{belief_, regret_};
-  OptionMoves<Model> moves_{belief_, regret_, tests_, library_.cells()};
+  OptionValues<Model> values_{library_.cells()};
+  OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   std::vector<OptionCandidate> candidates_;
   std::vector<ActionEstimate> estimates_;
   const char* reason_ = "";

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace aos {
 struct OptionCandidate {
   int action;
   double value;
+  double discount;  // of what comes after it
   const char* reason;
 };
 
@@ -34,33 +36,48 @@ class OptionRegret {
     value_seen_ = mean(belief_.weights());
     regret_ = after(belief_.weights());
   }
-  // Sets the share of the regret that counts.
-  void count(double share) { share_ = share; }
-  double share() const { return share_; }
-
   double value_seen(std::size_t state) const { return seen_[state]; }
   double value_seen() const { return value_seen_; }
   double now() const { return regret_; }
+  // The standard error of `value_seen`, since few states are drawn.
+  double error() const {
+    double squares = 0;
+    double concentration = 0;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      squares += belief_.weights()[k] * (seen_[k] - value_seen_) * (seen_[k] - value_seen_);
+      concentration += belief_.weights()[k] * belief_.weights()[k];
+    }
+    return std::sqrt(squares * concentration);
+  }
   double after(const StateWeights& weights) const { return std::max(mean(weights) - gains_.best(weights), 0.0); }
 
   // The mean regret after an observation that is made so many times. Where these are too many to list, `see(k, weights)`
-  // draws from state k what is observed.
+  // draws from state k what is observed. `steps` is counted down.
   template <class See>
-  double after(const RepeatedObservation& observation, int times, Sampler& random, See&& see) const {
+  double after(const RepeatedObservation& observation, int times, double& steps, Sampler& random, See&& see) const {
     double sum = 0;
     if (observation.is_listed(times)) {
-      observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) { sum += probability * after(weights); });
+      observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) {
+        sum += probability * after(weights);
+        steps -= steps_of_best();
+      });
       return sum;
     }
     draw_states(belief_.weights(), observations, random, [&](std::size_t k) {
       StateWeights weights = belief_.weights();
       see(k, weights);
       sum += after(weights);
+      steps -= steps_of_best();
     });
     return sum / observations;
   }
 
  private:
+  // How many steps of the model take as long as to find the best options.
+  double steps_of_best() const {
+    constexpr double of_gain = 0.02;
+    return of_gain * static_cast<double>(gains_.size() * belief_.size());
+  }
   double mean(const StateWeights& weights) const {
     double sum = 0;
     for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * seen_[k];
@@ -72,7 +89,6 @@ class OptionRegret {
   std::vector<double> seen_;  // what the states are worth if they are seen
   double value_seen_ = 0;
   double regret_ = 0;
-  double share_ = 1;
 };
 
 }  // namespace aos

@@ -70,10 +70,12 @@ class OptionSearch {
 
  private:
   static constexpr double max_steps = 20'000;  // of the model, at each width
-  static constexpr std::size_t max_found = 16;
+  static constexpr std::size_t max_found = 16;  // with the highest income
+  static constexpr std::size_t max_dear = 16;   // of the others, that earn most
   static constexpr int tries = 4;  // of each way that was found
   static constexpr double needs_luck = 0.9;
   static constexpr std::uint32_t longer_by = 2;
+  static constexpr std::uint32_t later_ends = 1;
 
   struct Node {
     State state;
@@ -129,14 +131,20 @@ class OptionSearch {
         const Ending ending = Model::ending(next);
         if ((step.reward > 0 && ending != Ending::failure) || ending == Ending::goal) {
           found_.push_back({number, action, earned, income<Model>(earned, nodes_[number].depth + 1)});
-          last_depth = std::min(last_depth, nodes_[number].depth + longer);
+          // What ends the mission ends with it what could have been earned a step later.
+          const std::uint32_t more = ending == Ending::running ? longer : std::max(longer, later_ends);
+          last_depth = std::min(last_depth, nodes_[number].depth + more);
         } else if (ending == Ending::running && is_new(next, width)) {
           nodes_.push_back({next, number, action, earned, nodes_[number].depth + 1});
         }
       }
     }
     std::ranges::stable_sort(found_, std::greater<>{}, &Found::income);
-    if (found_.size() > max_found) found_.resize(max_found);
+    // Those that are no longer among the first may still earn most.
+    if (found_.size() > max_found) {
+      std::stable_sort(found_.begin() + static_cast<std::ptrdiff_t>(max_found), found_.end(), [](const Found& one, const Found& other) { return one.earned > other.earned; });
+      found_.resize(std::min(found_.size(), max_found + max_dear));
+    }
     return found_;
   }
 

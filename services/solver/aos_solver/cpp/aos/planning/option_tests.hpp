@@ -25,6 +25,13 @@ class OptionTests {
   static constexpr double least_information = 1e-3;  // in nats
   static constexpr int most_repeats = 8;
 
+  // How many steps the information of an action takes from so many states.
+  static double steps_of_information(std::size_t states) {
+    constexpr double of_step = 2;
+    constexpr double of_likelihood = 0.2;
+    return (of_step + of_likelihood * OptionRegret<Model>::observations) * static_cast<double>(states);
+  }
+
   OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret) : belief_(belief), regret_(regret) {}
 
   // Takes each action once from each state, and notes what is observed. `steps` is counted down.
@@ -39,7 +46,7 @@ class OptionTests {
       if (barred.contains(a)) continue;
       double reward = 0;
       const bool changes = take(static_cast<int>(a), cells, reward, random);
-      steps -= 2 * static_cast<double>(belief_.size());
+      steps -= steps_of_information(belief_.size());
       if (changes) {
         moves_.push_back(static_cast<int>(a));
         continue;
@@ -56,22 +63,11 @@ class OptionTests {
   bool is_move(int action) const { return std::ranges::find(moves_, action) != moves_.end(); }
   double information_of(int action) const { return informations_[static_cast<std::size_t>(action)]; }
 
-  // Adds the tests of each skill that tell most, made once or several times in a row.
-  void add_to(std::vector<OptionCandidate>& candidates, Sampler& random) const {
-    std::vector<std::size_t> tried(static_cast<std::size_t>(Model::skill_count));
-    for (const Test& test : tests_) {
-      if (tried[static_cast<std::size_t>(Model::skill_of(test.action))]++ >= tried_tests) continue;
-      const std::vector<StepReports>& reports = reports_[static_cast<std::size_t>(test.action)];
-      const RepeatedObservation observation{reports};
-      double paid = 0;
-      double discount = 1;
-      for (int repeats = 1, done = 0; repeats <= most_repeats; repeats *= 2) {
-        for (; done < repeats; ++done, discount *= Model::discount) paid += discount * test.reward;
-        const double left = regret_.after(observation, repeats, random, [&](std::size_t k, StateWeights& weights) {
-          for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
-        });
-        candidates.push_back({test.action, paid + discount * (regret_.value_seen() - regret_.share() * left), "what can be observed"});
-      }
+  // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
+  void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) const {
+    const std::vector<Test> tests = most_telling();
+    for (int repeats = 1; repeats <= most_repeats && (repeats == 1 || steps > 0); repeats *= 2) {
+      for (const Test& test : tests) add(candidates, test, repeats, steps, random);
     }
   }
 
@@ -83,6 +79,26 @@ class OptionTests {
     double reward;
     double information;
   };
+
+  std::vector<Test> most_telling() const {
+    std::vector<Test> tests;
+    std::vector<std::size_t> tried(static_cast<std::size_t>(Model::skill_count));
+    for (const Test& test : tests_) {
+      if (tried[static_cast<std::size_t>(Model::skill_of(test.action))]++ < tried_tests) tests.push_back(test);
+    }
+    return tests;
+  }
+
+  void add(std::vector<OptionCandidate>& candidates, const Test& test, int repeats, double& steps, Sampler& random) const {
+    const std::vector<StepReports>& reports = reports_[static_cast<std::size_t>(test.action)];
+    double paid = 0;
+    double discount = 1;
+    for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
+    const double left = regret_.after(RepeatedObservation{reports}, repeats, steps, random, [&](std::size_t k, StateWeights& weights) {
+      for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
+    });
+    candidates.push_back({test.action, paid + discount * (regret_.value_seen() - left), discount, "what can be observed"});
+  }
 
   // Takes an action from all states. Returns whether it changes any of them.
   bool take(int action, const LeafCells<Model>& cells, double& reward, Sampler& random) {
