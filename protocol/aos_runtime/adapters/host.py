@@ -15,7 +15,7 @@ from collections.abc import AsyncIterator, Iterable
 from pathlib import Path
 from typing import Any
 
-from aos_protocol.errors import AosError, DeployError
+from aos_protocol.errors import AosError, DeployError, LateAnswerError
 from aos_protocol.keys import Serving
 from aos_protocol.messages import (
     Cancel,
@@ -147,19 +147,27 @@ class Host:
         bus, keys, name = self._service.bus, self._service.keys, self._settings.project
         async with bus.listen(keys.announced, ProjectRevision) as announced:
             newest = 0
-            try:
-                current = await bus.ask(
-                    keys.project, ProjectQuery(name), ProjectRevision, timeout_s=_ASK_TIMEOUT_S
-                )
-            except AosError as error:
-                _log.info("no documents yet: %s", error)
-            else:
+            if (current := await self._current_revision(name)) is not None:
                 newest = current.revision
                 yield current
             async for _, revision in announced:
                 if revision.project.name == name and revision.revision > newest:
                     newest = revision.revision
                     yield revision
+
+    async def _current_revision(self, project: str) -> ProjectRevision | None:
+        """What the registry holds now, or None. It is asked until it has said so: nothing else would tell."""
+        bus, keys = self._service.bus, self._service.keys
+        while True:
+            try:
+                return await bus.ask(
+                    keys.project, ProjectQuery(project), ProjectRevision, timeout_s=_ASK_TIMEOUT_S
+                )
+            except LateAnswerError:
+                continue
+            except AosError as error:
+                _log.info("no documents yet: %s", error)
+                return None
 
     async def missions(self) -> Missions:
         """The missions of the system so far; BusError where the solver stays away."""
