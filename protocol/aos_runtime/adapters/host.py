@@ -156,7 +156,7 @@ class Host:
                     yield revision
 
     async def _current_revision(self, project: str) -> ProjectRevision | None:
-        """What the registry holds now, or None. It is asked until it has said so: nothing else would tell."""
+        """The documents that the registry holds now, or None. It is asked until it has said so."""
         bus, keys = self._service.bus, self._service.keys
         while True:
             try:
