@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from aos_language.check.python_names import PythonNames, check_names
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
+from aos_language.python_syntax import tree_of
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
     AbstractionMapping,
@@ -179,7 +180,7 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            tree, *_ = [ast.parse(text, mode=mode) for text in texts]
+            tree, *_ = [tree_of(text, mode) for text in texts]
             return ast.increment_lineno(tree, -1) if is_long else tree
     except SyntaxError as error:
         # Python gives no column where the code ends too early.
@@ -224,7 +225,7 @@ def _constant_truth(condition: Snippet | None) -> bool | None:
     if condition is None:
         return True
     try:
-        return bool(ast.literal_eval(condition.code))
+        return bool(ast.literal_eval(tree_of(condition.code.lstrip(" \t"), "eval")))
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         return None
 

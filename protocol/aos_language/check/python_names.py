@@ -15,6 +15,7 @@ import msgspec
 
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.findings import Findings
+from aos_language.python_syntax import module_of
 from aos_protocol.diagnostics import Severity
 from aos_protocol.documents import AbstractionMapping, Import, LowLevelDocument, SkillModel, Snippet
 from aos_protocol.spelling import nearest, quoted
@@ -97,7 +98,7 @@ def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
     names = {type.name for type in document.types} | {constant.name for constant in document.constants}
     for constant in document.constants:
         try:
-            names |= _bound_names(ast.parse(constant.code.code))
+            names |= _bound_names(module_of(constant.code.code))
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             continue  # Told where the code is checked.
     return frozenset(names)
@@ -108,7 +109,7 @@ def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
     if snippet is None:
         return frozenset()
     try:
-        return top_level_names(ast.parse(snippet.code))
+        return top_level_names(module_of(snippet.code))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return frozenset(_WORD.findall(snippet.code))  # Told where the code is checked.
 

@@ -10,6 +10,7 @@ from aos_language.check.python_names import PythonNames, check_names, column_of,
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import RESERVED_LOCAL_NAMES
+from aos_language.python_syntax import module_of
 from aos_protocol.documents import AbstractionMapping, Snippet
 
 __all__ = ["check_shared_mapping_code"]
@@ -76,7 +77,7 @@ def _keeping(tree: ast.Module, names: frozenset[str]) -> Iterator[tuple[ast.expr
 def _words(mapping: AbstractionMapping) -> Iterator[str]:
     for snippet in snippets_of_mapping(mapping):
         try:
-            tree = ast.parse(f"(\n{snippet.code}\n)")
+            tree = module_of(f"(\n{snippet.code}\n)")
         except SyntaxError:
             tree = _parsed_or_empty(snippet.code)
         yield from (node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
@@ -84,7 +85,7 @@ def _words(mapping: AbstractionMapping) -> Iterator[str]:
 
 def _parsed_or_empty(code: str) -> ast.Module:
     try:
-        return ast.parse(code)
+        return module_of(code)
     except (SyntaxError, ValueError):
         return ast.Module([], [])  # Told where the mapping is checked.
 

@@ -10,6 +10,7 @@ import ast
 import warnings
 
 from aos_language.findings import Findings
+from aos_language.python_syntax import module_of
 from aos_language.reading.source import Source
 from aos_protocol.diagnostics import Span
 
@@ -27,7 +28,7 @@ def check_picture(source: Source, findings: Findings) -> None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            module = ast.parse(source.text)
+            module = module_of(source.text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line, column = getattr(error, "lineno", None) or 1, getattr(error, "offset", None) or 1
         text = getattr(error, "msg", None) or str(error) or type(error).__name__

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from aos_language.local_types import RESERVED_LOCAL_NAMES
+from aos_language.python_syntax import module_of
 from aos_middleware.generated_lines import literal
 from aos_middleware.python_code import LineOrigin, read_body
 from aos_middleware.read_snippets import ReadSnippets, function_name
@@ -146,7 +147,7 @@ class ModuleNames:
         names = ", ".join(imported.names)
         text = f"from {imported.module} import {names}" if imported.module else f"import {names}"
         try:
-            match ast.parse(text).body:
+            match module_of(text).body:
                 case [ast.Import(names=aliases)] | [ast.ImportFrom(level=0, names=aliases)]:
                     brought = [alias.asname or alias.name.partition(".")[0] for alias in aliases]
                 case _:

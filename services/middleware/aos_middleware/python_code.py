@@ -15,6 +15,7 @@ from typing import Literal
 
 import msgspec
 
+from aos_language.python_syntax import module_of, tree_of
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Snippet
 
@@ -187,7 +188,7 @@ def _parse(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            return ast.parse(text)
+            return module_of(text)
         except SyntaxError as error:
             index = (error.lineno or 1) - 1 - lines_before
             if not lines:
@@ -205,7 +206,7 @@ def _is_plain(text: str, value: ast.expr) -> bool:
     if "#" in text.rpartition("\n")[2]:
         return False
     try:
-        ast.parse(text, mode="eval")
+        tree_of(text, "eval")
     except SyntaxError:
         return False
     return True
