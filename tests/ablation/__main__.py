@@ -2,7 +2,7 @@
 
   python -m tests.ablation models --models 44 --simulations 1500
   python -m tests.ablation models --mechanism learned_values --mechanism prior --family late
-  python -m tests.ablation bundles --from /work/shared/bench --runs 8
+  python -m tests.ablation bundles --from my/bundles --runs 8
   python -m tests.ablation list
 
 `models` plays the exam's random models: regret in percent of the range between random actions and the
