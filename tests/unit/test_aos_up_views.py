@@ -73,6 +73,17 @@ def test_a_decision_without_simulations_says_that_nothing_was_searched() -> None
     assert decision_line(record).endswith("]  sarsop without a search in 0.25 s")
 
 
+def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others() -> None:
+    actions = tuple(
+        msgspec.structs.replace(DECISION.actions[0], action=f"a{i}", q=float(i)) for i in range(9)
+    )
+    record = msgspec.structs.replace(DECISION, actions=actions)
+    line = decision_line(record)
+    assert "[a8 +8.00" in line
+    assert "a3 +3.00 ± 0.50, 3 more]" in line
+    assert "a2 " not in line
+
+
 def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) -> None:
     with PlainView() as view:
         for event in EVENTS:

@@ -253,6 +253,14 @@ def test_a_draw_that_is_not_written_as_aos_writes_it_is_told_with_the_right_word
     assert only.mend.text == right
 
 
+def test_a_draw_that_is_written_as_the_emitted_model_writes_it_is_told_how_documents_do() -> None:
+    (only,) = found(skill=SKILL.replace("state.second.x + steps", "AOS.SampleDiscrete<Side>({0.5, 0.5})"))
+    assert (only.code, only.message) == ("AOS110", "`AOS.SampleDiscrete<Side>` is not how documents write it")
+    assert only.hint == "Write `AOS.SampleDiscrete(Side, {weights})`"
+    assert only.mend is not None
+    assert only.mend.text == "AOS.SampleDiscrete(Side, "
+
+
 @pytest.mark.parametrize(
     "code",
     [

@@ -34,6 +34,8 @@ __all__ = [
 
 _TELLING_AGAIN_S = 5.0
 _SHOWN_MOVES = 8
+_SHOWN_ACTIONS = 6
+"""The best of them; with more, a line of a terminal becomes a paragraph. `--json` has all."""
 
 
 class PlainView:
@@ -118,11 +120,14 @@ def adopted_line(adopted: ModelAdopted) -> str:
 
 
 def decision_line(record: DecisionRecord) -> str:
-    """A decision with what each action is worth, or what came of it."""
+    """A decision with what the best actions are worth, or what came of it."""
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
-        values = f"[{', '.join(_value(action) for action in others)}]  " if others else ""
+        shown = [_value(action) for action in others[:_SHOWN_ACTIONS]]
+        if len(others) > len(shown):
+            shown.append(f"{len(others) - len(shown)} more")
+        values = f"[{', '.join(shown)}]  " if shown else ""
         risks = "".join(f"  ({risk_text(constraint)})" for constraint in record.constraints)
         return f"{head}  {values}{effort_text(record)}{risks}"
     outcome = record.outcome

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Collection
 
 from aos_language.cpp.snippets import Call, Extent
@@ -21,6 +22,7 @@ BUILT_INS = {
 }  # fmt: skip
 _BY_LOWER = {name.lower(): name for name in BUILT_INS["AOS"]}
 _OWNER_BY_LOWER = {owner.lower(): owner for owner in BUILT_INS}
+_WITH_TYPE = re.compile(r"[\w.\s]+<\s*(?P<type>[\w:]+)\s*>")
 _ALIKE = 0.85
 """A share of a function's name, from 0 to 1: with that much of a built-in's name it is taken for a
 misspelling. Any function of C++ may stand there as well."""
@@ -40,6 +42,8 @@ def check_built_in(
         place = Extent(start, start + len(name), call.function.line, column)
         of_name = span if "\n" in text else span_of(place)
         findings.unknown(name, known, f"{owner} has no `{name}`", of_name, f"It has {quoted(known)}")
+    elif owner in BUILT_INS and (written := _WITH_TYPE.fullmatch(text)):
+        _typed(owner, name, written["type"], call, code, span, findings)
     elif owner == "AOS" and "::" in text:
         _written_otherwise(f"`{text}` is not how AOS writes it", "AOS", name, text, span, findings)
     elif len(call.name) == 2 and owner not in BUILT_INS and owner not in declared:
@@ -48,6 +52,18 @@ def check_built_in(
             _written_otherwise(f"unknown name `{owner}`", meant, _meant(name) or name, text, span, findings)
     elif len(call.name) == 1 and name not in declared and (meant := _meant(name)):
         _written_otherwise(f"unknown function `{name}`", "AOS", meant, text, span, findings)
+
+
+def _typed(
+    owner: str, name: str, type_name: str, call: Call, code: str, span: Span, findings: Findings
+) -> None:
+    """Reports `AOS.SampleDiscrete<Room>({...})`, which emitted models have; documents name the enum first."""
+    text = code[call.function.start : call.function.end]
+    is_followed = code[call.function.end : call.function.end + 1] == "("
+    right = f"{owner}.{name}({type_name}, " if name == "SampleDiscrete" else f"{owner}.{name}("
+    mend = Mend(span, len(text) + 1, right) if is_followed and "\n" not in text else None
+    hint = f"Write `{right}{'{weights}' if name == 'SampleDiscrete' else '...'})`"
+    findings.error("AOS110", f"`{text}` is not how documents write it", span, hint, mend)
 
 
 def _meant(name: str) -> str:
