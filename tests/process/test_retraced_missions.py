@@ -25,7 +25,7 @@ from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN, MissionMemory, folded
 from aos_solver.mission.past import Past
-from aos_solver.mission.retracing import Stretch, after, models_before
+from aos_solver.mission.stretches import Stretch, after, models_before
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover
 from aos_solver.mission.terms import Terms
 from aos_solver.settings import Settings

@@ -90,6 +90,7 @@ class _Middleware:
         )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}
+        self._stamp_ns = 0
 
     async def run(self) -> None:
         bus, keys = self._service.bus, self._service.keys
@@ -121,7 +122,10 @@ class _Middleware:
         faults = {skill: self._served.fault(path) for skill, path in self._mappings.paths.items()}
         unavailable = {skill: fault.message for skill, fault in faults.items() if fault is not None}
         announced = {skill: self._served.announced(path) for skill, path in self._mappings.paths.items()}
-        return msgspec.structs.replace(self._mappings.state, unavailable=unavailable, announced=announced)
+        self._stamp_ns = max(self._stamp_ns + 1, self._service.clock.now_ns())
+        return msgspec.structs.replace(
+            self._mappings.state, unavailable=unavailable, announced=announced, stamp_ns=self._stamp_ns
+        )
 
     def _take_over(self) -> None:
         """Other mappings are in use."""

@@ -33,6 +33,7 @@ class MappingWatch:
         self._keys = keys
         self._on_changed = on_changed
         self._revisions: tuple[int, ...] = ()
+        self._stamp_ns = 0
         self.unavailable: dict[str, str] = {}
         self.announced: dict[str, int] = {}
 
@@ -65,6 +66,8 @@ class MappingWatch:
                 elif event:
                     with suppress(BusError):
                         self._take(await self._ask())
+                else:
+                    self._stamp_ns = 0  # The clock of the next one may have been set back.
 
     async def _ask(self) -> MappingState:
         return await self._bus.ask(
@@ -72,6 +75,10 @@ class MappingWatch:
         )
 
     def _take(self, state: MappingState) -> None:
+        """Takes what is told or answered; an answer may be read after what was told later."""
+        if state.stamp_ns < self._stamp_ns:
+            return
+        self._stamp_ns = state.stamp_ns
         if state.unavailable != self.unavailable:
             log.info("unavailable skills: %s", state.unavailable or "none")
         self.unavailable, self.announced = state.unavailable, state.announced

@@ -15,9 +15,8 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, DriftTest, DriftTests, ModelDrift
-from aos_solver.mission.takeover import RunningModel
 
-__all__ = ["DRIFT", "FALSE_ALARMS", "after_use", "begun", "begun_for", "drifts", "text_of"]
+__all__ = ["DRIFT", "FALSE_ALARMS", "after_use", "begun", "drifts", "text_of"]
 
 DRIFT = "drift"
 """The kind of the journal's row with which the tests of a model begin, or go over to another mission."""
@@ -48,14 +47,6 @@ def begun(model_digest: str, responses: Mapping[str, Sequence[str]]) -> DriftTes
     # Of two responses each is the complement of the other: their wealths are one.
     count = sum(1 if len(names) == 2 else len(names) for names in several.values())
     return DriftTests(model_digest, count, tests)
-
-
-def begun_for(model: RunningModel) -> DriftTests:
-    """The tests of a model that runs. Skills that report any text have none."""
-    engine = model.engine
-    responses = engine.description.responses
-    listed = {skill: names for skill, names in responses.items() if skill not in engine.texting_skills}
-    return begun(model.digest, listed)
 
 
 def after_use(tests: DriftTests, decision: DecisionRecord, record: DecisionRecord) -> DriftTests:

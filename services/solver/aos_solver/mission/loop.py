@@ -27,7 +27,7 @@ from aos_solver.child.answers import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
 from aos_solver.mission.choosing import Choice, Chooser, Ended, Held, Refused
-from aos_solver.mission.drift import DRIFT, after_use, begun_for, drifts
+from aos_solver.mission.drift import DRIFT, after_use, drifts
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.helm import Helm
@@ -84,7 +84,7 @@ class Mission:
         self.past = Past(terms.limits.refuted_below, before.steps if before is not None else ())
         self._adopted: ModelAdopted | None = None
         self._carried_drift = drift
-        self.drift = memory.drift or begun_for(model)
+        self.drift = memory.drift or model.drift_tests()
         self._budget = RiskBudget(model.engine.bounds)
         self._chooser = Chooser(terms, self._failures, ports, self._budget, lambda: self._helm.left_out)
         self._holding = Holding(terms.hold_s, ports, self._helm, self._failures, self._adopt)
@@ -211,7 +211,7 @@ class Mission:
         if carried is not None and carried.model_digest == self._model.digest:
             self.drift = carried
         else:
-            self.drift = begun_for(self._model)
+            self.drift = self._model.drift_tests()
         self._ports.journal(DRIFT, self.drift)
 
     async def _finish(self, decision: DecisionRecord, outcome: Outcome) -> bool:
@@ -252,7 +252,7 @@ class Mission:
             self._chooser.search = self._terms.search
         self._ports.journal("adopted", takeover.row)
         if takeover.model.digest != before.digest:
-            self.drift = begun_for(takeover.model)
+            self.drift = takeover.model.drift_tests()
             self._ports.journal(DRIFT, self.drift)
         return True
 

@@ -25,8 +25,8 @@ from aos_protocol.messages import (
 )
 from aos_runtime.journal import JournalRow
 from aos_solver.mission.drift import DRIFT, after_use
-from aos_solver.mission.retracing import Stretch, after
 from aos_solver.mission.steering import LIFTS, REFUSED, STEERED, Steering
+from aos_solver.mission.stretches import Stretch, after
 
 __all__ = ["BEGUN", "MissionMemory", "PastStep", "Pending", "folded"]
 

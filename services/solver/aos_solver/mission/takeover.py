@@ -14,9 +14,10 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 import msgspec
 
 from aos_protocol.errors import AosError, ModelError
-from aos_protocol.messages import BeliefSummary, Marginal, ModelAdopted, TakeoverWay
+from aos_protocol.messages import BeliefSummary, DriftTests, Marginal, ModelAdopted, TakeoverWay
 from aos_runtime.clock import Clock
 from aos_solver.child.engine import Engine
+from aos_solver.mission.drift import begun
 from aos_solver.mission.past import Past, replayed
 
 __all__ = ["REPLAY_S", "RunningModel", "Successor", "Takeover", "distances"]
@@ -44,6 +45,12 @@ class RunningModel(msgspec.Struct, frozen=True):
     @property
     def digest(self) -> str:
         return self.engine.model_digest
+
+    def drift_tests(self) -> DriftTests:
+        """The tests of the model, as they begin. Skills that report any text have none."""
+        texting = self.engine.texting_skills
+        responses = self.engine.description.responses.items()
+        return begun(self.digest, {skill: names for skill, names in responses if skill not in texting})
 
 
 class Takeover(msgspec.Struct, frozen=True):

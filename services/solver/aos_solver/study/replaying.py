@@ -34,7 +34,8 @@ from aos_solver.mission.belief_rows import exported_of
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, Failures
 from aos_solver.mission.past import Evidence, Past, evidence_of, updated
-from aos_solver.mission.retracing import Earlier, Stretch, after, models_before, retraced
+from aos_solver.mission.retracing import Earlier, retraced
+from aos_solver.mission.stretches import Stretch, after, models_before
 from aos_solver.mission.takeover import RunningModel, Successor
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
