@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import re
 import shutil
@@ -11,7 +12,7 @@ import msgspec
 
 from aos_deploy.passes import Passes
 from aos_deploy.program import Program, settings_of
-from aos_deploy.remote import check_ssh, remote_command
+from aos_deploy.remote import check_ssh, dialled, remote_command
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import DeployError
 from aos_runtime.children import PIPE, Child, Limits, guarded
@@ -40,7 +41,8 @@ async def start_process(program: Program, base: ServiceSettings, run: RunDirecto
     with run.open_log(program.name) as log:
         if program.host:
             check_ssh(program.name, program.host)
-            command = remote_command(program, base.endpoint, environment, settings)
+            dial = await asyncio.to_thread(dialled, program.host)
+            command = remote_command(program, base.endpoint, environment, settings, dial)
             # Its input stays open: when that ends, so does the program over there.
             child = await Child.start(
                 guarded(command, Limits(grace_s=program.stop_s)),

@@ -2,6 +2,9 @@
 
 The router listens on this machine alone. ssh gives the other host a port on its own loopback that leads to
 it: nothing of the bus is open to a network, and ssh encrypts what goes over one.
+
+ssh dials by itself only where the user's own configuration says how; else `ssh_connection.py` does, which
+finds a host sooner that comes back.
 """
 
 from __future__ import annotations
@@ -10,16 +13,19 @@ import random
 import re
 import shlex
 import shutil
+import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from aos_deploy import ssh_connection
 from aos_protocol.errors import DeployError
 
 if TYPE_CHECKING:
     from aos_deploy.program import Program  # which imports what knows this module
 
-__all__ = ["HOST", "check_ssh", "is_lost", "remote_command", "why_it_failed"]
+__all__ = ["HOST", "check_ssh", "dialled", "is_lost", "remote_command", "why_it_failed"]
 
 HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]-]*")
 """A text that ssh takes for a host; it cannot be one that ssh would take for an option."""
@@ -30,12 +36,18 @@ _PORTS = (20_000, 32_000)
 _OPTIONS = (
     "BatchMode=yes",  # It asks nothing: nobody is there to answer.
     "ExitOnForwardFailure=yes",
+    "ControlPath=none",  # A connection that others share is not known to be lost so soon.
     # Short attempts, and several: a host that comes back is seen within seconds.
     "ConnectTimeout=3",
     "ConnectionAttempts=4",
+    # It ends 3 s after it has last heard of the host. By then TCP waits for longer than a new one takes.
     "ServerAliveInterval=1",
-    "ServerAliveCountMax=3",
+    "ServerAliveCountMax=2",
 )
+_DIALS = ("proxycommand", "proxyjump", "bindaddress", "bindinterface")
+_KNOWN_S = 5.0
+_NO_NEWS = ("mm_receive_fd: ", "proxy dialer did not pass back a connection")
+"""Lines of an ssh whose connection could not be made, after the one that says why."""
 
 # It ends the program when its own input ends, that is with the connection, however that ends.
 _SCRIPT = """\
@@ -81,12 +93,27 @@ def check_ssh(adapter: str, host: str) -> None:
         )
 
 
+def dialled(host: str) -> list[str]:
+    """The options of an ssh that has its connection made; none where its configuration has its own way."""
+    try:
+        known = subprocess.run(
+            ["ssh", "-G", host], capture_output=True, text=True, check=True, timeout=_KNOWN_S
+        ).stdout.splitlines()
+    except (OSError, subprocess.SubprocessError):
+        return []
+    if any(line.startswith(_DIALS) for line in known) or "addressfamily any" not in known:
+        return []
+    command = shlex.join([sys.executable, "-I", "-S", ssh_connection.__file__]).replace("%", "%%")
+    return ["-o", f"ProxyCommand={command} %h %p", "-o", "ProxyUseFdpass=yes"]
+
+
 def remote_command(
-    program: Program, endpoint: str, variables: Mapping[str, str], settings: Path
+    program: Program, endpoint: str, variables: Mapping[str, str], settings: Path, dialled: list[str]
 ) -> list[str]:
     """The ssh that runs a program on its host until its input ends. Its first line is the password.
 
-    The command finds `variables`, with the bus's port on its own side, settings and password in files.
+    `dialled` are options for its connection. The command finds `variables`, with the bus's port on its own
+    side, settings and password in files.
     """
     port = random.SystemRandom().randrange(*_PORTS)
     environment = {**variables, "AOS_ENDPOINT": f"tcp/127.0.0.1:{port}"}
@@ -109,6 +136,7 @@ def remote_command(
         "ssh",
         "-T",
         *options,
+        *dialled,
         "-R",
         f"127.0.0.1:{port}:{here}",
         program.host,
@@ -123,7 +151,8 @@ def is_lost(program: Program, status: int) -> bool:
 
 def why_it_failed(name: str, host: str, status: int, said: list[str]) -> DeployError | None:
     """The error behind the end of an ssh that said some last lines; None if the program itself ended."""
-    text = said[-1] if said else ""
+    news = [line for line in said if not line.startswith(_NO_NEWS)]
+    text = news[-1] if news else ""
     if status == _NOT_FOUND:
         return DeployError(
             f"{name} on {host}: {text}",

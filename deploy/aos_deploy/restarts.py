@@ -20,18 +20,27 @@ class Restarts:
 
     def __init__(self) -> None:
         self.count = 0
+        self._in_vain = 0
         self._recent: deque[float] = deque(maxlen=STARTS)
 
     def start(self, now_s: float) -> None:
         """Takes note of a start."""
         self.count += 1
+        self._in_vain += 1
         self._recent.append(now_s)
+
+    def succeed(self) -> None:
+        """Takes note that the process is ready."""
+        self._in_vain = 0
 
     def are_left(self, now_s: float) -> bool:
         """Says whether the process may be started again."""
         return len(self._recent) < STARTS or now_s - self._recent[0] > WITHIN_S
 
-    def delay_s(self, now_s: float) -> float:
-        """Returns how long the next start waits: 0.2 s after the first, then twice as long each time."""
-        recent = sum(now_s - at_s <= WITHIN_S for at_s in self._recent)
+    def delay_s(self, now_s: float, *, is_cut: bool = False) -> float:
+        """Returns how long the next start waits: 0.2 s after the first, then twice as long each time.
+
+        Where a connection was cut, those starts alone count that were in vain.
+        """
+        recent = self._in_vain if is_cut else sum(now_s - at_s <= WITHIN_S for at_s in self._recent)
         return min(_FIRST_S * 2.0 ** max(recent - 1, 0), _LONGEST_S)

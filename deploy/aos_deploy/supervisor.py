@@ -27,6 +27,7 @@ from aos_deploy.process_end import look_at_log, status_text
 from aos_deploy.process_start import ROUTER_MODULE, start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
+from aos_deploy.remote import is_lost
 from aos_deploy.run_directory import ProcessEnd, RunDirectory
 from aos_protocol.access import OPERATOR, Party
 from aos_protocol.errors import DeployError
@@ -277,6 +278,7 @@ class Supervisor:
             running.silence.cancel()
             running.silence = None
         running.is_ready = True
+        running.restarts.succeed()
         running.ready.set()
         self._changed(running.program.name, state)
 
@@ -302,7 +304,8 @@ class Supervisor:
                 raise fatal_end(running, status, self._run)
             if then != STARTED_AGAIN:
                 return
-            await asyncio.sleep(running.restarts.delay_s(self._clock.monotonic_s()))
+            is_cut = is_lost(program, status)
+            await asyncio.sleep(running.restarts.delay_s(self._clock.monotonic_s(), is_cut=is_cut))
             if self._is_stopping:
                 return
             self._run.forget_fault(program.name)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
-__all__ = ["Subscription", "merged"]
+__all__ = ["Subscription", "merged", "together"]
 
 T = TypeVar("T")
 
@@ -79,7 +80,7 @@ def merged(*subscriptions: Subscription[Any], queue_size: int = 1000) -> Subscri
     """One stream out of several that have not been entered; what one sender sends stays in order."""
 
     async def declare(into: Subscription[Any]) -> Undeclare:
-        undeclare = [await subscription._declare(into) for subscription in subscriptions]
+        undeclare = await asyncio.gather(*(one._declare(into) for one in subscriptions))
 
         def undeclare_all() -> None:
             for end in undeclare:
@@ -88,3 +89,22 @@ def merged(*subscriptions: Subscription[Any], queue_size: int = 1000) -> Subscri
         return undeclare_all
 
     return Subscription(declare, queue_size)
+
+
+@asynccontextmanager
+async def together(*subscriptions: Subscription[Any]) -> AsyncIterator[None]:
+    """Enters several subscriptions before anything that the block declares, and closes them with it.
+
+    The block does not wait until the router has taken them in, which takes a round trip: the router takes
+    what one session declares in its order.
+    """
+    entering = asyncio.gather(*(one.__aenter__() for one in subscriptions))
+    try:
+        await asyncio.sleep(0)  # Now they are declared.
+        yield
+        await entering
+    finally:
+        entering.cancel()
+        await asyncio.gather(entering, return_exceptions=True)
+        for one in subscriptions:
+            one.close()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import shlex
+import socket
 from pathlib import Path
 
 import pytest
 
+from aos_deploy import ssh_connection
 from aos_deploy.program import Program
-from aos_deploy.remote import HOST, is_lost, remote_command, why_it_failed
+from aos_deploy.remote import HOST, dialled, is_lost, remote_command, why_it_failed
 
 
 @pytest.mark.parametrize(
@@ -34,6 +36,58 @@ def test_an_ssh_that_fails_says_why_and_what_to_do(text: str, hint: str) -> None
     assert error is not None
     assert error.message == f"arm: robot@arm cannot be reached by ssh: {text}"
     assert hint in error.hint
+
+
+def test_the_reason_is_told_where_ssh_has_its_connection_made() -> None:
+    reason = "ssh: connect to host arm port 22: No route to host"
+    said = [reason, "mm_receive_fd: recvmsg: expected received 1 got 0"]
+    error = why_it_failed("arm", "robot@arm", 255, [*said, "proxy dialer did not pass back a connection"])
+    assert error is not None
+    assert error.message == f"arm: robot@arm cannot be reached by ssh: {reason}"
+
+
+@pytest.mark.parametrize(
+    ("configuration", "is_ours"),
+    [
+        ("addressfamily any", True),
+        ("addressfamily any\nproxyjump gate", False),
+        ("addressfamily any\nproxycommand nc %h %p", False),
+        ("addressfamily inet6", False),
+    ],
+)
+def test_a_way_of_the_users_own_to_a_host_is_left_to_ssh(
+    configuration: str, is_ours: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ssh = tmp_path / "ssh"
+    ssh.write_text(f"#!/bin/sh\ntest \"$1 $2\" = '-G arm' && echo '{configuration}'\n")
+    ssh.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+    assert bool(dialled("arm")) == is_ours
+
+
+def test_a_host_that_refuses_is_tried_until_it_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.socket() as host:
+        host.bind(("127.0.0.1", 0))
+        addresses = socket.getaddrinfo(*host.getsockname(), type=socket.SOCK_STREAM)
+        looked_up: list[str] = []
+
+        def look_up(name: str, *_: object, **__: object) -> object:
+            if looked_up:
+                host.listen()
+            looked_up.append(name)
+            return addresses
+
+        monkeypatch.setattr(socket, "getaddrinfo", look_up)
+        with ssh_connection.connected("arm", "22") as connection:
+            assert connection.getpeername() == host.getsockname()
+        assert looked_up == ["arm", "arm"]
+
+
+def test_a_host_that_refuses_for_too_long_is_told() -> None:
+    with socket.socket() as host:
+        host.bind(("127.0.0.1", 0))
+        with pytest.raises(ConnectionRefusedError):
+            ssh_connection.connected("127.0.0.1", str(host.getsockname()[1]), for_s=0.01)
 
 
 def test_the_end_of_the_program_itself_is_not_that_of_ssh() -> None:
@@ -65,7 +119,8 @@ def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Pa
     variables = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}
     words = ("./arm", "two words", "$(reboot)")
     program = Program(name="arm", command=words, host="arm", folder="/opt/the arm")
-    command = remote_command(program, "tcp/127.0.0.1:7447", variables, settings)
+    command = remote_command(program, "tcp/127.0.0.1:7447", variables, settings, ["-o", "Port=1"])
+    assert command[command.index("-R") - 2 :][:2] == ["-o", "Port=1"]
     forward = command[command.index("-R") + 1]
     assert forward.startswith("127.0.0.1:")
     assert forward.endswith(":127.0.0.1:7447")

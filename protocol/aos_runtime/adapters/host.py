@@ -11,7 +11,7 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import AsyncIterator, Iterable
+from collections.abc import AsyncIterator, Awaitable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,7 @@ from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.asking import ask_until_answered
 from aos_runtime.lifecycle import Service
+from aos_runtime.subscription import together
 
 __all__ = ["Host", "load_adapter", "serve_adapter"]
 
@@ -109,16 +110,19 @@ class Host:
     async def serve(self, *paths: str) -> None:
         """Answers calls of these paths from now on, and makes that known. May be called at any time."""
         bus, keys = self._service.bus, self._service.keys
+        # All in one round trip of a link that may be slow. The router takes them in in this order.
+        declared: list[Awaitable[None]] = []
         for path in paths:
             if path not in self._answered:
                 self._answered.add(path)
-                await bus.answer(keys.call(path), SkillCall, self._calls.run)
-                await bus.answer(keys.cancel(path), Cancel, self._calls.cancel)
+                declared.append(bus.answer(keys.call(path), SkillCall, self._calls.run))
+                declared.append(bus.answer(keys.cancel(path), Cancel, self._calls.cancel))
             if path not in self._serving:
                 assert self._adapter is not None
                 serving = Serving(self.name, self._adapter.version, bus.instance, path)
                 self._serving[path] = keys.serve(serving)
-                await bus.announce(self._serving[path])
+                declared.append(bus.announce(self._serving[path]))
+        await asyncio.gather(*declared)
         _log.info("serves %s", ", ".join(sorted(self._serving)))
 
     def _serves(self, path: str) -> bool:
@@ -191,10 +195,8 @@ class Host:
         self._calls.go_to(self._adapter)
         # Before anything is served: whoever calls may be gone a moment later.
         bus, keys = self._service.bus, self._service.keys
-        async with (
-            bus.presence(keys.live("middleware")) as middleware,
-            bus.presence(keys.live("solver")) as solver,
-        ):
+        middleware, solver = bus.presence(keys.live("middleware")), bus.presence(keys.live("solver"))
+        async with together(middleware, solver):
             watching = [asyncio.create_task(self._calls.watch_solver(solver))]
             try:
                 with self._pauses:

@@ -13,6 +13,8 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 from .cell import STEPS, cell
@@ -87,32 +89,36 @@ def costs(folder: Path, options: argparse.Namespace) -> int:
 
 
 def far(folder: Path, options: argparse.Namespace) -> int:
-    """A bad link to an adapter on another host: cuts, a delay, lost packets, and cuts with these."""
+    """Bad links to adapters on another host, all at once: cuts, a delay, lost packets, cuts with these."""
     if not is_possible():
         print("far: needs ip, sshd, ssh and /dev/net/tun, and to be root")
         return 0
-    broken = 0
-    with far_mission(folder) as mission:
-        for words, delay_s, loss in LINKS:
-            mission.link.delay_s, mission.link.loss = delay_s, loss
-            since_s = time.monotonic()
-            has_moved = mission.until_moved(options.motions)
-            took_s = (time.monotonic() - since_s) / max(options.motions, 1)
-            print(
-                f"{words}: {options.motions} motions, {took_s:.2f} s each, "
-                f"held {mission.holds_since(since_s)} times",
-                flush=True,
-            )
-            broken += (not has_moved) + late_cuts(mission, options.cuts)
-            if mission.has_ended:
-                print((folder / "aos-up.log").read_text())
-                return broken + 1
+    with ThreadPoolExecutor() as threads:
+        return sum(threads.map(partial(over_link, folder, options), range(len(LINKS))))
+
+
+def over_link(folder: Path, options: argparse.Namespace, number: int) -> int:
+    """A mission over one of the links: motions without a cut, then cuts."""
+    words, delay_s, loss = LINKS[number]
+    place = folder / f"link{number}"
+    place.mkdir()
+    with far_mission(place, number) as mission:
+        mission.link.delay_s, mission.link.loss = delay_s, loss
+        since_s = time.monotonic()
+        has_moved = mission.until_moved(options.motions)
+        took_s = (time.monotonic() - since_s) / max(options.motions, 1)
+        held = mission.holds_since(since_s)
+        print(f"{words}: {options.motions} motions, {took_s:.2f} s each, held {held} times", flush=True)
+        broken = (not has_moved) + late_cuts(mission, options.cuts, words)
+        if mission.has_ended:
+            print((place / "aos-up.log").read_text())
+            return broken + 1
         twice = len(mission.moved) - len(set(mission.moved))
-    print(f"far: {len(LINKS) * options.cuts} cuts, {broken} late; {twice} motions twice")
+    print(f"{words}: {options.cuts} cuts, {broken} late; {twice} motions twice", flush=True)
     return broken + twice
 
 
-def late_cuts(mission: FarMission, cuts: int) -> int:
+def late_cuts(mission: FarMission, cuts: int, link: str) -> int:
     """Cuts of 0.2 to 30 s; those after which the mission held too late, or went on too late."""
     chance, late = random.Random(1), 0
     for _ in range(cuts):
@@ -120,7 +126,10 @@ def late_cuts(mission: FarMission, cuts: int) -> int:
         is_held_late = cut.cut_s > MAY_HOLD_S and (cut.held_s is None or cut.held_s > MAY_HOLD_S)
         late += is_held_late or cut.went_on_s is None or cut.went_on_s > MAY_GO_ON_S
         held, went_on = ("-" if one is None else f"{one:.1f} s" for one in cut[1:])
-        print(f"  cut for {cut.cut_s:.1f} s: held after {held}, went on {went_on} after its end", flush=True)
+        print(
+            f"  {link}: cut for {cut.cut_s:.1f} s: held after {held}, went on {went_on} after its end",
+            flush=True,
+        )
         if mission.has_ended:
             break
     return late

@@ -20,8 +20,6 @@ from .wire import Wire, wire
 
 __all__ = ["Cut", "FarMission", "far_mission", "is_possible"]
 
-_NAME = "aosfar"
-_HERE, _THERE = "10.213.77.1", "10.213.77.2"
 _PORT = 2222
 _PATIENCE_S = 120.0
 _START_S = 900.0
@@ -164,14 +162,19 @@ def _is_observed(event: dict[str, Any]) -> bool:
 
 
 @contextmanager
-def far_mission(folder: Path) -> Iterator[FarMission]:
-    """The mission, once its robot has moved; it is ended with the block, and so is the namespace."""
+def far_mission(folder: Path, number: int = 0) -> Iterator[FarMission]:
+    """The mission, once its robot has moved; it is ended with the block, and so is the namespace.
+
+    Missions of different numbers, up to 63, can be played at the same time.
+    """
+    here, there = (f"10.213.77.{4 * number + end}" for end in (1, 2))
+    namespace = f"aosfar{number}"
     python = str(Path(sys.executable))
     for name, text in _FILES.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         text = text.replace("STEPS", str(_STEPS)).replace("PYTHON", python).replace("FOLDER", str(folder))
         (folder / name).write_text(text)
-    with wire(_NAME, _HERE, _THERE) as link, _server(folder) as programs:
+    with wire(namespace, here, there) as link, _server(folder, namespace, there) as programs:
         environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
         command = [Path(sys.executable).with_name("aos-up"), "far.yaml", "--json"]
         with (folder / "aos-up.log").open("w") as log:
@@ -189,19 +192,19 @@ def far_mission(folder: Path) -> Iterator[FarMission]:
 
 
 @contextmanager
-def _server(folder: Path) -> Iterator[str]:
+def _server(folder: Path, namespace: str, there: str) -> Iterator[str]:
     """An SSH server in the namespace; gives the folder of an `ssh` that reaches it as robot@arm."""
     for name in ("host", "user"):
         command = ["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(folder / name)]
         subprocess.run(command, check=True)
     (folder / "sshd_config").write_text(
-        f"ListenAddress {_THERE}:{_PORT}\nHostKey {folder}/host\nAuthorizedKeysFile {folder}/user.pub\n"
+        f"ListenAddress {there}:{_PORT}\nHostKey {folder}/host\nAuthorizedKeysFile {folder}/user.pub\n"
         "PidFile none\nStrictModes no\nUsePAM no\nPasswordAuthentication no\n"
     )
     kind, key, _ = (folder / "host.pub").read_text().split(" ", 2)
-    (folder / "known").write_text(f"[{_THERE}]:{_PORT} {kind} {key}\n")
+    (folder / "known").write_text(f"[{there}]:{_PORT} {kind} {key}\n")
     (folder / "ssh_config").write_text(
-        f"Host arm\n HostName {_THERE}\n Port {_PORT}\n IdentityFile {folder}/user\n"
+        f"Host arm\n HostName {there}\n Port {_PORT}\n IdentityFile {folder}/user\n"
         f" IdentitiesOnly yes\n UserKnownHostsFile {folder}/known\n"
     )
     Path("/run/sshd").mkdir(exist_ok=True)
@@ -213,7 +216,7 @@ def _server(folder: Path) -> Iterator[str]:
     )
     (programs / "ssh").chmod(0o755)
     sshd = shutil.which("sshd", path=f"{os.environ['PATH']}:/usr/sbin")
-    command = ["ip", "netns", "exec", _NAME, str(sshd), "-D", "-e", "-f", str(folder / "sshd_config")]
+    command = ["ip", "netns", "exec", namespace, str(sshd), "-D", "-e", "-f", str(folder / "sshd_config")]
     with subprocess.Popen(command, stderr=subprocess.DEVNULL) as server:
         try:
             time.sleep(0.5)

@@ -1,0 +1,29 @@
+"""The rule for starting a process again."""
+
+from __future__ import annotations
+
+from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
+
+
+def test_starts_wait_longer_and_longer_until_a_minute_is_over() -> None:
+    restarts = Restarts()
+    waits_s = []
+    for now_s in range(STARTS):
+        assert restarts.are_left(now_s)
+        restarts.start(now_s)
+        restarts.succeed()
+        waits_s.append(restarts.delay_s(now_s))
+    assert waits_s == [0.2, 0.4, 0.8, 1.6, 3.2]
+    assert not restarts.are_left(STARTS)
+    assert restarts.are_left(WITHIN_S + 1)
+
+
+def test_a_connection_that_was_there_is_made_again_at_once_and_one_that_fails_later() -> None:
+    restarts = Restarts()
+    for now_s in range(4):
+        restarts.start(now_s)
+        restarts.succeed()
+        assert restarts.delay_s(now_s, is_cut=True) == 0.2
+    restarts.start(4)
+    restarts.start(5)
+    assert restarts.delay_s(5, is_cut=True) == 0.4
