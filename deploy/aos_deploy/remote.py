@@ -40,9 +40,8 @@ _OPTIONS = (
     # Short attempts, and several: a host that comes back is seen within seconds.
     "ConnectTimeout=3",
     "ConnectionAttempts=4",
-    # It ends 3 s after it has last heard of the host. By then TCP waits for longer than a new one takes.
     "ServerAliveInterval=1",
-    "ServerAliveCountMax=2",
+    "ServerAliveCountMax=3",  # It ends 4 to 5 s after it has last heard of the host.
 )
 _DIALS = ("proxycommand", "proxyjump", "bindaddress", "bindinterface")
 _KNOWN_S = 5.0

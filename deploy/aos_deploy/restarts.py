@@ -40,7 +40,10 @@ class Restarts:
     def delay_s(self, now_s: float, *, is_cut: bool = False) -> float:
         """Returns how long the next start waits: 0.2 s after the first, then twice as long each time.
 
-        Where a connection was cut, those starts alone count that were in vain.
+        Where a connection was cut, those starts alone count that were in vain, and without one it is made
+        again at once.
         """
+        if is_cut and not self._in_vain:
+            return 0.0
         recent = self._in_vain if is_cut else sum(now_s - at_s <= WITHIN_S for at_s in self._recent)
         return min(_FIRST_S * 2.0 ** max(recent - 1, 0), _LONGEST_S)

@@ -122,14 +122,18 @@ def late_cuts(mission: FarMission, cuts: int, link: str) -> int:
     """Cuts of 0.2 to 30 s; those after which the mission held too late, or went on too late."""
     chance, late = random.Random(1), 0
     for _ in range(cuts):
+        since_s = time.monotonic()
         cut = mission.cut(math.exp(chance.uniform(math.log(0.2), math.log(30.0))))
         is_held_late = cut.cut_s > MAY_HOLD_S and (cut.held_s is None or cut.held_s > MAY_HOLD_S)
-        late += is_held_late or cut.went_on_s is None or cut.went_on_s > MAY_GO_ON_S
+        is_late = is_held_late or cut.went_on_s is None or cut.went_on_s > MAY_GO_ON_S
+        late += is_late
         held, went_on = ("-" if one is None else f"{one:.1f} s" for one in cut[1:])
         print(
             f"  {link}: cut for {cut.cut_s:.1f} s: held after {held}, went on {went_on} after its end",
             flush=True,
         )
+        if is_late:
+            print("    " + "; ".join(mission.told_since(since_s)), flush=True)
         if mission.has_ended:
             break
     return late

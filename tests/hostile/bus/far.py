@@ -123,6 +123,15 @@ class FarMission:
         with self._news:
             return sum(at_s >= since_s and _is_held(event) for at_s, event in self._events)
 
+    def told_since(self, since_s: float) -> list[str]:
+        """The changes of the adapter's process since then, each with its time after it."""
+        with self._news:
+            return [
+                f"{at_s - since_s:.2f} s {event['state']} {event['detail']}".strip()
+                for at_s, event in self._events
+                if at_s >= since_s and event.get("service") == "arm"
+            ]
+
     @property
     def has_ended(self) -> bool:
         """True where it should go on and does not."""
