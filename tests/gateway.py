@@ -161,7 +161,8 @@ class Gateway(NamedTuple):
     def events(self, path: str, last: str = "") -> Iterator[Iterator[tuple[str, str, Any]]]:
         """The events of a stream: id, kind, data."""
         connection = HTTPConnection("127.0.0.1", self.port, timeout=HANG_S)
-        connection.request("GET", path, headers={"last-event-id": last} if last else {})
+        headers = {"authorization": f"Bearer {self.token}"} | ({"last-event-id": last} if last else {})
+        connection.request("GET", path, headers=headers)
         try:
             yield _events(connection.getresponse())
         finally:

@@ -47,25 +47,32 @@ def page_address(run: Path) -> str:
     A gateway that is started goes on after the run. DeployError AOS805 if it cannot be started.
     """
     address = _found() or _started(run.parent)
-    token = (gateway_folder() / "token").read_text().strip()
-    _show_run(address, token)
+    token = _token()
+    _show_run(address)
     return f"{address}#/runs/{run.name}?token={token}"
 
 
 def _found() -> str | None:
     try:
         note = msgspec.json.decode((gateway_folder() / "gateway.json").read_bytes(), type=GatewayNote)
-        with urlopen(f"{note.address}v1/openapi.json", timeout=_ANSWER_S):
+        with urlopen(_asked(note.address, "v1/openapi.json"), timeout=_ANSWER_S):
             return note.address
     except (OSError, URLError, msgspec.MsgspecError):
         return None
 
 
-def _show_run(address: str, token: str) -> None:
+def _show_run(address: str) -> None:
     """Lets a gateway of other folders look for runs now: those that it has seen living stay in view."""
-    asked = Request(f"{address}v1/runs", headers={"Authorization": f"Bearer {token}"})
-    with suppress(OSError), urlopen(asked, timeout=_ANSWER_S):
+    with suppress(OSError), urlopen(_asked(address, "v1/runs"), timeout=_ANSWER_S):
         pass
+
+
+def _asked(address: str, path: str) -> Request:
+    return Request(f"{address}{path}", headers={"Authorization": f"Bearer {_token()}"})
+
+
+def _token() -> str:
+    return (gateway_folder() / "token").read_text().strip()
 
 
 def _started(runs: Path) -> str:

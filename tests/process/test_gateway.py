@@ -113,7 +113,7 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path
         assert (found[1], found[2]) == (note["address"], run.name)
         port = int(found[1].rstrip("/").rpartition(":")[2])
         connection = HTTPConnection("127.0.0.1", port, timeout=HANG_S)
-        connection.request("GET", f"/v1/missions/{run.name}")
+        connection.request("GET", f"/v1/missions/{run.name}", headers={"authorization": f"Bearer {found[3]}"})
         assert json.loads(connection.getresponse().read())["state"]["ending"] == "goal"
         connection.close()
     finally:
@@ -214,11 +214,13 @@ def test_strangers_are_refused(past: tuple[Gateway, str]) -> None:
         served.ask("/", headers={"host": "evil.example"}),
         served.ask("/v1/runs", headers={"origin": "http://evil.example"}),
         served.ask(f"/v1/missions/{name}/stop", "POST", has_token=False),
+        served.ask(f"/v1/missions/{name}", has_token=False),
     ]
     assert [(each.status, each.json["code"]) for each in refusals] == [
         (403, "AOS904"),
         (403, "AOS904"),
         (403, "AOS904"),
+        (401, "AOS903"),
         (401, "AOS903"),
     ]
 

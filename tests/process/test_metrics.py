@@ -16,7 +16,7 @@ from processes import HANG_S
 
 def samples(served: Gateway) -> dict[str, float]:
     """The samples now, by name and labels."""
-    answer = served.ask("/metrics", has_token=False)
+    answer = served.ask("/metrics")
     assert (answer.status, answer.headers["content-type"]) == (
         200,
         "text/plain; version=0.0.4; charset=utf-8",
@@ -94,7 +94,7 @@ def test_metrics_are_off_count_nothing_of_before_and_are_as_private_as_the_rest(
     played(tmp_path, cache_dir)
     with gateway(tmp_path, cache_dir) as served:
         assert served.ask("/metrics").status == 404
-    with gateway(tmp_path, cache_dir, "--metrics", "--private") as served:
+    with gateway(tmp_path, cache_dir, "--metrics") as served:
         assert served.ask("/metrics", has_token=False).status == 401
         assert served.ask("/metrics").body == b""
         played(tmp_path, cache_dir)

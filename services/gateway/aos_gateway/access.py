@@ -34,7 +34,7 @@ class Access(msgspec.Struct, frozen=True):
 
     hosts: frozenset[str]
     token: str
-    is_private: bool = False
+    is_private: bool = True
 
     def check(
         self, method: str, headers: Mapping[str, str], cookies: Mapping[str, str], *, is_open: bool = False
@@ -72,7 +72,8 @@ class Access(msgspec.Struct, frozen=True):
 
 
 def access_of(listen: str, names: Iterable[str], token: str, *, is_private: bool) -> Access:
-    """The access to a gateway that listens at this address. Off loopback reading needs the token, too."""
+    """The access to a gateway that listens at this address. Reading needs the token, too, except on loopback
+    where it is not private."""
     own = {"localhost", "127.0.0.1", "[::1]"}
     is_loopback = listen == "localhost" or ip_address(listen.strip("[]")).is_loopback
     if not is_loopback:

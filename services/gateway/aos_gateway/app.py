@@ -32,6 +32,8 @@ _HEADERS = {
 }
 
 _METRICS = "/metrics"
+_COOKIE_S = 400 * 86400
+"""Browsers keep a cookie no longer. The page keeps the token for ever."""
 """The place at which Prometheus looks."""
 
 
@@ -97,7 +99,7 @@ def _session_of(access: Access) -> Callable[[Request], Awaitable[Response]]:
     async def session(request: Request) -> Response:
         """Gives a browser that shows the token the cookie by which it may read."""
         response = Response(status_code=HTTPStatus.NO_CONTENT)
-        response.set_cookie(COOKIE, access.token, httponly=True, samesite="strict")
+        response.set_cookie(COOKIE, access.token, max_age=_COOKIE_S, httponly=True, samesite="strict")
         return response
 
     return session

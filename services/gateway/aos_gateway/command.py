@@ -15,14 +15,14 @@ from aos_protocol.errors import DeployError
 __all__ = ["register", "serve"]
 
 
-Listen = Annotated[
-    str, typer.Option("--listen", metavar="ADDRESS", help="The address; off loopback all needs the token")
-]
+Listen = Annotated[str, typer.Option("--listen", metavar="ADDRESS", help="The address that it listens at")]
 Port = Annotated[int, typer.Option("--port", min=0, max=65535, help="The port; 0 takes any free one")]
 Hosts = Annotated[
     list[str] | None, typer.Option("--host", metavar="NAME", help="Another name that it answers to")
 ]
-Private = Annotated[bool, typer.Option("--private", help="Reading needs the token on loopback, too")]
+Open = Annotated[
+    bool, typer.Option("--open", help="On loopback all users of the machine may read, without the token")
+]
 Runs = Annotated[
     list[Path] | None,
     typer.Option("--runs", metavar="DIR", help="A folder of runs, besides those that run anywhere"),
@@ -55,7 +55,7 @@ def serve(
     listen: Listen = "127.0.0.1",
     port: Port = 7480,
     host: Hosts = None,
-    private: Private = False,
+    open_: Open = False,
     runs: Runs = None,
     projects: Projects = None,
     connect: Connect = None,
@@ -93,7 +93,7 @@ def serve(
         host="127.0.0.1" if listen == "localhost" else listen,
         port=port,
         names=tuple(host or ()),
-        is_private=private,
+        is_private=not open_,
         runs=tuple(runs or [RUNS]),
         sent=tuple(sent),
         projects=tuple(projects or [Path()]),

@@ -36,7 +36,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     host: str = "127.0.0.1"
     port: int = 7480
     names: tuple[str, ...] = ()
-    is_private: bool = False
+    is_private: bool = True
     runs: tuple[Path, ...] = (Path("runs"),)
     sent: tuple[Path, ...] = ()
     projects: tuple[Path, ...] = ()
