@@ -23,8 +23,8 @@ __all__ = ["connected"]
 _EVERY_S = 0.3
 _ATTEMPT_S = 3.0
 _LOST_MS = 3200
-"""What was sent and is not received within this time shows that the connection is lost: TCP tries again after
-0.2, 0.6, 1.4 and 3 s, and then waits for longer than a new connection takes."""
+"""A connection is lost when something that was sent is not received for so long. TCP tries again after 0.2,
+0.6, 1.4 and 3 s, and then waits for longer than a new connection takes."""
 _FOR_S = 12.0
 """The time for all attempts together; then ssh ends, and its end is told."""
 
