@@ -7,33 +7,48 @@ import statistics
 import sys
 import tempfile
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from tests.chaos.disturbed import FREEZES_OF_A_MISSION, KILLS_OF_A_MISSION, cancelled, disturbed
 from tests.chaos.failing import WRITES, failing, refused
 from tests.chaos.judged import Report
+from tests.chaos.twins import twins
 
+from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
 from aos_runtime.failpoints import FAILPOINTS
 
-__all__ = ["names_of", "report_of", "run_all", "table"]
+__all__ = ["PARTS", "names_of", "report_of", "run_all", "table"]
 
 
-def names_of(
-    *, kills: int, freezes: int, failpoints: int, full: int, readonly: int, cancels: int, seed: int
-) -> list[str]:
-    """The names of the runs with so many kills and freezes, and so many runs at each failpoint.
+PARTS = {
+    "kills": "SIGKILLs, 12 in a mission, of all processes",
+    "freezes": "freezes of 1 s or 6 s, 3 in a mission",
+    "failpoints": "runs at each failpoint",
+    "full": "times that the disk is full at each write",
+    "readonly": "times that it is read-only at each write",
+    "cancels": "aos-up killed in mid-motion",
+    "twins": "pairs of engines with the same outcomes, of which one is killed",
+}
+"""The parts of a campaign, each with what is counted."""
 
-    `full` and `readonly` are how often the disk refuses each write so. Run a name again with `--again NAME`.
-    """
-    missions = {"kills": -(-kills // KILLS_OF_A_MISSION), "freezes": -(-freezes // FREEZES_OF_A_MISSION)}
+
+def names_of(counts: Mapping[str, int], seed: int) -> list[str]:
+    """The names of the runs with so many of each part. Run a name again with `--again NAME`."""
+    missions = {
+        "kills": -(-counts["kills"] // KILLS_OF_A_MISSION),
+        "freezes": -(-counts["freezes"] // FREEZES_OF_A_MISSION),
+    }
     names = [f"{how}:{seed + number}" for how, count in missions.items() for number in range(count)]
-    names += [f"failpoint:{place}:{seed + number}" for number in range(failpoints) for place in FAILPOINTS]
-    for how, times in (("full", full), ("readonly", readonly)):
-        names += [f"{how}:{place}:{time}" for _ in range(times) for place, time in WRITES]
-    return names + [f"cancel:{seed + number}" for number in range(cancels)]
+    for number in range(counts["failpoints"]):
+        names += [f"failpoint:{place}:{seed + number}" for place in FAILPOINTS]
+    for how in ("full", "readonly"):
+        names += [f"{how}:{place}:{time}" for _ in range(counts[how]) for place, time in WRITES]
+    for how, part in (("cancel", "cancels"), ("twins", "twins")):
+        names += [f"{how}:{seed + number}" for number in range(counts[part])]
+    return names
 
 
 def report_of(name: str, keep: Path | None = None) -> Report:
@@ -55,6 +70,8 @@ def _run(folder: Path, name: str, what: str, more: list[str]) -> Report:
         return failing(folder, name, more[0], int(more[1]))
     if what in ("full", "readonly"):
         return refused(folder, name, more[0], int(more[1]), what)
+    if what == "twins":
+        return twins(folder, name, int(more[0]), cache_dir())
     if what == "cancel":
         return cancelled(folder, name, int(more[0]))
     return disturbed(folder, name, int(more[0]), what)
@@ -86,7 +103,7 @@ def table(reports: list[Report]) -> str:
     beliefs = sum(report.beliefs for report in reports)
     lines.append(
         f"\n{good} of {len(reports)} runs kept what is promised; {activations} activations; "
-        f"{beliefs} beliefs had the digest of their replay."
+        f"{beliefs} beliefs had the digest of their replay or their twin."
     )
     lines += [f"again: python -m tests.chaos --again {report.name}" for report in reports if report.faults]
     return "\n".join(lines)

@@ -13,7 +13,6 @@ from models import built_text, engine_of
 from processes import descendants, until_ended
 
 from aos_solver.building.build import BuiltModel
-from aos_solver.child import belief_draws
 from aos_solver.child.answers import ExportedBelief
 from aos_solver.child.engine import Engine
 
@@ -100,14 +99,3 @@ async def test_the_digest_does_not_depend_on_the_order_of_the_states(cache_dir: 
 
 def replaced(belief: ExportedBelief, particles: list[tuple[float, str]]) -> ExportedBelief:
     return msgspec.structs.replace(belief, particles=tuple(particles))
-
-
-async def test_particles_that_no_replay_gives_have_no_digest(
-    cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(belief_draws, "REPLAY_S", -1.0)
-    async with engine_of(await drifting(DRAWN_START, cache_dir)) as engine:
-        assert await take_step(engine, 1)
-        await kill(engine)
-        assert await take_step(engine, 2) == ""
-        assert (await engine.reset_belief()).digest

@@ -18,6 +18,7 @@
 #include "enumeration.cpp"
 #include "expected_rewards.cpp"
 #include "faults.cpp"
+#include "kept_traces.cpp"
 #include "learned_values.cpp"
 #include "loops.cpp"
 #include "number_cells.cpp"

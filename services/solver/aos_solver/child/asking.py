@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Self, TypeVar
 
@@ -27,7 +26,7 @@ from aos_solver.child.answers import (
     EngineFault,
     Progress,
 )
-from aos_solver.child.belief_draws import BeliefDraws, BeliefLog
+from aos_solver.child.belief_draws import BeliefDraws
 from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.engine_child import (
     EngineChild,
@@ -77,7 +76,6 @@ class Asking:
         self._changes = 0
         self._starts = 0
         self._draws = BeliefDraws(seed)
-        self._log = BeliefLog()
         self._correction_faults: dict[EngineFault, AosError] = {}
         self._world: list[str] = []
         self._asking = asyncio.Lock()
@@ -126,7 +124,6 @@ class Asking:
             self._built = built
             self._changes = 0
             self._draws = BeliefDraws(self._seed)
-            self._log = BeliefLog()
             self._world = []
             await self._drop_child()
             await self._begin_child()
@@ -218,18 +215,11 @@ class Asking:
         """The number that stands for a monitor where an action is asked for; see step.hpp."""
         return _FIRST_MONITOR + self.description.monitors.index(monitor)
 
-    async def _change_belief(self, command: str, kind: type[B], *, before: Sequence[str] = ()) -> B:
-        """The answer to a command that changes the belief; the commands `before` it prepare that."""
-        command = with_field(command, "change", self._changes + 1)
-        begun_s = time.monotonic()
-        answer = await self._ask(command, kind)
-        summary = answer if isinstance(answer, BeliefSummary) else answer.summary
-        self._log.add([*before, command], summary, time.monotonic() - begun_s)
+    async def _change_belief(self, command: str, kind: type[B]) -> B:
+        """The answer to a command that changes the belief."""
+        answer = await self._ask(with_field(command, "change", self._changes + 1), kind)
         self._changes += 1
-        told = self._log.told(summary)
-        if isinstance(answer, BeliefUpdate | Conditioned | Believed):
-            return msgspec.structs.replace(answer, summary=told)
-        return told
+        return answer
 
     async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
         async with self._asking:
@@ -291,10 +281,7 @@ class Asking:
         await self._start_child()
         assert self._child is not None
         try:
-            is_kept = self._beliefs is not None
-            replays = is_kept and self._log.begin_child()
-            belief = self._log.commands if replays else self._restoration(self._changes)
-            for command in [*belief, *self._world]:
+            for command in [*self._restoration(self._changes), *self._world]:
                 await self._child.ask(command, Done, ANSWER_DEADLINE_S)
         except AosError:
             await self._drop_child()

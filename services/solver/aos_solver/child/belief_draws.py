@@ -1,4 +1,4 @@
-"""The seeds of what beliefs draw, and the changes by which a new child gets a drawn belief again.
+"""The seeds of what beliefs draw.
 
 A change of the belief draws from a stream of its own, whose seed is a function of the mission's seed and the
 step. So the same outcomes give the same particles, whatever the process did before or between them.
@@ -7,20 +7,8 @@ step. So the same outcomes give the same particles, whatever the process did bef
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
 
-import msgspec
-
-from aos_protocol.messages import BeliefSummary
-
-__all__ = ["BeliefDraws", "BeliefLog", "draws_of"]
-
-_RESETTING = ("reset_belief", "draw_belief", "import_belief", "project_belief")
-"""The commands after which the belief does not depend on what was before."""
-
-REPLAY_S = 5.0
-"""Longer updates are not done again: a child that is started anew then has the same particles, but not how
-they came to be, so that later ones have the same distribution only."""
+__all__ = ["BeliefDraws", "draws_of"]
 
 
 def draws_of(seed: int, step: int = 0) -> int:
@@ -62,31 +50,3 @@ class BeliefDraws:
         """The seed for a belief that comes from an engine with other variables."""
         self.newest = draws_of(self.newest, 1)
         return self.newest
-
-
-class BeliefLog:
-    """The commands that have made an engine's belief, and whether a new child should be given them."""
-
-    def __init__(self) -> None:
-        self.commands: list[str] = []
-        self._seconds = 0.0
-        self._is_drawn = False
-        self._has_lost_history = False
-
-    def add(self, commands: Sequence[str], summary: BeliefSummary, seconds: float) -> None:
-        """The commands of one change, which took so long, and what is believed after it."""
-        if commands[0].partition("\t")[0] in _RESETTING:
-            self.commands, self._seconds, self._has_lost_history = [], 0.0, False
-        self.commands += commands
-        self._seconds += seconds
-        self._is_drawn = summary.error_bound >= 1
-
-    def begin_child(self) -> bool:
-        """Returns whether to give a new child the commands, so that the particles stay those of a replay."""
-        replays = self._is_drawn and self._seconds <= REPLAY_S and not self._has_lost_history
-        self._has_lost_history = self._has_lost_history or (self._is_drawn and not replays)
-        return replays
-
-    def told(self, summary: BeliefSummary) -> BeliefSummary:
-        """The summary, which has a digest only where a replay of the outcomes would give it."""
-        return msgspec.structs.replace(summary, digest="") if self._has_lost_history else summary

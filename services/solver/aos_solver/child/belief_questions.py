@@ -34,7 +34,7 @@ class BeliefQuestions(Asking):
 
     async def summary(self) -> BeliefSummary:
         """The belief for people."""
-        return self._log.told(await self._ask("summary", BeliefSummary))
+        return await self._ask("summary", BeliefSummary)
 
     async def reset_belief(self, seed: int | None = None) -> BeliefSummary:
         """Goes back to the initial belief, for the mission of this seed or, without one, for another one.
@@ -226,4 +226,4 @@ class BeliefQuestions(Asking):
         *first, last = beliefs.commands
         for command in first:
             await self._ask(command, Done)
-        return await self._change_belief(last, BeliefSummary, before=first)
+        return await self._change_belief(last, BeliefSummary)

@@ -94,7 +94,7 @@ class TakeoverQuestions(Asking):
         *first, last = _projections(joint, common, self._draws.of_takeover())
         for command in first:
             await self._ask(command, Done)
-        return await self._change_belief(last, BeliefSummary, before=first)
+        return await self._change_belief(last, BeliefSummary)
 
 
 def _projections(joint: JointBeliefs, common: Common, draws: int) -> Iterator[str]:

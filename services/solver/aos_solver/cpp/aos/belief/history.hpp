@@ -32,10 +32,17 @@ struct Block {
   std::uint32_t draws = 0;
 };
 
+// The place of a block in a file (kept_traces.hpp): areas are numbered from 1.
+struct KeptPlace {
+  std::uint64_t area = 0;
+  std::uint64_t number = 0;
+};
+
 struct Trace {
   std::shared_ptr<const Trace> before;  // null for the origin
   const Trace* origin;                  // itself for the origin
   Block block;
+  mutable KeptPlace kept = {};
 };
 using TraceLink = std::shared_ptr<const Trace>;
 
@@ -104,6 +111,26 @@ class History {
     origins_ = std::move(origins);
   }
 
+  // The states that a history begins with, and the sums of their weights.
+  struct Origins {
+    std::vector<State> states;
+    std::vector<double> cumulative;
+  };
+  // All that a history knows beside its steps. Without origins it begins with the documents.
+  struct Rest {
+    std::shared_ptr<const Origins> origins;
+    bool has_all_origins;
+    unsigned since_moves;
+    unsigned pause;
+  };
+  Rest rest() const { return {origins_, has_all_origins_, since_moves_, pause_}; }
+  History(std::vector<HistoryStep> steps, Rest rest)
+      : origins_(std::move(rest.origins)),
+        steps_(std::move(steps)),
+        has_all_origins_(rest.has_all_origins),
+        since_moves_(rest.since_moves),
+        pause_(rest.pause) {}
+
   bool begins_with_the_documents() const { return origins_ == nullptr; }
   // A number in [0, 1) for which `originate` gives the state with this number.
   double origin_value(std::size_t number, Sampler& random) const {
@@ -138,10 +165,6 @@ class History {
   }
 
  private:
-  struct Origins {
-    std::vector<State> states;
-    std::vector<double> cumulative;
-  };
   std::shared_ptr<const Origins> origins_;
   std::vector<HistoryStep> steps_;
   bool has_all_origins_ = false;

@@ -56,6 +56,44 @@ class WordReader {
   std::size_t next_ = 0;
 };
 
+inline void add_step(Words& words, const HistoryStep& step) {
+  words.push_back(static_cast<std::uint64_t>(step.action));
+  words.push_back(static_cast<std::uint64_t>(step.observation));
+  words.push_back((step.is_observed ? 1 : 0) | (step.is_guided ? 2 : 0));
+  words.push_back(step.by_chance);
+  words.push_back(std::bit_cast<std::uint64_t>(step.ran_probability));
+  add_text(words, observation_text(step.observation));
+  words.push_back(std::bit_cast<std::uint64_t>(step.log_scale));
+  words.push_back(step.numbers == nullptr ? 0 : step.numbers->size() + 1);
+  if (step.numbers == nullptr) return;
+  for (const auto& [key, value] : *step.numbers) {
+    words.push_back(key);
+    words.push_back(std::bit_cast<std::uint64_t>(value));
+  }
+}
+
+// The step, and the text of what was observed, which each process numbers by itself.
+inline std::pair<HistoryStep, std::string> next_step(WordReader& reader) {
+  HistoryStep step{.action = static_cast<int>(reader.next())};
+  step.observation = static_cast<Observation>(reader.next());
+  const std::uint64_t flags = reader.next();
+  step.is_observed = (flags & 1) != 0;
+  step.is_guided = (flags & 2) != 0;
+  step.by_chance = static_cast<std::uint32_t>(reader.next());
+  step.ran_probability = reader.real();
+  std::string text = reader.text();
+  step.log_scale = reader.real();
+  if (const std::size_t count = reader.next(); count > 0) {
+    ObservedNumbers numbers;
+    for (std::size_t i = 1; i < count && reader.left() > 0; ++i) {
+      const auto key = static_cast<NumberKey>(reader.next());
+      numbers.add(key, reader.real());
+    }
+    step.numbers = std::make_shared<const ObservedNumbers>(std::move(numbers));
+  }
+  return {std::move(step), std::move(text)};
+}
+
 }  // namespace detail
 
 // Empty if there is no history from the documents' initial belief on, or if it has too many words.
@@ -64,21 +102,7 @@ Words saved_history(const Belief<Model>& belief) {
   Words words;
   if (belief.lineages().empty() || !belief.history().begins_with_the_documents()) return words;
   words.push_back(belief.history().steps().size());
-  for (const HistoryStep& step : belief.history().steps()) {
-    words.push_back(static_cast<std::uint64_t>(step.action));
-    words.push_back(static_cast<std::uint64_t>(step.observation));
-    words.push_back((step.is_observed ? 1 : 0) | (step.is_guided ? 2 : 0));
-    words.push_back(step.by_chance);
-    words.push_back(std::bit_cast<std::uint64_t>(step.ran_probability));
-    detail::add_text(words, observation_text(step.observation));
-    words.push_back(std::bit_cast<std::uint64_t>(step.log_scale));
-    words.push_back(step.numbers == nullptr ? 0 : step.numbers->size() + 1);
-    if (step.numbers == nullptr) continue;
-    for (const auto& [key, value] : *step.numbers) {
-      words.push_back(key);
-      words.push_back(std::bit_cast<std::uint64_t>(value));
-    }
-  }
+  for (const HistoryStep& step : belief.history().steps()) detail::add_step(words, step);
   for (const Lineage& lineage : belief.lineages()) {
     words.push_back(std::bit_cast<std::uint64_t>(lineage.squares));
     for (const Block* block : blocks_of(lineage.trace)) {
@@ -101,23 +125,7 @@ Cloud<Model> with_history(std::vector<Particle<Model>> particles, const Words& w
   detail::WordReader reader{words};
   Cloud<Model> cloud = alone;
   for (std::size_t steps = reader.next(); steps > 0 && reader.left() > 0; --steps) {
-    HistoryStep step{.action = static_cast<int>(reader.next())};
-    step.observation = static_cast<Observation>(reader.next());
-    const std::uint64_t flags = reader.next();
-    step.is_observed = (flags & 1) != 0;
-    step.is_guided = (flags & 2) != 0;
-    step.by_chance = static_cast<std::uint32_t>(reader.next());
-    step.ran_probability = reader.real();
-    const std::string text = reader.text();
-    step.log_scale = reader.real();
-    if (const std::size_t count = reader.next(); count > 0) {
-      ObservedNumbers numbers;
-      for (std::size_t i = 1; i < count && reader.left() > 0; ++i) {
-        const auto key = static_cast<NumberKey>(reader.next());
-        numbers.add(key, reader.real());
-      }
-      step.numbers = std::make_shared<const ObservedNumbers>(std::move(numbers));
-    }
+    const auto [step, text] = detail::next_step(reader);
     if (!text.empty() && text_observation(text) != step.observation) return alone;
     const int count = is_monitor(step.action) ? first_monitor + Model::monitor_count() : Model::action_count();
     if (step.action < no_action || step.action >= count) return alone;
