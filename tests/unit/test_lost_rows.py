@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import msgspec
 import pytest
 from decision_records import decision_record
 
+from aos_deploy.history_check.files import violations_of_run
 from aos_deploy.run_directory import RunRecord
+from aos_deploy.run_end import account_of
 from aos_deploy.taking_up import take_up
-from aos_protocol.errors import AosError
+from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import Activate, ActivationId, MissionBegun, Outcome, SkillCall
-from aos_runtime.journal import Journal
+from aos_runtime.journal import Journal, JournalRow
 
 MISSION = "run"
 STEPS = 2
@@ -65,3 +68,42 @@ def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path: Path, ledge
     run = tmp_path / MISSION
     write_run(run, STEPS, ledger)
     assert "gone.yaml" in str(refusal(run)), "the deploy file is looked for after the journal"
+
+
+@pytest.mark.parametrize("is_closed", [True, False], ids=["closed", "killed"])
+def test_a_flipped_bit_of_a_journal_is_refused_or_changes_nothing_but_the_last_rows(
+    tmp_path: Path, is_closed: bool
+) -> None:
+    """`python -m tests.chaos.bits` flips a thousand bits of a real run's journal."""
+    run = tmp_path / MISSION
+    write_run(run, STEPS, "middleware.db")
+    journal, log = run / "journal.db", run / "journal.db-wal"
+    with Journal.open(journal) as writer:
+        writer.append("intended", intended(STEPS + 1))
+        if is_closed:
+            writer._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        whole = writer.rows()
+        kept = {path: path.read_bytes() for path in (journal, log)}
+    draw, refused = random.Random(1), 0
+    for _ in range(100):
+        for path, content in kept.items():
+            path.write_bytes(content)
+        (run / "journal.db-shm").unlink(missing_ok=True)
+        harmed = bytearray(kept[journal if is_closed else log])
+        harmed[draw.randrange(len(harmed))] ^= 1 << draw.randrange(8)
+        (journal if is_closed else log).write_bytes(harmed)
+        rows = rows_read(run)
+        refused += rows is None
+        assert rows is None or rows == whole[: len(rows)]
+    assert refused > 10 or not is_closed
+
+
+def rows_read(run: Path) -> list[JournalRow] | None:
+    """The rows of a run's journal, which all that read it can read; None where it is refused."""
+    try:
+        violations_of_run(run)
+        account_of(run).verdict()
+        with Journal.read(run / "journal.db") as journal:
+            return journal.rows()
+    except StorageError as error:
+        return None if error.code == "AOS702" else []
