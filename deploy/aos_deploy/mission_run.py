@@ -27,7 +27,7 @@ from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of, beginning_of, settled
 from aos_deploy.spans.rest import send_rest
 from aos_deploy.supervisor import Supervisor, supervised
-from aos_deploy.taking_up import TakenUp
+from aos_deploy.taking_up import TakenUp, worlds_text
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic
@@ -108,6 +108,8 @@ class MissionRun:
         self._report(Told(f"run directory {from_here(run.path)}"))
         if not sandbox_support().is_whole:
             self._report(Told(sandbox_text()))
+        if self._taken_up is not None and (lost := worlds_text(self._deployment)):
+            self._report(Told(lost))
         was_interrupted = False
         try:
             if self._taken_up is None:

@@ -310,7 +310,7 @@ class Supervisor:
                 return
             self._run.forget_fault(program.name)
             await self._launch(running)
-            self._changed(program.name, "starting", f"for the {running.restarts.count}. time")
+            self._changed(program.name, "starting", f"start {running.restarts.count}")
 
     def look_at_log(self, name: str) -> str:
         """Returns the place of a service's log, and its last lines."""

@@ -18,7 +18,7 @@ from aos_runtime.mission_folders import stays
 from aos_solver.mission.logbook import JOURNAL, entries_of
 from aos_solver.mission.memory import MissionMemory, folded
 
-__all__ = ["TakenUp", "take_up"]
+__all__ = ["TakenUp", "take_up", "worlds_text"]
 
 
 class TakenUp(msgspec.Struct, frozen=True):
@@ -65,6 +65,14 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
     )
     deployment = msgspec.structs.replace(deployment, file=file, runs=run.path.parent)
     return deployment, TakenUp(run, record, has_begun)
+
+
+def worlds_text(deployment: Deployment) -> str:
+    """Tells which simulated worlds a run that goes on has lost; empty where it has none."""
+    names = [plan.name for plan in deployment.adapters if plan.is_process and not plan.kind.is_restarted]
+    if not names:
+        return ""
+    return f"the world of {' and '.join(names)} begins anew: what was done in it is gone, and believed still"
 
 
 def _of_mission(run: RunDirectory) -> tuple[bool, str]:

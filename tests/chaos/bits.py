@@ -66,7 +66,7 @@ def codes_of(run: Path) -> dict[str, str]:
 
 
 def what_becomes_of(run: Path, whole: list[JournalRow], usual: Mapping[str, str]) -> str:
-    """What readers make of a run with a flipped bit; AssertionError where one of them is misled."""
+    """The fate of a run with a flipped bit among its readers; AssertionError where one of them is misled."""
     codes = codes_of(run)
     unusual = {name: code for name, code in codes.items() if code not in ("AOS702", usual[name])}
     assert not unusual, f"unusual codes: {unusual}"

@@ -82,7 +82,7 @@ def test_a_program_that_ends_over_there_is_started_again(tmp_path: Path) -> None
     script = FIRST_TIME_BAD.replace("python3", sys.executable)
     status, said = up(stand_in(tmp_path), f'[sh, -c, "{script}"]', tmp_path)
     assert status == 0, said
-    assert "robot starting: for the 2. time" in said
+    assert "robot starting: start 2" in said
 
 
 def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ import msgspec
 import pytest
 from decision_records import decision_record
 
+from aos_deploy.deploy_file import read_deploy_file, without_a_robot
 from aos_deploy.history_check.files import violations_of_run
 from aos_deploy.run_directory import RunRecord
 from aos_deploy.run_end import account_of
-from aos_deploy.taking_up import take_up
+from aos_deploy.taking_up import take_up, worlds_text
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import Activate, ActivationId, MissionBegun, Outcome, SkillCall
 from aos_runtime.journal import Journal, JournalRow
@@ -107,3 +108,9 @@ def rows_read(run: Path) -> list[JournalRow] | None:
             return journal.rows()
     except StorageError as error:
         return None if error.code == "AOS702" else []
+
+
+def test_who_takes_up_a_run_in_a_simulated_world_is_told_that_the_world_begins_anew(root: Path) -> None:
+    text = worlds_text(read_deploy_file(root / "deploy" / "armadillo.yaml"))
+    assert text.startswith("the world of pybullet begins anew")
+    assert worlds_text(without_a_robot(read_deploy_file(root / "deploy" / "armadillo.yaml"))) == ""
