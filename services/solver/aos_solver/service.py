@@ -36,7 +36,7 @@ from aos_solver.bus_ports import BusPorts
 from aos_solver.child.answers import Progress
 from aos_solver.child.engine import Engine
 from aos_solver.mapping_watch import MappingWatch
-from aos_solver.mission.history import history_page
+from aos_solver.mission.history import HistoryReader
 from aos_solver.mission.logbook import Logbooks
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission_runner import MissionRunner
@@ -84,6 +84,7 @@ class _Solver:
         if self._books.newest is not None and not self._books.newest.memory.has_ended:
             self._shelf.values.kept = self._books.newest.memory.mission_parameters
         self._registry = RegistryWatch(service.bus, service.keys, settings.project, self._shelf.make)
+        self._history = HistoryReader()
         self._studies = StudyDesk(settings, self._books, self._registry)
         self._ports = BusPorts(service, self._books, self._mappings, self._shelf, self._changed)
         self._missions = MissionRunner(
@@ -117,6 +118,7 @@ class _Solver:
         """Leaves the journal as it is: why the solver was stopped, whoever stopped it knows."""
         await self._studies.close()
         await self._shelf.close()
+        self._history.close()
         self._books.close()
 
     async def _start(self, start: StartMission, _: str) -> MissionState:
@@ -152,7 +154,7 @@ class _Solver:
         if self._books.newest is None:
             return History(self._books.name, ())
         book, name = self._books.path_of(query.mission), query.mission or self._books.name
-        return await asyncio.to_thread(history_page, book, name, query)
+        return await self._history.page(book, name, query)
 
     async def _check(self, question: CheckModel, _: str) -> ModelCheck:
         return ModelCheck(await self._shelf.check(question.project, self._shelf.running))
