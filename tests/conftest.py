@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,8 @@ from aos_deploy.program import cache_dir as user_cache_dir
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text, trust_documents
 
 ROOT = Path(__file__).resolve().parents[1]
-CACHE = ROOT / ".compiled"
+CACHE = Path(os.environ.get("AOS_TEST_CACHE", ROOT / ".compiled"))
+"""The checkout may be another user's."""
 TESTS = ROOT / "tests"
 LONGEST = TESTS / "longest_first.txt"
 """Files of tests, by the processor time that docs/lab/checks.md tells of."""

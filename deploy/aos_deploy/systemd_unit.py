@@ -106,11 +106,12 @@ def unit_of(deployment: Deployment, user: str = "") -> str:
         command=f"{command} {deployment.path}",
         runs=deployment.runs,
         stop_s=_STOP_S + 2 * sum(stops_s),
-        home="read-only" if _is_below_home(command, folder) else "yes",
+        # Also the Python that an environment was made of, and a checkout that is installed in place.
+        home="read-only" if _is_below_home(command, folder, Path(sys.base_prefix), Path(__file__)) else "yes",
         written=" ".join(str(path) for path in written),
     )
 
 
 def _is_below_home(*paths: Path) -> bool:
     """Says whether any of these can be read only where home folders can."""
-    return any(str(path).startswith(("/home/", "/root/", "/run/user/")) for path in paths)
+    return any(str(path.resolve()).startswith(("/home/", "/root/", "/run/user/")) for path in paths)

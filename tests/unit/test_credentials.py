@@ -7,6 +7,7 @@ import os
 import shutil
 import socket as sockets
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -97,7 +98,10 @@ def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Pat
     assert "credential" in f"{result.output}{result.exception}"
 
 
-def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path: Path) -> None:
+def test_a_unit_starts_a_mission_with_the_machine(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "base_prefix", "/home/robot/.pyenv/versions/3.11")
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
         f"aos: 1\nrobot: r\nproject: armadillo\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
@@ -113,6 +117,7 @@ def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path: Path) ->
         "User=robot",
         "NoNewPrivileges=yes",
         "ProtectSystem=strict",
+        "ProtectHome=read-only",
         f"ReadWritePaths={tmp_path}/runs",
     ):
         assert line in lines
@@ -123,6 +128,10 @@ def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path: Path) ->
         pytest.skip("needs systemd-analyze, which reads the unit as systemd does")
     done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
     assert unit.name not in done.stderr.replace("Failed to prepare filename", ""), done.stderr
+    # Tenths of systemd's scale, from 0 to 10.
+    rated = ["systemd-analyze", "security", "--offline=true", "--threshold=25", unit]
+    done = subprocess.run(rated, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
 
 
 @pytest.fixture

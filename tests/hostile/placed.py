@@ -1,0 +1,82 @@
+"""Runs a command as a user who is not root, or as root where no user namespace can be made.
+
+    python -m tests.hostile.placed user python -m tests.hostile --ways push mission
+    python -m tests.hostile.placed closed python -m pytest tests/process/test_sandbox.py
+
+It is started by root. The user has an empty home, temporary folder and cache of his own; where Python stands
+in a folder that he may not enter, he sees of that folder Python alone.
+"""
+
+from __future__ import annotations
+
+import os
+import pwd
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+__all__ = ["PLACES", "is_possible", "placed"]
+
+_USER = "nobody"
+
+_AS_USER = """
+set -e
+python=$1 closed=$2 user=$3 group=$4
+shift 4
+if [ -n "$closed" ]; then
+    kept=$(mktemp -d)
+    mount --bind "$python" "$kept"
+    mount -t tmpfs -o mode=755 none "$closed"
+    mkdir -p "$python"
+    mount --bind "$kept" "$python"
+fi
+exec setpriv --reuid "$user" --regid "$group" --clear-groups --no-new-privs -- "$@"
+"""
+_CLOSED = 'echo 0 >/proc/sys/user/max_user_namespaces && exec "$@"'
+
+
+def placed(place: str, command: list[str], folder: Path) -> subprocess.CompletedProcess[bytes]:
+    """The command, carried out in one of the `PLACES`; `folder` is his who carries it out."""
+    environment = dict(os.environ)
+    if place == "closed":
+        words = ["unshare", "--user", "--map-root-user", "sh", "-c", _CLOSED, "sh"]
+        return subprocess.run([*words, *command], env=environment, check=False)
+    user = pwd.getpwnam(_USER)
+    os.chown(folder, user.pw_uid, user.pw_gid)
+    environment |= {"HOME": str(folder), "TMPDIR": str(folder), "AOS_CACHE_DIR": str(folder / "cache")}
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1", "AOS_TEST_CACHE": str(folder / "compiled")}
+    words = ["unshare", "--mount", "--propagation", "private", "sh", "-c", _AS_USER, "sh"]
+    python = Path(sys.base_prefix)
+    places = [str(python), _closed_to_others(python), str(user.pw_uid), str(user.pw_gid)]
+    return subprocess.run([*words, *places, *command], env=environment, check=False)
+
+
+def is_possible(place: str) -> bool:
+    """Says whether such a place can be made here."""
+    if os.getuid() != 0:
+        return False
+    with tempfile.TemporaryDirectory() as folder:
+        return placed(place, ["true"], Path(folder)).returncode == 0
+
+
+def _closed_to_others(path: Path) -> str:
+    """The uppermost folder above the path that others may not enter; empty where they may enter all."""
+    closed = [folder for folder in path.parents if not folder.stat().st_mode & 0o001]
+    return str(closed[-1]) if closed else ""
+
+
+PLACES = ("user", "closed")
+
+
+def main() -> int:
+    """Exit code of the command."""
+    if len(sys.argv) < 3 or sys.argv[1] not in PLACES:
+        sys.exit(__doc__)
+    place, *command = sys.argv[1:]
+    with tempfile.TemporaryDirectory(prefix="aos-placed-", ignore_cleanup_errors=True) as folder:
+        return placed(place, command, Path(folder)).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
