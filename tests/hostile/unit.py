@@ -60,7 +60,7 @@ class Machine:
         self._said = said
 
     def inside(self, *words: str) -> str:
-        """What a command says in systemd's namespaces."""
+        """Returns the output of a command in systemd's namespaces."""
         command = ["nsenter", "-t", str(self._pid), "-m", "-p", *words]
         return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 

@@ -28,7 +28,11 @@ from .routed import routed
 MAY_ANSWER_S = 0.1
 MAY_GROW_BYTES = 20_000_000
 MAY_HOLD_S, MAY_GO_ON_S = 4.0, 5.0
-LINKS = (("a good link", 0.0, 0.0), ("200 ms of delay", 0.2, 0.0), ("5 % of the packets lost", 0.0, 0.05))
+LINKS = {
+    "good": ("a good link", 0.0, 0.0),
+    "delay": ("200 ms of delay", 0.2, 0.0),
+    "loss": ("5 % of the packets lost", 0.0, 0.05),
+}
 
 
 def matrix(folder: Path, _: argparse.Namespace) -> int:
@@ -94,15 +98,15 @@ def far(folder: Path, options: argparse.Namespace) -> int:
         print("far: needs ip, sshd, ssh and /dev/net/tun, and to be root")
         return 0
     with ThreadPoolExecutor() as threads:
-        return sum(threads.map(partial(over_link, folder, options), range(len(LINKS))))
+        return sum(threads.map(partial(over_link, folder, options), options.links))
 
 
-def over_link(folder: Path, options: argparse.Namespace, number: int) -> int:
+def over_link(folder: Path, options: argparse.Namespace, name: str) -> int:
     """A mission over one of the links: motions without a cut, then cuts."""
-    words, delay_s, loss = LINKS[number]
-    place = folder / f"link{number}"
+    words, delay_s, loss = LINKS[name]
+    place = folder / name
     place.mkdir()
-    with far_mission(place, number) as mission:
+    with far_mission(place, list(LINKS).index(name)) as mission:
         mission.link.delay_s, mission.link.loss = delay_s, loss
         since_s = time.monotonic()
         has_moved = mission.until_moved(options.motions)
@@ -157,6 +161,7 @@ def main() -> int:
     parser.add_argument("--sessions", type=int, default=200)
     parser.add_argument("--cuts", type=int, default=20, help="of each link to an adapter on another host")
     parser.add_argument("--motions", type=int, default=20, help="over each of these links without a cut")
+    parser.add_argument("--links", nargs="+", choices=LINKS, default=list(LINKS), help="of these alone")
     options = parser.parse_args()
     broken = 0
     for part in options.parts or PARTS:
