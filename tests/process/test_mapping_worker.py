@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +18,7 @@ from mapping_runs import HEAD
 from processes import descendants, until_ended
 
 from aos_middleware.evaluator import EvaluationLimits, Evaluator, MappingFault
+from aos_middleware.frames import Load, pack
 
 RESULT = (
     HEAD
@@ -218,3 +221,17 @@ async def test_mapping_code_starts_no_process(evaluator: Start, tmp_path: Path) 
     await mapping.begin({})
     with pytest.raises(MappingFault, match="PermissionError"):
         await mapping.finish({})
+
+
+def test_a_worker_whose_middleware_was_killed_ends_without_a_word() -> None:
+    heard_by_nobody, answers = os.pipe()
+    os.close(heard_by_nobody)
+    worker = subprocess.run(
+        [sys.executable, "-I", "-m", "aos_middleware.worker"],
+        input=pack(Load("", "mapping.py", load_s=20.0, evaluation_s=20.0)),
+        stdout=answers,
+        stderr=subprocess.PIPE,
+        check=False,
+    )
+    os.close(answers)
+    assert (worker.returncode, worker.stderr) == (0, b"")

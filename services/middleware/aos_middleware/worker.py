@@ -230,8 +230,11 @@ def main() -> None:
     while len(head := questions.read(4)) == 4:
         body = questions.read(int.from_bytes(head, "big"))
         mapping, frame = _answer_of(mapping, read_question(body))
-        answers.write(frame)
-        answers.flush()
+        try:
+            answers.write(frame)
+            answers.flush()
+        except BrokenPipeError:
+            os._exit(0)  # The middleware has ended. The interpreter's own end would flush once more.
 
 
 if __name__ == "__main__":
