@@ -77,5 +77,19 @@ def test_on_another_host_it_keeps_its_ledger_there(
     assert settings.endpoint == "tcp/127.0.0.1:23456"
 
 
+def test_nobody_else_has_the_folder_of_the_ledger(
+    written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    folder, there = tmp_path / f"aos-{os.getuid()}", {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"}
+    folder.mkdir(mode=0o777)
+    settings_of(["arm:Arm"], there)
+    assert folder.stat().st_mode & 0o777 == 0o700
+    folder.rename(tmp_path / "elsewhere")
+    folder.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(SystemExit):
+        settings_told(["arm:Arm"], there)
+
+
 def test_a_settings_file_is_left_to_the_service() -> None:
     assert settings_told(["arm.json"], HERE) is None

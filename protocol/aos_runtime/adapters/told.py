@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -81,8 +82,22 @@ def _run_dir(settings: AdapterSettings, environment: Mapping[str, str]) -> Path:
     if is_here and settings.run_dir:
         return Path(settings.run_dir)
     name = Path(settings.run_dir).name or f"{environment['AOS_ROBOT']}-{os.getpid()}"
-    folder = Path(tempfile.gettempdir()) / f"aos-{os.getuid()}" / name
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    folder = _own_folder() / name
+    folder.mkdir(mode=0o700, exist_ok=True)
+    return folder
+
+
+def _own_folder() -> Path:
+    """A folder of this user's among the temporary files, which nobody else may enter.
+
+    Its name can be guessed: another user who had made it first could change the ledger.
+    """
+    folder = Path(tempfile.gettempdir()) / f"aos-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid():
+        _end(f"{folder} is not a folder of this user: remove it, or name another place by TMPDIR")
+    folder.chmod(0o700)
     return folder
 
 
