@@ -8,6 +8,7 @@
 // - A tree that ends in values of seen states promises too much, and a tree does not know that the mission plans anew.
 //   Missions that are played by these values with next to no planning return too little (group_missions.hpp). Neither is
 //   proven. The value stays the tree's, and its error is half of the distance to the one that is further away.
+//   Values that are learned are no bounds, however long a search ends in them. There the value is what the missions return.
 // - A tree that ends in rollouts guesses too low. At the root, the search has moved the guess by its gain. Searches from
 //   the tree's leaves may move their guesses as far. The value is moved by half of that, with an error of the other half.
 //   The share of the value that lies beyond the leaves is `beyond`.
@@ -35,14 +36,17 @@ struct Promise {
   double most = 0;
   double played = 0;
   double played_error = 0;
+  bool is_guess = false;  // whether the values in which the tree ends are learned
 };
 
 // The values of actions whose estimates come from a tree that ends in values of seen states.
 inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate> estimates, const Promise& promise, int choice) {
   const double chosen = estimates[static_cast<std::size_t>(choice)].q;
   const double reach = std::max(std::abs(promise.most - chosen), std::abs(promise.played - chosen)) / 2;
+  const double moved = promise.is_guess ? promise.played - chosen : 0;
   for (ActionEstimate& estimate : estimates) {
     if (estimate.n == 0) continue;
+    estimate.q = std::min(estimate.q + moved, estimate.at_most);
     estimate.standard_error = std::hypot(estimate.standard_error, reach, promise.played_error);
   }
   return estimates;

@@ -317,7 +317,8 @@ class Planner {
     const double most = used_ == PlannerKind::despot ? despot_->upper(belief, choice) : estimates[static_cast<std::size_t>(choice)].q;
     const double running = belief.probability_of(Ending::running);
     const double played = mean_value_of_states(belief) - running * missions_.loss();
-    return values_of_promise(std::move(estimates), {most, played, running * missions_.loss_error()}, choice);
+    const bool is_guess = used_ == PlannerKind::pomcp && pomcp_.has_learned_values();
+    return values_of_promise(std::move(estimates), {most, played, running * missions_.loss_error(), is_guess}, choice);
   }
 
   std::string bounds_text(int horizon, double slack) const {

@@ -119,6 +119,8 @@ class Pomcp {
   bool has_prior() const { return !prior_.empty(); }
   // Whether rollouts value new histories. No value is then too high because few simulations went on below it.
   bool rolls_out() const { return source_ == ValueSource::none; }
+  // Whether what states are worth was learned, and may be wrong by any amount.
+  bool has_learned_values() const { return source_ == ValueSource::learned; }
   // Where the values of states come from in the last search, for a plan's `why`; empty if the state space lists them.
   std::string value_source() const {
     if (source_ == ValueSource::learned) return "what states are worth is learned from simulations";
