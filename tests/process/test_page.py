@@ -11,7 +11,7 @@ import pytest
 from gateway import Gateway, gateway, played, slow_system, worn_system
 from long_run import write_long_run
 from page_sources import installed_sources
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, Route, expect, sync_playwright
 from processes import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -126,8 +126,18 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     (run.parents[1] / "turns").write_bytes(b".")
     expect(page.locator(".stepper-place")).to_have_text("3 of 3")
     kept(page, "living", pictures)
+
+    def answer_late(route: Route) -> None:
+        """Keeps the answer, given while the skill runs, until the page shows that the mission holds."""
+        answer = route.fetch()
+        expect(page.locator(".phase")).to_contain_text("Holding")
+        route.fulfill(response=answer)
+
+    page.route("**/steering", answer_late, times=1)
     page.get_by_role("button", name="Hold").click()
+    expect(page.get_by_role("button", name="Go on")).to_be_visible()
     (run.parents[1] / "turns").write_bytes(b".")
+    expect(page.get_by_role("button", name="Do listen")).to_be_enabled()
     expect(page.locator(".phase")).to_contain_text("Holding")
     page.get_by_role("button", name="Do listen").click()
     expect(page.locator(".decision .sentence")).to_contain_text("was asked for by a person")

@@ -16,8 +16,8 @@ export async function steer(verb, more = {}) {
   busy.value = verb;
   failed.value = null;
   try {
-    const answer = await write(`/v1/missions/${encodeURIComponent(name)}/steering`, { verb, ...more });
-    if (route.value.name === name) state.value = answer;
+    // The mission's state comes with the events. The answer may be older than the newest of them.
+    await write(`/v1/missions/${encodeURIComponent(name)}/steering`, { verb, ...more });
   } catch (error) {
     failed.value = error;
   }
