@@ -28,8 +28,11 @@ _PORT = "bus: {listen: tcp/127.0.0.1:0}\n"
 """Other systems may run where this one does."""
 
 _TAKES_ITS_TIME = "await asyncio.sleep(5)"
-_WAITS = "while not pathlib.Path({pushed!r}).exists(): await asyncio.sleep(0.05)"
-"""A look of the tutorial's robot lasts until the bundle is pushed, however long that takes here."""
+_WAITS = (
+    f"while not pathlib.Path({{pushed!r}}).exists(): await asyncio.sleep(0.05)\n            {_TAKES_ITS_TIME}"
+)
+"""A look of the tutorial's robot begins to last when the bundle is pushed, however long that takes here: the
+solver has as long to load the model as on the page."""
 
 
 class Step(NamedTuple):
