@@ -1,13 +1,12 @@
-"""Pictures of an experiment's figures, with intervals: the only module that draws with matplotlib."""
+"""Pictures of an experiment's figures, with intervals: a row for each part, as SVG."""
 
 from __future__ import annotations
 
+import html
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-
-import matplotlib
-from matplotlib.figure import Figure
+from typing import NamedTuple
 
 from aos_lab.experiments.results import PartResult, Results
 from aos_lab.trials.intervals import Interval
@@ -15,7 +14,11 @@ from aos_lab.trials.intervals import Interval
 __all__ = ["draw_plots"]
 
 _COLOURS = {"model": "#3b6ea5", "system": "#c0662f"}
-_ROW_INCHES = 0.42
+_WIDTH_PX, _ROW_PX, _TOP_PX, _BOTTOM_PX, _RIGHT_PX = 672, 36, 8, 48, 12
+_CHARACTER_PX = 7.5
+"""Room for a character of a label; letters of 13 pixels are narrower in the common fonts."""
+_TICKS = 6
+"""The most steps from tick to tick that an axis has."""
 
 
 def _count_of(name: str) -> Callable[[PartResult], Interval | None]:
@@ -24,8 +27,6 @@ def _count_of(name: str) -> Callable[[PartResult], Interval | None]:
 
 def draw_plots(results: Results, folder: Path) -> dict[str, Path]:
     """One picture for each figure that a part has, by its title; SVG files in `folder`."""
-    # Texts stay texts, and the same figures give the same file.
-    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "aos", "font.family": "sans-serif"})
     counted = {name for part in results.parts for name in part.figures.counts}
     wanted: dict[str, Callable[[PartResult], Interval | None]] = {
         "share of missions that reach the goal": lambda part: part.figures.goal,
@@ -37,32 +38,85 @@ def draw_plots(results: Results, folder: Path) -> dict[str, Path]:
     folder.mkdir(parents=True, exist_ok=True)
     drawn = {}
     for title, value_of in wanted.items():
-        rows = [(part, value) for part in results.parts if (value := value_of(part)) is not None]
+        rows = [
+            _Row(f"{part.name} ({part.by}, {part.figures.missions})", _COLOURS[part.by], value)
+            for part in results.parts
+            if (value := value_of(part)) is not None
+        ]
         if rows:
             path = folder / f"{title.partition(',')[0].replace(' ', '-')}.svg"
-            _draw(title, rows, path, is_share="share" in title)
+            axis = _Axis(-0.02, 1.02) if "share" in title else _axis_of(rows)
+            path.write_text(_picture(title, rows, axis), encoding="utf-8")
             drawn[title] = path
     return drawn
 
 
-def _length(half: float) -> float:
-    """Returns the length of a bar to one side; 0 where the end is not known."""
-    return max(0.0, half) if math.isfinite(half) else 0.0
+class _Row(NamedTuple):
+    """A label, and the estimate that its row shows."""
+
+    label: str
+    colour: str
+    value: Interval
 
 
-def _draw(title: str, rows: list[tuple[PartResult, Interval]], path: Path, *, is_share: bool) -> None:
-    """A dot for each part between the ends of its interval."""
-    figure = Figure(figsize=(7.0, 1.0 + _ROW_INCHES * len(rows)), layout="constrained")
-    axes = figure.subplots()
-    for place, (part, value) in enumerate(rows):
-        ends = [[_length(value.value - value.low)], [_length(value.high - value.value)]]
-        axes.errorbar(value.value, place, xerr=ends, fmt="o", capsize=4, color=_COLOURS[part.by])
-    axes.set_yticks(
-        range(len(rows)), [f"{part.name} ({part.by}, {part.figures.missions})" for part, _ in rows]
-    )
-    axes.set_ylim(len(rows) - 0.5, -0.5)
-    if is_share:
-        axes.set_xlim(-0.02, 1.02)
-    axes.set_xlabel(f"{title}, with 95 % intervals")
-    axes.grid(axis="x", alpha=0.3)
-    figure.savefig(path, metadata={"Date": None})
+class _Axis(NamedTuple):
+    """The figures at the left and at the right end of the picture."""
+
+    low: float
+    high: float
+
+    def ticks(self) -> list[float]:
+        """Round figures between the ends: multiples of 1, 2 or 5 times a power of ten."""
+        least = (self.high - self.low) / _TICKS
+        power = 10.0 ** math.floor(math.log10(least))
+        step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= least)
+        first, last = math.ceil(self.low / step), math.floor(self.high / step)
+        return [step * number for number in range(first, last + 1)]
+
+
+def _ends(value: Interval) -> tuple[float, float]:
+    """Returns the ends of a bar; an end that is not known is drawn at the estimate."""
+    low, high = min(value.low, value.value), max(value.high, value.value)
+    return low if math.isfinite(low) else value.value, high if math.isfinite(high) else value.value
+
+
+def _axis_of(rows: Sequence[_Row]) -> _Axis:
+    """Returns an axis that holds all bars, with a margin."""
+    low = min(_ends(row.value)[0] for row in rows)
+    high = max(_ends(row.value)[1] for row in rows)
+    margin = 0.05 * (high - low) or 0.05 * abs(high) or 0.05
+    return _Axis(low - margin, high + margin)
+
+
+def _picture(title: str, rows: Sequence[_Row], axis: _Axis) -> str:
+    """Returns SVG with a dot for each row between the ends of its interval."""
+    left = 12 + _CHARACTER_PX * max(len(row.label) for row in rows)
+    right, floor = _WIDTH_PX - _RIGHT_PX, _TOP_PX + _ROW_PX * len(rows)
+    scale = (right - left) / (axis.high - axis.low)
+
+    def place(figure: float) -> str:
+        return f"{left + (figure - axis.low) * scale:.1f}"
+
+    height = floor + _BOTTOM_PX
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_WIDTH_PX}" height="{height}" '
+        f'viewBox="0 0 {_WIDTH_PX} {height}" font-family="sans-serif" font-size="13" stroke-width="1.5">',
+        f'<rect width="{_WIDTH_PX}" height="{height}" fill="#fff"/>',
+    ]
+    for tick in axis.ticks():
+        lines.append(f'<path d="M{place(tick)} {_TOP_PX}V{floor}" stroke="#ddd" stroke-width="1"/>')
+        lines.append(f'<text x="{place(tick)}" y="{floor + 18}" text-anchor="middle">{tick:.10g}</text>')
+    box = f'x="{left:.1f}" y="{_TOP_PX}" width="{right - left:.1f}" height="{floor - _TOP_PX}"'
+    lines.append(f'<rect {box} fill="none" stroke="#000" stroke-width="1"/>')
+    for number, row in enumerate(rows):
+        middle = _TOP_PX + _ROW_PX * number + _ROW_PX // 2
+        low, high = map(place, _ends(row.value))
+        lines.append(
+            f'<text x="{left - 6:.1f}" y="{middle + 4}" text-anchor="end">{html.escape(row.label)}</text>'
+        )
+        bar = f"M{low} {middle - 4}v8m0-4H{high}m0-4v8"
+        lines.append(f'<path d="{bar}" fill="none" stroke="{row.colour}"/>')
+        lines.append(f'<circle cx="{place(row.value.value)}" cy="{middle}" r="4" fill="{row.colour}"/>')
+    legend = f"{html.escape(title)}, with 95 % intervals"
+    lines.append(f'<text x="{(left + right) / 2:.1f}" y="{floor + 38}" text-anchor="middle">{legend}</text>')
+    return "\n".join([*lines, "</svg>", ""])
