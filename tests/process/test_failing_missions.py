@@ -213,6 +213,22 @@ async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_tak
     assert skills.count("take") == 3
 
 
+async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason(
+    cache_dir: Path,
+) -> None:
+    dear = fetch(look=LOOK, take=TAKE, grab=GRAB.replace("-6", "-30"))
+    built = await built_text(dear, cache_dir)
+
+    def robot(request: Activate) -> Outcome:
+        return jammed(request) if request.skill == "take" else observed(request, "seen_left")
+
+    limits = MissionLimits(goal_probability=0.9, step_limit=40, stop_below_value=0.0)
+    state, around = await run_mission(built, robot, limits=limits)
+    assert state.ending == "skills_failed"
+    assert "take is set aside" in state.remark
+    assert "grab" not in [record.skill for record in around.decisions]
+
+
 async def test_a_skill_comes_back_with_its_adapter(tutorial: BuiltModel) -> None:
     def robot(request: Activate) -> Outcome:
         if request.skill == "look":

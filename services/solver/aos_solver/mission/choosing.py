@@ -294,8 +294,8 @@ class Chooser:
         """The ending that the best action calls for.
 
         Without the skills that are set aside, something is worth doing where it is worth more than nothing,
-        and where it leads to a goal at least. So it is without those that are left out, where no goal is out
-        of reach with them as well.
+        and where it leads to a goal at least, unless `stop_below_value` calls that too little. So it is
+        without those that are left out, where no goal is out of reach with them as well.
         """
         if without.reasons and is_worth_nothing(plan.best, self._limits):
             is_cautious = belief.cautious is not None
@@ -308,6 +308,8 @@ class Chooser:
             if is_reason and not reach.is_reachable:
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
         ending = ending_after_planning(plan.best, plan.actions, self._limits)
+        if ending and without.reasons.keys() & self._set_aside().keys():
+            return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
         return Ended(ending, remark_of_ending(ending, belief, self._limits)) if ending else None
 
     async def _repeated(self, engine: Engine, decision: DecisionRecord, index: int) -> Plan:
