@@ -24,6 +24,7 @@ BELIEF = BeliefSummary(
         Marginal("at", {"lab": 0.75, "hall": 0.25}),
         Marginal("count", {"2": 1.0}),
         Marginal("lit", {"true": 1.0}),
+        Marginal("depth", {"0.1": 0.01, "0.2": 0.01}, 0.98, (0.1, 0.8, 1.5, 2.0, 2.5)),
     ),
     *(0.5, 0.25, 0.0, 2, True),
 )
@@ -31,7 +32,7 @@ STEP = {"number": 3, "action": "go(to=lab)", "response": "arrived"}
 
 
 def test_the_likeliest_value_of_each_variable_is_plain_data() -> None:
-    assert likeliest_state(BELIEF) == {"at": "lab", "count": 2, "lit": True}
+    assert likeliest_state(BELIEF) == {"at": "lab", "count": 2, "lit": True, "depth": 1.5}
 
 
 async def test_a_picture_is_an_svg_or_a_png_of_state_belief_and_step() -> None:

@@ -402,3 +402,21 @@ async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_di
         plan = await engine.plan(seed=1, simulations=200, planner="auto")
         assert plan.planner == "belief-tree"
         assert "SARSOP cannot be used: 9 numbers are observed at once" in plan.why
+
+
+async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution(cache_dir: Path) -> None:
+    """Exact ones where the belief is enumerated, and those of the normal distribution where it is drawn."""
+    look = ("__moduleResponse = read;\n", mapping())
+    tenths = (
+        "state.level = AOSUtils::SampleDiscrete(vector<double>(20, 0.05)); state.place = state.level / 10.0;"
+    )
+    async with engine_of(await built_text(documents(*look, belief=tenths), cache_dir)) as engine:
+        found = {each.variable: each.quantiles for each in (await engine.summary()).marginals}
+        assert found == {"level": (0, 4, 9, 14, 18), "place": (0.0, 0.4, 0.9, 1.4, 1.8)}
+    few = "state.level = AOSUtils::SampleDiscrete(vector<double>(9, 1.0)); state.place = state.level % 8;"
+    async with engine_of(await built_text(documents(*look, belief=few), cache_dir)) as engine:
+        assert [each.quantiles for each in (await engine.summary()).marginals] == [(), ()]
+    drawn = "state.place = AOS.SampleNormal(3.0, 2.0);"
+    async with engine_of(await built_text(documents(*look, belief=drawn), cache_dir)) as engine:
+        (place,) = (each for each in (await engine.summary()).marginals if each.variable == "place")
+        assert place.quantiles == pytest.approx((-0.29, 1.65, 3.0, 4.35, 6.29), abs=0.3)

@@ -196,6 +196,17 @@ def test_the_screen_shows_steps_values_and_belief_bars() -> None:
         assert expected in text
 
 
+@pytest.mark.parametrize("width", [80, 132])
+def test_a_number_with_many_values_is_shown_by_median_and_range(width: int) -> None:
+    depth = Marginal("depth", {"1.234": 0.001}, 0.999, (0.512, 1.0, 1.5, 2.0, 2.468))
+    screen = Screen("armadillo")
+    belief = msgspec.structs.replace(OBSERVED.belief, marginals=(depth,))
+    screen.take(msgspec.structs.replace(OBSERVED, belief=belief))
+    text = shown(screen, width, 24)
+    assert "0.512 to 2.47" in text
+    assert "1.234" not in text
+
+
 PLACES = ("easy_table", "hard_table", "corridor", "kitchen", "charger", "store")
 MANY = msgspec.structs.replace(
     OBSERVED,

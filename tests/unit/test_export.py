@@ -44,7 +44,8 @@ PASSWORD = "kf83jd92kd03"
 
 def belief(step: int) -> BeliefSummary:
     marginal = Marginal("cans[0].where", {"Left": step / 10, "Right": 1 - step / 10})
-    return BeliefSummary((marginal,), 0.5, step / 10, 0.0, 2, True)
+    depth = Marginal("depth", {"1.5": 0.01}, 0.99, (0.5, 1.0, step / 10, 2.0, 2.5))
+    return BeliefSummary((marginal, depth), 0.5, step / 10, 0.0, 2, True)
 
 
 def decided(step: int) -> DecisionRecord:
@@ -143,7 +144,10 @@ def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path: Path) -> Non
     first = msgspec.convert(by_topic["/aos/decision"][0], DecisionRecord)
     assert (first.action, first.belief) == ("go(to=a)", belief(0))
     assert by_topic["/aos/plot/values"][1]["q"] == {"go_to_a": 3.0, "look": -1.0}
-    assert by_topic["/aos/plot/belief"][-1]["probability"] == {"cans_0_where": {"Left": 0.3, "Right": 0.7}}
+    assert by_topic["/aos/plot/belief"][-1]["probability"]["cans_0_where"] == {"Left": 0.3, "Right": 0.7}
+    assert by_topic["/aos/plot/belief"][-1]["quantiles"]["depth"] == {
+        **{"p05": 0.5, "p25": 1.0, "p50": 0.3, "p75": 2.0, "p95": 2.5}
+    }
     (picture,) = by_topic["/aos/picture"]
     assert base64.b64decode(picture["data"]) == PICTURE
     assert [stamp for topic, _, _, stamp in messages if topic == "/aos/picture"] == [2 * 10**9 + 5]
@@ -161,6 +165,7 @@ def test_layouts_show_only_what_is_in_the_file(run: Path, tmp_path: Path) -> Non
     assert {path for path in shown if path.startswith("/aos/plot/belief.probability")} == {
         *("/aos/plot/belief.probability.cans_0_where.Left", "/aos/plot/belief.probability.cans_0_where.Right")
     }
+    assert "/aos/plot/belief.quantiles.depth.p50" in shown
     assert set(shown) <= fields
     assert set(panels_in(layout["layout"])) == layout["configById"].keys()
     assert layout["configById"]["Image!aos"]["imageMode"]["imageTopic"] in fields
@@ -199,8 +204,14 @@ def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path: 
         "steps": STEPS,
         "values": 2 * STEPS,
         "predictions": 2 * STEPS,
-        "beliefs": 4 * STEPS,
+        "beliefs": 6 * STEPS,
+        "quantiles": 10 * STEPS,
     }
+    assert [tables["quantiles"][2][name] for name in ("variable", "probability", "value")] == [
+        "depth",
+        "0.5",
+        "0.0",
+    ]
     step = tables["steps"][1]
     told = [step[name] for name in ("step", "action", "response", "chosen_by")]
     assert told == ["2", "go(to=a)", "arrived", "planner"]

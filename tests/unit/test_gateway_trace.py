@@ -107,3 +107,9 @@ def test_a_trace_says_with_which_record_to_go_on() -> None:
     trace = steps_of("m", [decided(3), observed(3, "yes")])
     assert (trace.first, trace.next, [row.sequence for row in trace.steps]) == (3, 6, [5])
     assert steps_of("m", []).next == 0
+
+
+def test_a_number_with_many_values_is_told_by_its_quantiles() -> None:
+    depth = Marginal("depth", {"1.23456789": 0.001}, 0.999, (0.5, 1.0, 1.23456789, 2.0, 2.5))
+    row = row_of(decided(1, belief=BeliefSummary((depth,), 0.5, 0.0, 0.0, 2, True)))
+    assert row.belief == {"depth": (0.5, 1.0, 1.2346, 2.0, 2.5)}

@@ -26,14 +26,17 @@ class Curves:
         ]
         self.surprise = [(BELIEF, "surprise"), (BELIEF, "entropy")]
         self.belief: list[tuple[str, ...]] = []
+        self.numbers: list[tuple[str, ...]] = []
         self.values: list[tuple[str, ...]] = []
 
     @property
     def plots(self) -> dict[str, list[tuple[str, ...]]]:
         """The curves of each plot, by its title."""
+        numbers = {"Numbers of the belief": self.numbers[:_MOST_CURVES]} if self.numbers else {}
         return {
             "Endings": list(self.endings),
             "Belief": self.belief[:_MOST_CURVES],
+            **numbers,
             "Values of the actions": self.values[:_MOST_CURVES],
             "Surprise and entropy": list(self.surprise),
         }
@@ -45,6 +48,9 @@ def curves_of(records: Iterable[DecisionRecord]) -> Curves:
     first: dict[tuple[str, ...], float] = {}
     for record in records:
         for marginal in record.belief.marginals:
+            if marginal.quantiles:
+                _add_number(curves.numbers, plain_name(marginal.variable))
+                continue
             for value, probability in marginal.values.items():
                 path: tuple[str, ...] = (
                     BELIEF,
@@ -62,6 +68,13 @@ def curves_of(records: Iterable[DecisionRecord]) -> Curves:
             if path not in curves.values:
                 curves.values.append(path)
     return curves
+
+
+def _add_number(numbers: list[tuple[str, ...]], variable: str) -> None:
+    """Adds the median of a number and what 90 % lie between."""
+    paths: list[tuple[str, ...]] = [(BELIEF, "quantiles", variable, each) for each in ("p05", "p50", "p95")]
+    if paths[0] not in numbers:
+        numbers.extend(paths)
 
 
 def foxglove_layout(curves: Curves, *, has_pictures: bool) -> dict[str, Any]:

@@ -7,12 +7,13 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from aos_protocol.messages import DecisionRecord
+from aos_protocol.messages import QUANTILES, DecisionRecord
 
 __all__ = ["BELIEF", "VALUES", "belief_of", "merged_schema", "plain_name", "values_of"]
 
 BELIEF, VALUES = "/aos/plot/belief", "/aos/plot/values"
 
+_QUANTILE_NAMES = tuple(f"p{100 * share:02.0f}" for share in QUANTILES)
 _NOT_PLAIN = re.compile(r"[^A-Za-z0-9_]+")
 
 
@@ -36,6 +37,11 @@ def belief_of(record: DecisionRecord) -> dict[str, Any]:
                 plain_name(value): probability for value, probability in marginal.values.items()
             }
             for marginal in belief.marginals
+        },
+        "quantiles": {
+            plain_name(marginal.variable): dict(zip(_QUANTILE_NAMES, marginal.quantiles, strict=True))
+            for marginal in belief.marginals
+            if marginal.quantiles
         },
     }
     if record.outcome is not None and not record.is_impossible:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
-from aos_protocol.messages import BeliefSummary, DecisionRecord
+from aos_protocol.messages import QUANTILES, BeliefSummary, DecisionRecord
 
 __all__ = ["TABLES", "Row", "rows_of_runs"]
 
@@ -60,6 +60,7 @@ TABLES: dict[str, dict[str, type[Any]]] = {
     },
     "predictions": {**_KEY, "skill": str, "response": str, "probability": float, "is_seen": bool},
     "beliefs": {**_KEY, "moment": str, "variable": str, "value": str, "probability": float},
+    "quantiles": {**_KEY, "moment": str, "variable": str, "probability": float, "value": float},
 }
 """Each table with its columns and their types. Compounds are JSON; times are nanoseconds since 1970."""
 
@@ -137,6 +138,9 @@ def _belief(at: dict[str, Any], moment: str, belief: BeliefSummary) -> Iterator[
         for value, probability in marginal.values.items():
             cells = {"variable": marginal.variable, "value": value, "probability": probability}
             yield Row("beliefs", {**at, "moment": moment, **cells})
+        for share, number in zip(QUANTILES, marginal.quantiles, strict=False):
+            cells = {"variable": marginal.variable, "probability": share, "value": number}
+            yield Row("quantiles", {**at, "moment": moment, **cells})
 
 
 def _step(key: dict[str, Any], decided: DecisionRecord, record: DecisionRecord | None) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
-from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, SkillProgress
+from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, Marginal, SkillProgress
 
 __all__ = ["belief_bars", "belief_lines", "brief_action", "progress_text", "step_table", "value_table"]
 
@@ -93,16 +93,25 @@ def _risks(record: DecisionRecord) -> dict[str, str]:
 
 
 def belief_bars(belief: BeliefSummary, rows: int) -> Table:
-    """A bar for each likely value of each state variable."""
+    """A bar for each likely value of each state variable; of a number with many values its median."""
     table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
     for column in ("belief", "", "", ""):
         table.add_column(column, no_wrap=True)
     for marginal in belief.marginals:
+        if marginal.quantiles:
+            if table.row_count < rows:
+                table.add_row(marginal.variable, *_number_cells(marginal.quantiles))
+            continue
         for index, (value, probability) in enumerate(list(marginal.values.items())[:_SHOWN_VALUES]):
             name = marginal.variable if index == 0 else ""
             if table.row_count < rows:
                 table.add_row(name, value, _bar(probability), f"{probability:.3f}")
     return table
+
+
+def _number_cells(quantiles: tuple[float, ...]) -> tuple[str, str, str]:
+    low, _, median, _, high = quantiles
+    return f"{median:.3g}", f"{low:.3g} to {high:.3g}", "90 %"
 
 
 def progress_text(progress: SkillProgress) -> Text:
@@ -117,11 +126,7 @@ def belief_lines(belief: BeliefSummary, width: int, rows: int) -> list[Text]:
     doubtful = sorted(belief.marginals, key=lambda marginal: max(marginal.values.values(), default=1.0))
     lines: list[Text] = []
     for marginal in doubtful:
-        likely = list(marginal.values.items())[:_SHOWN_VALUES]
-        values_text = " ".join(
-            value if probability > 0.9995 else f"{value} {probability:.2f}" for value, probability in likely
-        )
-        item = Text.assemble((f"{marginal.variable} ", "dim"), values_text)
+        item = Text.assemble((f"{marginal.variable} ", "dim"), _values_text(marginal))
         item.truncate(width, overflow="ellipsis")
         if lines and lines[-1].cell_len + 3 + item.cell_len <= width:
             lines[-1].append("   ").append(item)
@@ -132,6 +137,15 @@ def belief_lines(belief: BeliefSummary, width: int, rows: int) -> list[Text]:
         else:
             lines.append(item)
     return lines
+
+
+def _values_text(marginal: Marginal) -> str:
+    if marginal.quantiles:
+        return "{} (90 %: {})".format(*_number_cells(marginal.quantiles))
+    return " ".join(
+        value if probability > 0.9995 else f"{value} {probability:.2f}"
+        for value, probability in list(marginal.values.items())[:_SHOWN_VALUES]
+    )
 
 
 def _fitting(actions: list[str], width: int) -> list[str]:

@@ -26,6 +26,7 @@ from aos_protocol.messages.bundles import (
 )
 from aos_protocol.messages.drift import DriftTest, DriftTests, ModelDrift
 from aos_protocol.messages.mission import (
+    QUANTILES,
     ActionValue,
     BeliefSummary,
     CheckModel,
@@ -80,6 +81,7 @@ from aos_protocol.messages.study import (
 )
 
 __all__ = [
+    "QUANTILES",
     "ActionRefused",
     "ActionValue",
     "Activate",

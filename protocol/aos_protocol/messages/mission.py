@@ -159,15 +159,22 @@ class ResumeMission(Message, frozen=True):
     by: str = ""
 
 
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+"""The shares of the probability whose quantiles a marginal has."""
+
+
 class Marginal(Message, frozen=True):
     """The distribution of one state variable: value text to probability, most probable first.
 
     Of many values only the most probable ones are told; `others` is the probability of all the rest.
+    `quantiles` are the values up to which 5, 25, 50, 75 and 95 % of the probability lie. A real number with
+    more than eight values has them, a whole number whose values are not all told, and nothing else.
     """
 
     variable: str
     values: dict[str, float]
     others: float = 0.0
+    quantiles: tuple[float, ...] = ()
 
 
 class EndingOdds(Message, frozen=True):

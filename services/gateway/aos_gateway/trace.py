@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, ModelDrift
+from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, Marginal, ModelDrift
 
 __all__ = ["Endings", "Step", "Steps", "Trace", "Traces", "steps_of"]
 
@@ -19,6 +19,9 @@ _DIGITS = 4
 _SHOWN_VALUES = 8
 _CERTAIN = 1e-9
 _KEPT_TRACES = 8
+
+Told = dict[str, float] | tuple[float, ...]
+"""The distribution of a variable: probabilities of values, or quantiles."""
 
 
 class Endings(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -37,7 +40,8 @@ class Step(msgspec.Struct, omit_defaults=True):
     is the best of the others, `margin` is how much better the chosen one is. `predicted` are the responses
     with their probabilities, `seen` is the response, `expected` its probability. `belief` are the variables
     whose distribution is another one than before this decision, `after` those that the outcome has changed:
-    value to probability, with `…` for all values that are not listed. `drift` are the alarms that stand of
+    value to probability, with `…` for all values that are not listed, or the quantiles of a number, as in
+    Marginal. `drift` are the alarms that stand of
     the skill, as in DecisionRecord.
     """
 
@@ -61,7 +65,7 @@ class Step(msgspec.Struct, omit_defaults=True):
     adopted: str = ""
     predicted: dict[str, float] = {}
     endings: Endings | None = None
-    belief: dict[str, dict[str, float]] = {}
+    belief: dict[str, Told] = {}
     status: str = ""
     seen: str = ""
     expected: float | None = None
@@ -73,7 +77,7 @@ class Step(msgspec.Struct, omit_defaults=True):
     started_ms: int = 0
     ended_ms: int = 0
     endings_after: Endings | None = None
-    after: dict[str, dict[str, float]] = {}
+    after: dict[str, Told] = {}
     drift: tuple[ModelDrift, ...] = ()
 
 
@@ -96,7 +100,7 @@ class Steps:
 
     def __init__(self, *, whole: bool = False) -> None:
         self._whole = whole
-        self._known: dict[str, dict[str, float]] = {}
+        self._known: dict[str, Told] = {}
         self.by_number: dict[int, Step] = {}
         self.next = 0
 
@@ -154,16 +158,12 @@ class Steps:
         row.started_ms, row.ended_ms = outcome.started_ns // 1_000_000, outcome.ended_ns // 1_000_000
         row.endings_after, row.after = _endings(record.belief), self._changed(record.belief)
 
-    def _changed(self, belief: BeliefSummary) -> dict[str, dict[str, float]]:
+    def _changed(self, belief: BeliefSummary) -> dict[str, Told]:
         changed = {}
         for marginal in belief.marginals:
-            likely = list(marginal.values.items())
-            values = {value: _probability(each) for value, each in likely[:_SHOWN_VALUES] if each >= 0.00005}
-            others = marginal.others + sum(each for _, each in likely[_SHOWN_VALUES:])
-            if others >= 0.00005:
-                values["…"] = _probability(others)
-            if self._whole or self._known.get(marginal.variable) != values:
-                changed[marginal.variable] = self._known[marginal.variable] = values
+            told = _told(marginal)
+            if self._whole or self._known.get(marginal.variable) != told:
+                changed[marginal.variable] = self._known[marginal.variable] = told
         return changed
 
 
@@ -197,6 +197,17 @@ def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:
 def _second(record: DecisionRecord) -> ActionValue | None:
     others = [value for value in record.actions if value.action != record.action and math.isfinite(value.q)]
     return max(others, key=lambda value: value.q, default=None)
+
+
+def _told(marginal: Marginal) -> Told:
+    if marginal.quantiles:
+        return tuple(float(f"{each:.5g}") for each in marginal.quantiles)
+    likely = list(marginal.values.items())
+    values = {value: _probability(each) for value, each in likely[:_SHOWN_VALUES] if each >= 0.00005}
+    others = marginal.others + sum(each for _, each in likely[_SHOWN_VALUES:])
+    if others >= 0.00005:
+        values["…"] = _probability(others)
+    return values
 
 
 def _endings(belief: BeliefSummary) -> Endings:

@@ -16,7 +16,7 @@ from aos_middleware.evaluator import worker_confinement
 from aos_middleware.picture_worker import FILE_NAME, MOST_BYTES, Drawn, NotDrawn, Subject
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
-from aos_protocol.messages import BeliefSummary
+from aos_protocol.messages import BeliefSummary, Marginal
 from aos_runtime.children import PIPE, Child, Limits, guarded
 
 __all__ = ["Drawn", "draw", "likeliest_state"]
@@ -59,13 +59,21 @@ async def draw(source: str, belief: BeliefSummary, step: dict[str, Any]) -> Draw
 
 
 def likeliest_state(belief: BeliefSummary) -> dict[str, Any]:
-    """Each variable's likeliest value: a bool or a number where the text is one, else the text."""
-    likeliest = {
-        each.variable: max(each.values, key=lambda text: each.values[text])
+    """Each variable's likeliest value: a bool or a number where the text is one, else the text.
+
+    Of a number that has quantiles it is the median.
+    """
+    return {
+        each.variable: _median(each)
+        if each.quantiles
+        else _plain(max(each.values, key=each.values.__getitem__))
         for each in belief.marginals
         if each.values
     }
-    return {variable: _plain(text) for variable, text in likeliest.items()}
+
+
+def _median(marginal: Marginal) -> float:
+    return marginal.quantiles[len(marginal.quantiles) // 2]
 
 
 def _plain(text: str) -> Any:

@@ -9,6 +9,9 @@ export function signed(value, digits = 2) {
   return `${value < 0 ? "−" : "+"}${text}`;
 }
 
+// A number of the world, to three digits.
+export const number = (value) => (isNumber(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "–");
+
 export const plain = (value, digits = 2) => (isNumber(value) ? value.toFixed(digits) : "–");
 
 // What is not certain is never shown as certain.

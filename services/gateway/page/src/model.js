@@ -88,7 +88,7 @@ function Expected() {
 function Strip() {
   const [ref, size] = useWidth();
   const [chosen, setChosen] = useState("");
-  const doubtful = summarised(points.value).filter((row) => row.isDoubtful);
+  const doubtful = summarised(points.value).filter((row) => row.isDoubtful && !row.isNumber);
   const choices = doubtful.flatMap((row) => row.values.filter((value) => value !== "…" && !(value === "false" && row.values.includes("true"))).map((value) => `${row.name} = ${value}`));
   const wanted = choices.includes(chosen) ? chosen : choices[0];
   if (!wanted) return html`<div ref=${ref}><p class="empty">No variable is in doubt.</p></div>`;

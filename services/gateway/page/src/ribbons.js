@@ -2,6 +2,7 @@
 import { html, useState, useWidth, width } from "./ui.js";
 import { valueColours, textOn } from "./colours.js";
 import { chance } from "./format.js";
+import { Fan, nowOf, summaryOf } from "./fan.js";
 import { index, points, selectStep, steps } from "./store.js";
 import { Cursor, placeOf } from "./timeline.js";
 
@@ -35,22 +36,24 @@ function Ribbon({ row, all, size, now }) {
   const head = headOf(room);
   const colours = valueColours(row.values);
   const current = all[now + 1]?.[row.name] ?? {};
-  const likely = Object.entries(current).sort((a, b) => b[1] - a[1]);
-  const words = likely.slice(0, 2).map(([value, each]) => `${value} ${chance(each)}`).join(", ");
+  const told = Array.isArray(current) ? nowOf(current) : likeliest(current);
+  const words = told.map(([what, each]) => `${what} ${each}`).join(", ");
   return html`<div class="ribbon">
     <h3 class="ribbon-name">${row.name}</h3>
     <svg class=${room > 4 * all.length ? "ribbon-plot" : "ribbon-plot is-dense"} width=${room} height=${HEIGHT} role="img" aria-label=${`${row.name}: ${words}`}
       onClick=${(event) => selectStep(stepAt(event, room))}>
-      ${areas(row, all, room, colours)}
+      ${row.isNumber ? html`<${Fan} row=${row} all=${all} room=${room} head=${head} height=${HEIGHT} />` : areas(row, all, room, colours)}
       ${row.moves.length <= MARKED && row.moves.map((i) => html`<path class="moved" d=${`M${placeOf(i - 1, room, head)} ${HEIGHT} l-3.5 5 h7 z`} />`)}
-      ${labels(row, all, room, colours)}
+      ${!row.isNumber && labels(row, all, room, colours)}
       <${Cursor} room=${room} height=${HEIGHT} head=${head} />
     </svg>
     <dl class="ribbon-now">
-      ${likely.slice(0, 2).map(([value, each]) => html`<div><dt><i style=${{ background: colours.get(value) }}></i>${value}</dt><dd>${chance(each)}</dd></div>`)}
+      ${told.map(([what, each]) => html`<div><dt>${!row.isNumber && html`<i style=${{ background: colours.get(what) }}></i>`}${what}</dt><dd>${each}</dd></div>`)}
     </dl>
   </div>`;
 }
+
+const likeliest = (values) => Object.entries(values).sort((a, b) => b[1] - a[1]).slice(0, 2).map(([value, each]) => [value, chance(each)]);
 
 // Before the first field there is room for the belief that the mission began with.
 const headOf = (room) => Math.min(24, (room / (steps.value.length + 0.5)) * 0.5);
@@ -129,8 +132,10 @@ let kept = { all: null, rows: [] };
 export function summarised(all) {
   if (kept.all === all) return kept.rows;
   const rows = new Map();
+  const numbers = numberNames(all);
   for (let i = 0; i < all.length; i++) {
     for (const name in all[i]) {
+      if (numbers.has(name)) continue;
       const values = all[i][name];
       const before = i ? all[i - 1][name] : undefined;
       let row = rows.get(name);
@@ -154,9 +159,17 @@ export function summarised(all) {
     ...row,
     values: [...row.weights.entries()].sort(byName).map(([value]) => value),
   }));
+  for (const name of numbers) list.push(summaryOf(name, all));
   list.sort((a, b) => b.doubt - a.doubt || b.moves.length - a.moves.length);
   kept = { all, rows: list };
   return list;
+}
+
+// The variables that have quantiles at some step.
+function numberNames(all) {
+  const found = new Set();
+  for (const point of all) for (const name in point) if (Array.isArray(point[name])) found.add(name);
+  return found;
 }
 
 // True is below, false above; other values as they were met, what is not listed on top.

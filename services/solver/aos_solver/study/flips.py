@@ -31,10 +31,13 @@ MarginAt = Callable[[float], Awaitable[Margin]]
 def doubtful_values(belief: BeliefSummary) -> Iterator[tuple[str, str, float]]:
     """The values that are neither certain nor excluded, those of the most doubtful variables first.
 
-    Of a variable with two values one is told: to move the other is the same.
+    Of a variable with two values one is told: to move the other is the same. Of a number that has quantiles
+    none is told: no value of it has a probability worth moving.
     """
     doubts = []
     for marginal in belief.marginals:
+        if marginal.quantiles:
+            continue
         open_ = {v: p for v, p in marginal.values.items() if _CERTAIN < p < 1 - _CERTAIN}
         entropy = -sum(p * math.log(p) for p in open_.values())
         if entropy > 0:

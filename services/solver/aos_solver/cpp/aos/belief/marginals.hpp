@@ -1,7 +1,11 @@
-// The distribution of each variable under weighted states, for people: the likeliest values of each variable.
+// The distribution of each variable under weighted states, for people: the likeliest values of each variable, and
+// quantiles of numbers with many values.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,6 +24,8 @@ namespace aos {
 
 inline constexpr std::size_t max_reported_values = 16;  // of one variable
 inline constexpr std::size_t max_reported_in_all = 4096;
+inline constexpr std::size_t max_reals_told_apart = 8;  // A real number with more values has quantiles.
+inline constexpr std::array reported_quantiles{0.05, 0.25, 0.5, 0.75, 0.95};
 
 template <class Model>
 class Marginals {
@@ -38,7 +44,8 @@ class Marginals {
     }
   }
 
-  // Writes an array with an entry for each variable: its name, its likeliest values, and the probability of the others.
+  // Writes an array with an entry for each variable: its name, its likeliest values, the probability of the others, and
+  // the quantiles of a number whose values are too many to be told apart.
   void write(JsonWriter& json, std::size_t max_of_one = max_reported_values, std::size_t max_in_all = max_reported_in_all) {
     choose_reported(max_of_one, max_in_all);
     write_texts();
@@ -50,6 +57,7 @@ class Marginals {
       for (std::size_t i = 0; i < variable.texts.size(); ++i) json.member(variable.texts[i], variable.values[i].weight);
       json.end_object();
       if (others > 0) json.member("others", others);
+      write_quantiles(json, variable);
       json.end_object();
     }
     json.end_array();
@@ -65,6 +73,7 @@ class Marginals {
 
   struct Variable {
     std::string name;
+    Leaf::Kind kind;
     std::vector<Value> values;
     std::vector<std::string> texts;  // of the reported values
     NumberIndex places;
@@ -152,9 +161,9 @@ class Marginals {
   const std::vector<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
     const auto [entry, is_new] = shapes_.try_emplace(shape);
     if (is_new) {
-      NamedLeaves leaves{[&](const std::string& name, const Leaf&) {
+      NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
         const auto [place, is_unknown] = names_.try_emplace(name, variables_.size());
-        if (is_unknown) variables_.push_back({name, {}, {}, {}});
+        if (is_unknown) variables_.push_back({name, leaf.kind, {}, {}, {}});
         entry->second.push_back(place->second);
       }};
       Model::visit_values(state, leaves);
@@ -170,6 +179,35 @@ class Marginals {
                        [](const Value& left, const Value& right) { return left.weight > right.weight; });
       variable.texts.resize(std::min(max_values, variable.values.size()));
     }
+  }
+
+  // The least value up to which each share of the probability lies. Infinite numbers have no place in JSON.
+  static void write_quantiles(JsonWriter& json, const Variable& variable) {
+    const bool is_real = variable.kind == Leaf::Kind::real;
+    if (!is_real && variable.kind != Leaf::Kind::signed_number && variable.kind != Leaf::Kind::unsigned_number) return;
+    if (variable.values.size() <= (is_real ? max_reals_told_apart : variable.texts.size())) return;
+    std::vector<std::pair<double, double>> weighted;
+    double total = 0;
+    for (const Value& value : variable.values) {
+      weighted.emplace_back(number_of(variable.kind, value.number), value.weight);
+      if (!std::isfinite(weighted.back().first)) return;
+      total += value.weight;
+    }
+    std::sort(weighted.begin(), weighted.end());
+    json.key("quantiles").begin_array();
+    auto value = weighted.begin();
+    double below = 0;
+    for (const double share : reported_quantiles) {
+      while (below + value->second < share * total && value + 1 != weighted.end()) below += (value++)->second;
+      json.value(value->first);
+    }
+    json.end_array();
+  }
+
+  static double number_of(Leaf::Kind kind, std::uint64_t bits) {
+    if (kind == Leaf::Kind::real) return std::bit_cast<double>(bits);
+    if (kind == Leaf::Kind::signed_number) return static_cast<double>(static_cast<std::int64_t>(bits));
+    return static_cast<double>(bits);
   }
 
   // Making texts takes long, so only reported values get one, and each state makes all of its texts at once.
