@@ -26,8 +26,8 @@ SKILLS = ("look", "go(to=hall)", "go(to=lab)", "pick", "put", "wait")
 PLACES = ("hall", "lab", "yard", "office")
 
 
-def write_long_run(runs: Path, steps: int) -> str:
-    """Writes the run of a mission with so many steps, and returns its name."""
+def write_long_run(runs: Path, steps: int, *also: Marginal) -> str:
+    """Writes the run of a mission with so many steps, and returns its name. Each belief has `also` these."""
     draws = random.Random(7)
     run = RunDirectory.create(runs, "marathon", now_ns=1_700_000_000 * 10**9)
     name = run.path.name
@@ -51,20 +51,22 @@ def write_long_run(runs: Path, steps: int) -> str:
             }
             skill = action.partition("(")[0]
             journal.append(
-                "decision", decision_record(2 * step - 2, name, skill, belief=_belief(draws), **common)
+                "decision", decision_record(2 * step - 2, name, skill, belief=_belief(draws, also), **common)
             )
             outcome = Outcome(ActivationId(name, step), skill, "observed", draws.choice(("seen", "unseen")))
             journal.append(
                 "decision",
-                decision_record(2 * step - 1, name, skill, belief=_belief(draws), outcome=outcome, **common),
+                decision_record(
+                    2 * step - 1, name, skill, belief=_belief(draws, also), outcome=outcome, **common
+                ),
             )
         journal.append("mission", MissionState(name, "ended", steps, 0.0, "step_limit", "the step limit"))
     run.close()
     return name
 
 
-def _belief(draws: random.Random) -> BeliefSummary:
-    marginals = []
+def _belief(draws: random.Random, also: tuple[Marginal, ...]) -> BeliefSummary:
+    marginals = list(also)
     for number in range(8):
         weights = [draws.random() for _ in PLACES]
         values = {place: weight / sum(weights) for place, weight in zip(PLACES, weights, strict=True)}

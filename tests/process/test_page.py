@@ -14,6 +14,8 @@ from page_sources import installed_sources
 from playwright.sync_api import Browser, Page, Route, expect, sync_playwright
 from processes import HANG_S
 
+from aos_protocol.messages import Marginal
+
 ROOT = Path(__file__).resolve().parents[2]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 VIEWS = ("", "/why", "/steps", "/model", "/documents", "/system")
@@ -266,6 +268,22 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
         kept(page, f"{width}-{theme}{view.replace('/', '-')}", pictures)
         assert violations(page, cache_dir) == [], view
     page.close()
+
+
+@pytest.mark.parametrize("width", [390, 1440])
+def test_a_number_of_many_values_is_shown_by_its_median_and_range(
+    browser: Browser, tmp_path: Path, width: int, pictures: Path, cache_dir: Path
+) -> None:
+    depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
+    name = write_long_run(tmp_path / "runs", 5, depth)
+    with gateway(tmp_path, cache_dir) as served:
+        page = opened(browser, served, width)
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+        expect(
+            page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
+        ).to_be_visible()
+        kept(page, f"numbers-{width}", pictures)
+        assert violations(page, cache_dir) == []
 
 
 def test_a_thousand_steps_are_loaded_with_little(

@@ -19,7 +19,7 @@ export function quantilesOf(told) {
   });
 }
 
-export const nowOf = ([low, , median, , high]) => [["median", number(median)], ["5–95 %", `${number(low)} … ${number(high)}`]];
+export const nowOf = ([low, , median, , high], span) => [["median", number(median, span)], ["5–95 %", `${number(low, span)} … ${number(high, span)}`]];
 
 // What `summarised` says of other variables. A step is marked where the median leaves the middle half of before.
 export function summaryOf(name, all) {
@@ -58,6 +58,6 @@ export function Fan({ row, room, head, height }) {
     <path class="fan-most" d=${band(0, 4)} />
     <path class="fan-half" d=${band(1, 3)} />
     <path class="fan-median" d=${`M${line(2).join("L")}`} />
-    <text class="fan-end" x="3" y="10">${number(row.high)}</text>
-    <text class="fan-end" x="3" y=${height - 2}>${number(row.low)}</text>`;
+    <text class="fan-end" x="3" y="10">${number(row.high, span)}</text>
+    <text class="fan-end" x="3" y=${height - 2}>${number(row.low, span)}</text>`;
 }

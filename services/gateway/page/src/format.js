@@ -9,8 +9,13 @@ export function signed(value, digits = 2) {
   return `${value < 0 ? "−" : "+"}${text}`;
 }
 
-// A number of the world, to three digits.
-export const number = (value) => (isNumber(value) ? String(Number(value.toPrecision(3))).replace("-", "−") : "–");
+// A number of the world: to three digits of the span in which it lies, or of its own.
+export function number(value, span = Math.abs(value)) {
+  if (!isNumber(value)) return "–";
+  const decimals = Math.max(0, 2 - Math.floor(Math.log10(span || 1)));
+  const text = decimals > 6 || span >= 1e6 ? String(Number(value.toPrecision(3))) : String(Number(value.toFixed(decimals)));
+  return text.replace("-", "−");
+}
 
 export const plain = (value, digits = 2) => (isNumber(value) ? value.toFixed(digits) : "–");
 

@@ -36,7 +36,7 @@ function Ribbon({ row, all, size, now }) {
   const head = headOf(room);
   const colours = valueColours(row.values);
   const current = all[now + 1]?.[row.name] ?? {};
-  const told = Array.isArray(current) ? nowOf(current) : likeliest(current);
+  const told = Array.isArray(current) ? nowOf(current, row.high - row.low) : likeliest(current);
   const words = told.map(([what, each]) => `${what} ${each}`).join(", ");
   return html`<div class="ribbon">
     <h3 class="ribbon-name">${row.name}</h3>
@@ -47,7 +47,7 @@ function Ribbon({ row, all, size, now }) {
       ${!row.isNumber && labels(row, all, room, colours)}
       <${Cursor} room=${room} height=${HEIGHT} head=${head} />
     </svg>
-    <dl class="ribbon-now">
+    <dl class=${row.isNumber ? "ribbon-now is-number" : "ribbon-now"}>
       ${told.map(([what, each]) => html`<div><dt>${!row.isNumber && html`<i style=${{ background: colours.get(what) }}></i>`}${what}</dt><dd>${each}</dd></div>`)}
     </dl>
   </div>`;

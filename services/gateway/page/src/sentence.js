@@ -1,7 +1,7 @@
 // The decision of a step in one sentence, and what was expected and seen in another.
 import { html } from "./ui.js";
-import { chance, isNumber, percent, plain, seconds, signed } from "./format.js";
-import { at, progress, state } from "./store.js";
+import { chance, isNumber, number, percent, plain, seconds, signed } from "./format.js";
+import { at, progress, record, state } from "./store.js";
 import { isAsked } from "./timeline.js";
 
 export function Sentence() {
@@ -41,5 +41,12 @@ function came(step) {
   if (step.status !== "observed") return html`Expected ${expected}. Nothing was observed: <b>${step.status.replace("_", " ")}</b>.`;
   const surprise = step.impossible ? "The model held that impossible." : `Surprise ${plain(step.surprise)}.`;
   const how = step.stopped_by ? ` It was stopped by ${step.stopped_by}.` : "";
-  return html`Expected ${expected}. Saw <b class="response">${step.seen}</b>${isNumber(step.expected) ? ` (${chance(step.expected)})` : ""}.${how} ${surprise}`;
+  return html`Expected ${expected}. Saw <b class="response">${step.seen}</b>${isNumber(step.expected) ? ` (${chance(step.expected)})` : ""}${reported()}.${how} ${surprise}`;
+}
+
+// The numbers that came with the response; of an array the first few.
+function reported() {
+  const numbers = Object.entries(record.value?.observed?.outcome?.numbers ?? {});
+  const text = (value) => [value].flat().slice(0, 4).map((each) => (isNumber(each) ? number(each) : "–")).join(" ") + ([value].flat().length > 4 ? " …" : "");
+  return numbers.length ? html`, ${numbers.map(([name, value]) => `${name} = ${text(value)}`).join(", ")}` : "";
 }
