@@ -9,11 +9,13 @@ from pathlib import Path
 import msgspec
 import pytest
 from processes import descendants, until_ended
-from study.played import Played, play
+from study.played import Beside, Played, play
 
 from aos_language.load import read_bundle_files
-from aos_protocol.messages import BeliefRow, DecisionRecord, ModelAdopted
+from aos_protocol.messages import BeliefRow, DecisionRecord, ModelAdopted, Steer
 from aos_solver.child.engine import Engine
+from aos_solver.mission import abandoning
+from aos_solver.mission.loop import Mission
 from aos_solver.study.comparing import Comparison, compared
 
 
@@ -72,7 +74,7 @@ async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happe
         cache_dir,
         steps=6,
         then=(3, other),
-        disturbance=kill_at_step_2,
+        beside=Beside(disturbance=kill_at_step_2),
         planner="pomcp",
         simulations=1000,
     )
@@ -81,6 +83,34 @@ async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happe
     assert len(list(played.mission.of_kind(ModelAdopted))) == 1
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
+
+
+async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_need(
+    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The hold comes when the third search has begun; without a grace it is given up."""
+    monkeypatch.setattr(abandoning, "GRACE_S", 0.0)
+
+    def steer(mission: Mission) -> None:
+        state = mission.state
+        if state.phase == "planning" and state.step == 2 and not state.remark:
+            mission.steer(Steer("hold", by="ana", request="1"))
+        elif state.phase == "holding" and state.held_by:
+            mission.steer(Steer("resume", by="ana", request="2"))
+
+    played = await play(
+        files_of(bundles / "bench/laser-normal"),
+        cache_dir,
+        steps=4,
+        beside=Beside(steering=steer),
+        simulations=2000,
+    )
+    decisions = played.mission.decisions
+    assert [each.engine_starts for each in decisions] == [1, 1, 2, 2]
+    assert [len(each.searches) for each in decisions] == [1, 1, 1, 1]
+    found = await comparisons(played)
+    assert [row.difference for row in found if row.difference] == []
+    assert all(row.has_values for row in found if row.decides)
 
 
 async def test_the_first_difference_is_named_with_its_cause(bundles: Path, cache_dir: Path) -> None:

@@ -127,7 +127,7 @@ async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tige
     assert violations(around) == []
 
 
-async def test_a_hold_during_a_search_is_told_to_wait_and_nothing_of_the_search_is_done(
+async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(
     tiger: BuiltModel,
 ) -> None:
     around = Steered()
@@ -144,14 +144,30 @@ async def test_a_hold_during_a_search_is_told_to_wait_and_nothing_of_the_search_
     await run(tiger, around, step_limit=2)
     waiting = next(state for state in told if state.held_by)
     assert (waiting.phase, waiting.step) == ("planning", 1)
-    assert waiting.remark == (
-        "the search that goes on ends first, and its choice is dropped; ana holds the mission"
-    )
-    assert "the search that goes on ends first" in _held(waiting)
+    assert waiting.remark == "the search that goes on is dropped; ana holds the mission"
+    assert "the search that goes on is dropped" in _held(waiting)
     held = told[told.index(waiting) + 1]
     assert (held.phase, held.step, held.remark) == ("holding", 1, "ana holds the mission")
     assert [by for _, by in around.chosen] == ["planner", "planner"]
     assert [search.is_dropped for search in around.decisions[1].searches] == [True, False]
+
+
+async def test_a_search_without_end_is_given_up_by_a_hold_and_by_an_action_of_the_operator(
+    tiger: BuiltModel,
+) -> None:
+    around = Steered()
+    wishes = in_turn(lambda: around.steer("act", "listen"), lambda: around.steer("hold"))
+
+    def publish_state(state: MissionState) -> None:
+        if state.phase == "planning" and not state.held_by and not (state.remark or state.asked):
+            wishes()
+
+    around.publish_state = publish_state
+    around.on_hold = in_turn(lambda: around.steer("stop"))
+    state = await run(tiger, around, search=Search(simulations=10**15, seed=1, planner="pomcp"))
+    assert (state.ending, state.step) == ("cancelled", 1)
+    assert around.chosen == [("listen", "operator")]
+    assert around.decisions[0].searches == ()
 
 
 async def test_an_action_of_the_operator_is_observed_like_any_other(tiger: BuiltModel) -> None:

@@ -18,7 +18,7 @@ from aos_solver.study.flips import flip_between, is_lost
 from aos_solver.study.study import Study
 from aos_solver.study.valuing import Margin, Value
 
-from .played import Played, play
+from .played import Beside, Played, play
 from .replays import files_of
 
 __all__ = ["measure_flips", "measure_intervals", "measure_undisturbed"]
@@ -36,7 +36,7 @@ async def measure_undisturbed(runs: int, cache_dir: Path) -> bool:
         quiet = await play(files, cache_dir, seed=seed, steps=6, **budget)
         asking = _Asking(cache_dir)
         loud = await play(
-            files, cache_dir, seed=seed, steps=6, follower=asking.follow, disturbance=asking.wait, **budget
+            files, cache_dir, seed=seed, steps=6, beside=Beside(asking.wait, follower=asking.follow), **budget
         )
         asked += asking.asked
         for then, now in zip(quiet.mission.decisions, loud.mission.decisions, strict=True):

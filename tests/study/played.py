@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
 from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
-from aos_protocol.messages import Activate, Message, MissionBegun, Outcome
+from aos_protocol.messages import Activate, Message, MissionBegun, MissionState, Outcome
 from aos_runtime.clock import SystemClock
 from aos_runtime.journal import JournalRow
 from aos_solver.building.project_build import build_project
@@ -28,12 +29,23 @@ from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import ReplayedMission
 
-__all__ = ["Files", "Played", "play"]
+__all__ = ["Beside", "Files", "Played", "play"]
 
 Files = Mapping[str, bytes]
 
+Steering = Callable[[Mission], None]
+"""Is called with the mission at each state that it tells, and while it holds."""
+
 Disturbance = Callable[[Engine, int], Awaitable[None]]
 """Is called with the mission's engine and the number of the step while a skill runs."""
+
+
+class Beside(NamedTuple):
+    """Those who are beside a mission. A `follower` goes on beside it and is cancelled at its end."""
+
+    disturbance: Disturbance | None = None
+    steering: Steering | None = None
+    follower: Callable[[Played], Awaitable[None]] | None = None
 
 
 class Played(msgspec.Struct):
@@ -72,15 +84,19 @@ def _project(files: Files) -> Project:
     return project
 
 
+_NOBODY = Beside()
+
+
 class _World(QuietPorts):
     """A world that an engine of its own plays, and the journal of what happens there."""
 
     keeps_beliefs = True
 
-    def __init__(self, world: Engine, disturbance: Disturbance | None) -> None:
+    def __init__(self, world: Engine, beside: Beside) -> None:
         self.clock = SystemClock()
         self._world = world
-        self._disturbance = disturbance
+        self._disturbance, self._steering, _ = beside
+        self.mission: Mission | None = None
         self._places = {action.name: index for index, action in enumerate(world.description.actions)}
         self.rows: list[JournalRow] = []
         self.engine: Engine | None = None
@@ -90,6 +106,15 @@ class _World(QuietPorts):
     def journal(self, kind: str, payload: Message) -> None:
         text = msgspec.json.encode(payload).decode()
         self.rows.append(JournalRow(len(self.rows) + 1, 0, kind, text))
+
+    def publish_state(self, state: MissionState) -> None:
+        if self._steering is not None and self.mission is not None:
+            self._steering(self.mission)
+
+    async def until_changed(self, timeout_s: float) -> None:
+        assert self._steering is not None
+        assert self.mission is not None
+        self._steering(self.mission)
 
     async def activate(self, request: Activate, action: str) -> Outcome:
         self.steps += 1
@@ -121,14 +146,12 @@ async def play(
     seed: int = 1,
     steps: int = 8,
     then: tuple[int, Files] | None = None,
-    disturbance: Disturbance | None = None,
-    follower: Callable[[Played], Awaitable[None]] | None = None,
+    beside: Beside = _NOBODY,
     **budget: object,
 ) -> Played:
     """Plays a mission of so many steps at most; the world is that of the documents.
 
-    With `then` other documents take over after so many steps. A `follower` goes on beside the mission and is
-    cancelled at its end. `budget` are settings of the search.
+    With `then` other documents take over after so many steps. `budget` are settings of the search.
     """
     settings = Settings(
         robot="r",
@@ -145,7 +168,7 @@ async def play(
     built = await build_project(project, cache_dir, lambda text: None)
     engine = await Engine.start(built, seed=seed)
     world = await Engine.start(built, seed=seed + 1000)
-    around = _World(world, disturbance)
+    around = _World(world, beside)
     around.engine = engine
     try:
         await world.reset_world(seed)
@@ -159,8 +182,9 @@ async def play(
         search = msgspec.structs.replace(msgspec.convert(settings, Search, from_attributes=True), seed=seed)
         limits = msgspec.convert(settings, MissionLimits, from_attributes=True)
         mission = Mission(Terms(name="m", search=search, limits=limits), running, around)
+        around.mission = mission
         played = Played(around.rows, settings, [files] if then is None else [files, then[1]])
-        await _followed(mission, played, follower)
+        await _followed(mission, played, beside.follower)
     finally:
         if around.next is not None:
             await around.next[1].close()

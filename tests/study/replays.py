@@ -13,7 +13,7 @@ from aos_solver.child.engine import Engine
 from aos_solver.study.comparing import compared
 
 from ..processes import descendants, until_ended
-from .played import Files, Played, play
+from .played import Beside, Files, Played, play
 
 __all__ = ["BUNDLES", "files_of", "measure"]
 
@@ -91,8 +91,8 @@ async def _play(kind: _Kind, seed: int, cache_dir: Path) -> Played:
     then: tuple[int, Files] | None = None
     if kind.what == "other documents":
         then = (2, files | {"pick.sd": files["pick.sd"].replace(b"__reward = -2", b"__reward = -3")})
-    disturbance = _kill if kind.what == "a killed engine" else None
-    return await play(files, cache_dir, seed=seed, steps=6, then=then, disturbance=disturbance, **kind.budget)
+    beside = Beside(disturbance=_kill if kind.what == "a killed engine" else None)
+    return await play(files, cache_dir, seed=seed, steps=6, then=then, beside=beside, **kind.budget)
 
 
 async def _kill(engine: Engine, step: int) -> None:

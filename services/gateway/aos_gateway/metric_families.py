@@ -38,7 +38,9 @@ class Families:
         )
         self.activations = Counter("aos_activations_total", "Activations that are over, by skill.")
         self.holds = Counter("aos_holds_total", "Holds, for an operator or for a skill that cannot be run.")
-        self.engine_restarts = Counter("aos_engine_restarts_total", "New starts of engines that had ended.")
+        self.engine_restarts = Counter(
+            "aos_engine_restarts_total", "New starts of engines that had ended, or whose search was given up."
+        )
         self.service_restarts = Counter(
             "aos_service_restarts_total", "New starts of services that had ended, by service."
         )

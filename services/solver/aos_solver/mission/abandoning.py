@@ -1,34 +1,56 @@
-"""Work that is given up as soon as somebody says so."""
+"""Work whose result is not needed any more, given up while it goes on."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Coroutine
+from contextlib import suppress
 from typing import Any, TypeVar
 
-__all__ = ["Abandoning"]
+__all__ = ["GRACE_S", "Abandoning"]
 
 T = TypeVar("T")
 
+GRACE_S = 0.5
+"""Work that nobody needs may end within this time: to give a search up costs the engine's process, and with
+it the tree that the next search would begin with."""
+
 
 class Abandoning:
-    """Gives work up once it has begun, which it does once and for all."""
+    """Gives the work up that goes on when somebody says so, and all work from some moment on."""
 
     def __init__(self) -> None:
-        self._begun = asyncio.Event()
+        self._is_useless = asyncio.Event()
+        self._is_over = asyncio.Event()
+
+    def renew(self) -> None:
+        """Work that begins from now on is needed, unless all is over."""
+        if not self._is_over.is_set():
+            self._is_useless.clear()
+
+    def soon(self) -> None:
+        """The work that goes on has `GRACE_S` to end."""
+        self._is_useless.set()
 
     def begin(self) -> None:
-        """All work is given up from now on."""
-        self._begun.set()
+        """All work is given up from now on, at once."""
+        self._is_over.set()
+        self._is_useless.set()
 
-    async def unless_begun(self, work: Coroutine[Any, Any, T]) -> T | None:
+    async def unless_given_up(self, work: Coroutine[Any, Any, T]) -> T | None:
         """Returns the result of the work; None where it was given up, which has cancelled it."""
         task = asyncio.ensure_future(work)
-        begun = asyncio.ensure_future(self._begun.wait())
+        given_up = asyncio.ensure_future(self._until_given_up())
         try:
-            await asyncio.wait((task, begun), return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait((task, given_up), return_when=asyncio.FIRST_COMPLETED)
             return task.result() if task.done() else None
         finally:
             task.cancel()
-            begun.cancel()
-            await asyncio.gather(task, begun, return_exceptions=True)
+            given_up.cancel()
+            await asyncio.gather(task, given_up, return_exceptions=True)
+
+    async def _until_given_up(self) -> None:
+        await self._is_useless.wait()
+        with suppress(TimeoutError):
+            async with asyncio.timeout(GRACE_S):
+                await self._is_over.wait()

@@ -118,15 +118,17 @@ class Mission:
             self._holding.resume()
         if self._to_stop:
             self._abandoning.begin()
-        self._reports.tell(self._wait_for_search())
+        else:
+            self._abandoning.soon()
+        self._reports.tell(self._dropped_search())
 
-    def _wait_for_search(self) -> str | None:
+    def _dropped_search(self) -> str | None:
         """Tells people of a search that goes on while somebody steers; None where none does."""
         if self.state.phase != "planning" or self._to_stop:
             return None
         holder = self._helm.now.held_by if self._helm.now.waits else ""
         then = f"{holder} holds the mission" if holder else "it is decided as the mission is steered then"
-        return f"the search that goes on ends first, and its choice is dropped; {then}"
+        return f"the search that goes on is dropped; {then}"
 
     async def until_decided(self, request: str) -> None:
         """Returns once the actions of a request were decided for; SteeringError where they will not be."""
@@ -270,11 +272,12 @@ class Mission:
         step, turns, asked = self.state.step, self._helm.turns, self._helm.asked
         if self._to_stop:
             return Ended(Ending.CANCELLED, self._to_stop)
+        self._abandoning.renew()
         self._move_to("planning", step)
-        choice = await self._abandoning.unless_begun(self._next(step + 1, asked))
-        if self._to_stop or choice is None:
+        choice = await self._abandoning.unless_given_up(self._next(step + 1, asked))
+        if self._to_stop:
             return Ended(Ending.CANCELLED, self._to_stop)
-        if self._helm.turns != turns:
+        if choice is None or self._helm.turns != turns:
             if isinstance(choice, Choice):
                 self._chooser.drop(choice)
             return None
