@@ -4,8 +4,8 @@ BIN := $(VENV)/bin
 LOCK := deploy/lock
 UPGRADE :=
 CHAOS :=
-COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
-	--no-emit-index-url --no-emit-find-links --no-header
+COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11
+RESOLVE := $(COMPILE) $(UPGRADE) --no-annotate --no-header --output-file
 
 .PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile study clean
 
@@ -38,10 +38,15 @@ promote:  ## accept the emitted code as it is now as the golden files
 	AOS_PROMOTE=1 $(BIN)/pytest tests/golden
 
 lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.venv/bin/pip install uv)
-	$(COMPILE) --output-file $(LOCK)/build.txt $(LOCK)/build.in
-	$(COMPILE) --output-file $(LOCK)/runtime.txt --extra sim --extra page --constraint $(LOCK)/build.txt pyproject.toml
-	$(COMPILE) --output-file $(LOCK)/dev.txt --extra sim --extra page --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
-	printf 'ziglang>=0.15\n' | $(COMPILE) --output-file $(LOCK)/compiler.txt -
+	$(RESOLVE) $(LOCK)/build.txt $(LOCK)/build.in
+	$(RESOLVE) $(LOCK)/runtime.txt --extra sim --extra page --constraint $(LOCK)/build.txt pyproject.toml
+	$(RESOLVE) $(LOCK)/dev.txt --extra sim --extra page --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
+	printf 'ziglang>=0.15\n' | $(RESOLVE) $(LOCK)/compiler.txt -
+	scratch=$$(mktemp -d) && for name in build runtime dev compiler; do \
+		$(COMPILE) --no-deps --format pylock.toml --output-file $$scratch/pylock.$$name.toml $(LOCK)/$$name.txt && \
+		$(BIN)/python deploy/lock_files.py $$scratch/pylock.$$name.toml >$(LOCK)/$$name.txt \
+			$$([ $$name != dev ] || echo --without $(LOCK)/runtime.txt) || exit 1; \
+	done && rm -r "$$scratch"
 
 chaos:  ## kill, freeze and fail processes of missions, and print what became of them
 	$(BIN)/python -m tests.chaos $(CHAOS)

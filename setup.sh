@@ -115,15 +115,21 @@ need_compiler() {
 
 # --- packages ------------------------------------------------------------------------------------------
 
-install() { # install REQUIREMENTS: names, versions and hashes must all fit
+install() { # install REQUIREMENTS...: names, versions and hashes must all fit
+    names=$*
+    # Each file becomes an option.
+    for file in "$@"; do
+        shift
+        set -- "$@" --requirement "$file"
+    done
     "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes \
-        --no-build-isolation --use-pep517 --requirement "$1" ||
-        fail "pip could not install $1" "If the network failed, run this again: it goes on where it stopped."
+        --no-build-isolation --use-pep517 "$@" ||
+        fail "pip could not install $names" "If the network failed, run this again: it goes on where it stopped."
 }
 
 has_pybullet() { "$VENV/bin/python" -c 'import importlib.util as u, sys; sys.exit(u.find_spec("pybullet") is None)'; }
 
-prepare_to_build_pybullet() { # prepare_to_build_pybullet REQUIREMENTS
+prepare_to_build_pybullet() { # prepare_to_build_pybullet REQUIREMENTS...
     python=$VENV/bin/python
     if ! command -v g++ >/dev/null 2>&1 || ! has_headers "$python"; then
         version=$(version_of "$python")
@@ -138,37 +144,44 @@ prepare_to_build_pybullet() { # prepare_to_build_pybullet REQUIREMENTS
     fi
     say "building pybullet for this Python, which has no ready package: about 8 minutes on two cores, once"
     # It looks for numpy when it is built, and hands pictures over slowly without it.
-    awk '/^[a-z]/ { skip = /^pybullet==/ } !skip' "$1" >"$VENV/without-pybullet.txt"
+    awk '/^[a-z]/ { skip = /^pybullet==/ } !skip' "$@" >"$VENV/without-pybullet.txt"
     install "$VENV/without-pybullet.txt"
 }
 
-install_packages() { # install_packages REQUIREMENTS
-    say "installing $(grep -c '^[a-z].*==' "$1") packages into $VENV: about 150 MB to load, a minute or two the first time"
+install_packages() { # install_packages REQUIREMENTS...
+    say "installing $(cat "$@" | grep -c '^[a-z].*==') packages into $VENV: about 150 MB to load, a minute or two the first time"
     install "$LOCK/build.txt"
-    if is_python "$VENV/bin/python" 'v >= (3, 12)' && ! has_pybullet; then prepare_to_build_pybullet "$1"; fi
-    install "$1"
+    if is_python "$VENV/bin/python" 'v >= (3, 12)' && ! has_pybullet; then prepare_to_build_pybullet "$@"; fi
+    install "$@"
     "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 }
 
-stamp() { # stamp REQUIREMENTS: changes with all that decides what is installed
-    { pwd && cat pyproject.toml "$LOCK/build.txt" "$1" && "$VENV/bin/python" --version; } 2>/dev/null | cksum
+stamp() { # stamp REQUIREMENTS...: changes with all that decides what is installed
+    { pwd && cat pyproject.toml "$LOCK/build.txt" "$@" && "$VENV/bin/python" --version; } 2>/dev/null | cksum
 }
 
 main() {
     case "${1:-}" in
-        '') requirements=$LOCK/runtime.txt done_file=$VENV/aos-runtime ;;
-        --dev) requirements=$LOCK/dev.txt done_file=$VENV/aos-dev ;;
+        '')
+            done_file=$VENV/aos-runtime
+            set -- "$LOCK/runtime.txt"
+            ;;
+        --dev)
+            done_file=$VENV/aos-dev
+            # The second pins only what the first does not.
+            set -- "$LOCK/runtime.txt" "$LOCK/dev.txt"
+            ;;
         *) fail "unknown option $1" "usage: ./setup.sh [--dev]" ;;
     esac
     began=$(date +%s)
     make_venv
     # The development set holds the other.
-    if [ "$(stamp "$requirements")" = "$(cat "$done_file" 2>/dev/null)" ] ||
-        [ "$(stamp "$LOCK/dev.txt")" = "$(cat "$VENV/aos-dev" 2>/dev/null)" ]; then
+    if [ "$(stamp "$@")" = "$(cat "$done_file" 2>/dev/null)" ] ||
+        [ "$(stamp "$LOCK/runtime.txt" "$LOCK/dev.txt")" = "$(cat "$VENV/aos-dev" 2>/dev/null)" ]; then
         say "the packages are up to date"
     else
-        install_packages "$requirements"
-        stamp "$requirements" >"$done_file"
+        install_packages "$@"
+        stamp "$@" >"$done_file"
     fi
     need_compiler
     say "ready after $(($(date +%s) - began)) s"

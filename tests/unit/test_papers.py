@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
 import re
 import subprocess
 import sys
@@ -141,18 +141,47 @@ def test_locks_pin_by_hash_and_hold_no_address(root: Path, name: str) -> None:
 def test_locks_hold_every_dependency(root: Path) -> None:
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    needed = {"dev": extras["dev"], "compiler": extras["compiler"]}
-    needed["runtime"] = [*project["dependencies"], *extras["sim"]]
-    for name, lines in needed.items():
-        pinned = pins(root / "deploy" / "lock" / f"{name}.txt")
+    runtime, dev, compiler = (
+        pins(root / "deploy" / "lock" / f"{name}.txt") for name in ("runtime", "dev", "compiler")
+    )
+    for pinned, lines in (
+        (runtime, [*project["dependencies"], *extras["sim"], *extras["page"]]),
+        (runtime | dev, extras["dev"]),
+        (compiler, extras["compiler"]),
+    ):
         for line in lines:
             wanted = Requirement(line)
-            assert pinned[canonical(wanted.name)] in wanted.specifier, f"{line} in {name}.txt"
+            assert pinned[canonical(wanted.name)] in wanted.specifier, line
 
 
-def test_the_development_lock_holds_the_runtime_one(root: Path) -> None:
+def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path) -> None:
     runtime, dev = (pins(root / "deploy" / "lock" / f"{name}.txt") for name in ("runtime", "dev"))
-    assert runtime.items() <= dev.items()
+    assert runtime.keys().isdisjoint(dev)
+
+
+@pytest.mark.parametrize(
+    ("wheel", "can_run"),
+    [
+        ("https://a.b/numpy-2.4.6-cp311-cp311-manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl", True),
+        ("https://a.b/typer-0.28.0-py3-none-any.whl", True),
+        ("https://a.b/rpds_py-1-cp313-cp313-musllinux_1_2_aarch64.whl", True),
+        ("https://a.b/tree_sitter_cpp-0.23-cp39-abi3-manylinux_2_17_aarch64.whl", True),
+        ("https://a.b/numpy-2.4.6-cp311-cp311-win_amd64.whl", False),
+        ("https://a.b/numpy-2.4.6-cp311-cp311-macosx_14_0_arm64.whl", False),
+        ("https://a.b/numpy-2.4.6-cp310-cp310-manylinux_2_27_x86_64.whl", False),
+        ("https://a.b/numpy-2.4.6-cp314-cp314t-manylinux_2_27_x86_64.whl", False),
+        ("https://a.b/numpy-2.4.6-cp311-cp311-manylinux_2_31_riscv64.whl", False),
+    ],
+)
+def test_locks_have_the_wheels_of_the_machines_and_pythons_that_aos_runs_with(
+    root: Path, wheel: str, can_run: bool
+) -> None:
+    source = importlib.util.spec_from_file_location("lock_files", root / "deploy" / "lock_files.py")
+    assert source is not None
+    assert source.loader is not None
+    module = importlib.util.module_from_spec(source)
+    source.loader.exec_module(module)
+    assert module.can_run(wheel) is can_run
 
 
 def pins(lock: Path) -> dict[str, str]:
