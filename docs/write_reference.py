@@ -1,4 +1,4 @@
-"""Writes what follows from the sources: errors.md, schemas, colours, tables of other pages.
+"""Writes what follows from the sources: errors.md, colours, tables of other pages.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
 not). In http-api.md, languages.md, limits.md and protocol.md the text between `<!-- generated: NAME -->` and
@@ -19,7 +19,6 @@ import msgspec
 from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_deploy.schemas import SCHEMAS
 from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
@@ -205,18 +204,6 @@ def words_tables() -> str:
     return "\n".join(lines) + "\n"
 
 
-# --- schemas -------------------------------------------------------------------------------------------
-
-
-def schema_text(schema: dict[str, object]) -> str:
-    """A schema as JSON with a line for each definition."""
-    definitions = schema["$defs"]
-    assert isinstance(definitions, dict)
-    lines = [f"{json.dumps(name)}: {json.dumps(part)}" for name, part in schema.items() if name != "$defs"]
-    inner = ",\n".join(f"{json.dumps(name)}: {json.dumps(part)}" for name, part in definitions.items())
-    return "{\n" + ",\n".join(lines) + ',\n"$defs": {\n' + inner + "\n}\n}\n"
-
-
 # --- pages ---------------------------------------------------------------------------------------------
 
 
@@ -241,7 +228,6 @@ def pages() -> dict[Path, str]:
         DOCS / "examples/vscode/syntaxes/aos.tmLanguage.json": textmate_grammar(),
         DOCS / "notebook.ipynb": notebook((DOCS / "python.md").read_text(encoding="utf-8")),
         **{page: with_generated_parts(page.read_text(encoding="utf-8")) for page in generated_in_part},
-        **{DOCS / "schemas" / f"{name}.json": schema_text(schema()) for name, schema in SCHEMAS.items()},
     }
 
 

@@ -1,4 +1,4 @@
-"""The JSON Schemas: current, and of one mind with the readers."""
+"""The JSON Schemas are of one mind with the readers."""
 
 from __future__ import annotations
 
@@ -45,10 +45,8 @@ def leaves(errors: Any) -> Iterator[jsonschema.ValidationError]:
 
 
 @pytest.mark.parametrize("name", SCHEMAS)
-def test_the_schema_is_one_and_the_stored_copy_is_current(name: str, root: Path) -> None:
-    schema = SCHEMAS[name]()
-    jsonschema.Draft202012Validator.check_schema(schema)
-    assert json.loads((root / "docs" / "schemas" / f"{name}.json").read_text()) == schema
+def test_the_schema_is_one(name: str) -> None:
+    jsonschema.Draft202012Validator.check_schema(SCHEMAS[name]())
 
 
 def test_the_examples_of_the_language_page_are_valid(root: Path) -> None:
