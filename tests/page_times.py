@@ -1,59 +1,164 @@
 """Times of the page: `python -m tests.page_times`, or `--decisions 100 --viewers 10`.
 
 A mission whose robot waits for turns is viewed by several browsers. A decision is on the screen when the
-page has drawn its step. Then a mission of 1,000 steps is loaded anew, some times.
+page has drawn its step. Beside them a client without a screen reads the event stream: what it waits is the
+gateway's and the machine's, the rest is the browsers' own. The processor time of gateway and browsers tells
+what a decision costs. Then a mission of 1,000 steps is loaded anew, some times.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import statistics
 import sys
 import tempfile
+import threading
+import time
+from collections.abc import Iterable
 from pathlib import Path
+from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from gateway import Gateway, gateway, slow_system
 from long_run import write_long_run
 from playwright.sync_api import Browser, Page, sync_playwright
+from processes import descendants
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".compiled"
 OBSERVE = """() => {
   window.seen = {};
+  const waiting = {};
+  window.until = (step) => new Promise((found) => step in window.seen ? found() : (waiting[step] = found));
   const look = () => {
     const text = document.querySelector(".stepper-place b")?.textContent;
-    if (text && !(text in window.seen)) requestAnimationFrame(() => (window.seen[text] ??= Date.now()));
+    if (text && !(text in window.seen)) requestAnimationFrame(() => {
+      window.seen[text] ??= Date.now();
+      waiting[text]?.();
+    });
   };
   new MutationObserver(look).observe(document.body, { subtree: true, childList: true, characterData: true });
   look();
 }"""
+"""Nothing is asked of a page in each of its frames: that would cost more than the page."""
 
 
 def viewed(browser: Browser, served: Gateway, mission: str) -> Page:
     page = browser.new_context(bypass_csp=True, viewport={"width": 1440, "height": 900}).new_page()
-    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{mission}")
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{mission}?token={served.token}")
     page.wait_for_function("document.querySelector('.connection')?.textContent === 'Live'")
     page.evaluate(OBSERVE)
     return page
 
 
-def decisions(browser: Browser, folder: Path, number: int, viewers: int) -> list[float]:
-    """The milliseconds from each decision until it is on each screen."""
+_OF_A_BLOCK = 10
+
+
+class Measured(NamedTuple):
+    """The milliseconds from decisions until they are on a screen, and until a plain client has them; the
+    processor time in milliseconds that a step took the gateway, and all browsers.
+    """
+
+    on_screens: list[float]
+    by_client: list[float]
+    gateway_cpu_ms: float
+    browsers_cpu_ms: float
+
+
+def cpu_ms(pids: Iterable[int]) -> float:
+    """The processor time of processes up to now."""
+    ticks = 0
+    for pid in pids:
+        try:
+            fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        except FileNotFoundError:
+            continue
+        ticks += int(fields[11]) + int(fields[12])
+    return 1000 * ticks / os.sysconf("SC_CLK_TCK")
+
+
+def browser_pids() -> list[int]:
+    """The processes of browsers below this one."""
+    names = {pid: Path(f"/proc/{pid}/cmdline").read_bytes() for pid in descendants(os.getpid())}
+    return [pid for pid, name in names.items() if b"chrom" in name.partition(b"\0")[0]]
+
+
+def listen(served: Gateway, mission: str, heard: dict[int, float], until: int) -> None:
+    """Notes when each decision comes to a client without a screen, up to a step."""
+    with served.events(f"/v1/events?mission={mission}&since=0") as events:
+        for _, kind, data in events:
+            if kind == "decision" and "outcome" not in data["record"]:
+                heard[data["record"]["step"]] = time.time() * 1000
+                if data["record"]["step"] >= until:
+                    return
+
+
+def decisions(browser: Browser, folder: Path, number: int, viewers: int) -> Measured:
+    """Measures so many decisions with so many viewers."""
+    heard: dict[int, float] = {}
     with slow_system(folder, CACHE) as run, gateway(folder, CACHE) as served:
+        client = threading.Thread(target=listen, args=(served, run.name, heard, number + 1))
+        client.start()
         pages = [viewed(browser, served, run.name) for _ in range(viewers)]
+        watched = browser_pids()
+        before = cpu_ms([served.process.pid]), cpu_ms(watched)
         for step in range(2, number + 2):
             (folder / "turns").write_bytes(b".")
             for page in pages:
-                page.wait_for_function("step => String(step) in window.seen", arg=step)
-        records = {}
+                page.evaluate("step => window.until(step)", step)
+        after = cpu_ms([served.process.pid]), cpu_ms(watched)
+        stamps = {}
         since = 0
         while page_of := served.ask(f"/v1/missions/{run.name}/decisions?since={since}").json["records"]:
-            records |= {each["step"]: each["stamp_ns"] / 1e6 for each in page_of if "outcome" not in each}
+            stamps |= {each["step"]: each["stamp_ns"] / 1e6 for each in page_of if "outcome" not in each}
             since = page_of[-1]["sequence"] + 1
+        client.join()
         seen = [page.evaluate("window.seen") for page in pages]
-    return [times[str(step)] - records[step] for times in seen for step in range(2, number + 2)]
+        for page in pages:
+            page.close()
+    steps = range(2, number + 2)
+    return Measured(
+        [times[str(step)] - stamps[step] for times in seen for step in steps],
+        [heard[step] - stamps[step] for step in steps if step in heard],
+        (after[0] - before[0]) / number,
+        (after[1] - before[1]) / number,
+    )
+
+
+def engine_cost(folder: Path, blocks: int, viewers: int) -> tuple[list[float], list[float]]:
+    """The processor time in milliseconds of a decision's engine, alone and with clients that view the
+    mission: in turns, a mean of each block of decisions.
+    """
+    alone: list[float] = []
+    viewed_by: list[float] = []
+    step = 1
+    with slow_system(folder, CACHE, simulations=20_000) as run, gateway(folder, CACHE) as served:
+        up = json.loads((run / "run.json").read_bytes())["pid"]
+        engines = [pid for pid in descendants(up) if Path(f"/proc/{pid}/exe").readlink().name == "model"]
+        assert engines
+        for block in range(2 * blocks):
+            heard: list[dict[int, float]] = [{} for _ in range(viewers if block % 2 else 1)]
+            clients = [
+                threading.Thread(target=listen, args=(served, run.name, each, step + _OF_A_BLOCK))
+                for each in heard[: viewers if block % 2 else 0]
+            ]
+            for client in clients:
+                client.start()
+            before = cpu_ms(engines)
+            for _ in range(_OF_A_BLOCK):
+                step += 1
+                (folder / "turns").write_bytes(b".")
+                while not served.ask(f"/v1/missions/{run.name}/decisions?since={2 * step - 2}").json[
+                    "records"
+                ]:
+                    time.sleep(0.05)
+            (viewed_by if block % 2 else alone).append((cpu_ms(engines) - before) / _OF_A_BLOCK)
+            for client in clients:
+                client.join()
+    return alone, viewed_by
 
 
 def reloads(browser: Browser, folder: Path, times: int) -> tuple[list[float], int]:
@@ -61,7 +166,7 @@ def reloads(browser: Browser, folder: Path, times: int) -> tuple[list[float], in
     name = write_long_run(folder / "runs", 1000)
     with gateway(folder, CACHE) as served:
         page = browser.new_context(bypass_csp=True, viewport={"width": 1440, "height": 900}).new_page()
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?token={served.token}")
         taken = []
         size = 0
         for _ in range(times):
@@ -79,6 +184,15 @@ def reloads(browser: Browser, folder: Path, times: int) -> tuple[list[float], in
     return taken, size
 
 
+def told(late: list[float]) -> str:
+    """The times of decisions in words."""
+    ranked = statistics.quantiles(late, n=20)
+    return (
+        f"median {statistics.median(late):.0f} ms, 95 % within {ranked[-1]:.0f} ms, "
+        f"longest {max(late):.0f} ms of {len(late)}"
+    )
+
+
 def main() -> None:
     """Measures, and prints."""
     parser = argparse.ArgumentParser(description=main.__doc__)
@@ -90,11 +204,19 @@ def main() -> None:
         folder = Path(name)
         (folder / "a").mkdir()
         (folder / "b").mkdir()
-        late = decisions(browser, folder / "a", options.decisions, options.viewers)
-        ranked = statistics.quantiles(late, n=20)
+        (folder / "c").mkdir()
+        print(f"load {os.getloadavg()[0]:.1f} of {os.cpu_count()} processors")
+        measured = decisions(browser, folder / "a", options.decisions, options.viewers)
+        print(f"decisions on {options.viewers} screens: {told(measured.on_screens)}")
+        print(f"the same at a client without a screen: {told(measured.by_client)}")
         print(
-            f"{len(late)} decisions on {options.viewers} screens: median {statistics.median(late):.0f} ms, "
-            f"95 % within {ranked[-1]:.0f} ms, longest {max(late):.0f} ms"
+            f"processor time of a step: {measured.gateway_cpu_ms:.0f} ms of the gateway, "
+            f"{measured.browsers_cpu_ms:.0f} ms of all browsers"
+        )
+        alone, beside = engine_cost(folder / "c", 4, options.viewers)
+        print(
+            f"processor time of a decision of 20,000 simulations: {statistics.median(alone):.1f} ms alone, "
+            f"{statistics.median(beside):.1f} ms with {options.viewers} clients"
         )
         taken, size = reloads(browser, folder / "b", 10)
         print(

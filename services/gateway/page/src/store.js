@@ -49,6 +49,9 @@ export const alarms = computed(() => {
   return [...standing.values()];
 });
 
+// An outcome, the next decision and the states around them come within milliseconds, and are drawn together.
+const TOGETHER_MS = 30;
+
 let source = null;
 let waiting = [];
 let isFlushing = false;
@@ -84,8 +87,7 @@ export function listen(name = "", since = 0) {
       waiting.push([kind, JSON.parse(event.data)]);
       if (!isFlushing) {
         isFlushing = true;
-        // A hidden page has no frames, but goes on listening.
-        document.hidden ? setTimeout(flush, 200) : requestAnimationFrame(flush);
+        setTimeout(flush, document.hidden ? 200 : TOGETHER_MS);
       }
     });
   }
