@@ -12,10 +12,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import msgspec
 
 from aos_language.observed import reported_numbers
+from aos_language.templates import templates_in
 from aos_middleware.generated_lines import word
 from aos_middleware.module_names import ModuleNames
 from aos_middleware.python_code import LineOrigin, python_fault
@@ -29,14 +29,7 @@ __all__ = ["EmittedMapping", "emit_mapping", "emit_monitor"]
 
 _DIGEST_LENGTH = 16
 
-_templates = jinja2.Environment(
-    loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
-    undefined=jinja2.StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-    keep_trailing_newline=True,
-    autoescape=False,
-)
+_templates = templates_in(Path(__file__).parent / "templates", trims_blocks=True)
 
 
 class EmittedMapping(msgspec.Struct, frozen=True):

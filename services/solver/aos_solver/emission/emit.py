@@ -12,11 +12,11 @@ import re
 from functools import cache
 from pathlib import Path
 
-import jinja2
 import msgspec
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.mission_parameters import ParameterLeaf
+from aos_language.templates import Environment, templates_in
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.document_lines import END, MARK, MODEL_FILE, Origin, put_code, string_literal
@@ -132,13 +132,8 @@ def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
 
 
 @cache
-def _templates() -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
-        undefined=jinja2.StrictUndefined,
-        autoescape=False,
-        keep_trailing_newline=True,
-    )
+def _templates() -> Environment:
+    environment = templates_in(Path(__file__).parent / "templates")
     environment.filters["literal"] = string_literal
     environment.filters["number"] = _number_literal
     environment.filters["skill_type"] = "aos_skill_{}".format
