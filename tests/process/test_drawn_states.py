@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import base64
+import json
+import shutil
 from pathlib import Path
 
 import pytest
 from models import built_bundle
+from typer.testing import CliRunner
 
+from aos_deploy.cli import aos_app
 from aos_deploy.picture_findings import picture_findings
 from aos_language.load import load_bundle, load_files, read_bundle_files
 from aos_middleware.picture import Drawn, draw, likeliest_state
@@ -101,6 +105,17 @@ def test_a_picture_that_is_no_python_is_a_warning_of_lint(
     (found,) = loaded.diagnostics
     assert (found.code, str(found.span), found.is_error) == ("AOS148", f"picture.py:{place}", False)
     assert said in found.message
+
+
+def test_lint_tells_once_what_is_wrong_with_a_picture(
+    bundles: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    shutil.copytree(bundles / "errand", tmp_path / "errand")
+    (tmp_path / "errand" / "picture.py").write_text("def draw(state, belief, step):\n    return (\n")
+    told = CliRunner().invoke(aos_app(), ["lint", str(tmp_path / "errand"), "--format", "json"])
+    found = [each["code"] for each in json.loads(told.stdout)["diagnostics"]]
+    assert found.count("AOS148") == 1
 
 
 async def test_lint_draws_the_beginning_of_a_mission(bundles: Path, cache_dir: Path) -> None:

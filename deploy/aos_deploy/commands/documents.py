@@ -17,6 +17,7 @@ from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_deploy.sarif import sarif_log
 from aos_language.load import load_bundle, load_files, read_bundle_files, with_excerpts
 from aos_language.outline import outline
+from aos_language.reading.picture_file import PICTURE
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
@@ -74,7 +75,9 @@ def lint(
     loaded = load_files(files, name=path.name or str(path), remarks=remarks)
     found = loaded.diagnostics
     if compiles and loaded.project is not None:
-        found = (*found, *_model_findings(files, path, loaded.project))
+        # A picture.py that cannot be read is not drawn as well: it would be told twice.
+        tried = {n: text for n, text in files.items() if not any(f.span.file == n == PICTURE for f in found)}
+        found = (*found, *_model_findings(tried, path, loaded.project))
     counts = Counter(diagnostic.severity for diagnostic in found)
     if form is Format.JSON:
         print_json(

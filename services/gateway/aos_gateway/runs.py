@@ -207,7 +207,8 @@ class KeptRun(Run):
 class RemoteRun(Run):
     """A system at an endpoint, of which nothing but its bus is known.
 
-    The gateway is there who AOS_USER and AOS_PASSWORD_FILE say.
+    Its name has the robot and the whole place, since files of one name lie in many folders. The gateway is
+    there who AOS_USER and AOS_PASSWORD_FILE say.
     """
 
     is_running = True
@@ -215,7 +216,8 @@ class RemoteRun(Run):
     def __init__(self, endpoint: str, robot: str) -> None:
         self.endpoint = endpoint
         self.robot = robot
-        self.name = f"{robot}@{endpoint.rpartition('/')[2]}"
+        place = endpoint.partition("/")[2].strip("/").replace("/", "_")
+        self.name = f"{robot}@{place}"
 
     async def entry(self) -> RunEntry:
         try:
