@@ -26,6 +26,7 @@ _COMMANDS = {
     "aos_gateway.command": ("serve",),
     "aos_deploy.commands.check": ("check",),
     "aos_deploy.commands.replay": ("replay", "diff"),
+    "aos_deploy.commands.drift": ("drift",),
     "aos_deploy.commands.why": ("why", "whatif"),
     "aos_deploy.commands.skill": ("skill", "resume"),
     "aos_deploy.commands.documents": ("lint", "inspect"),

@@ -1,0 +1,94 @@
+"""`aos drift`: whether skills do what their documents say, over the missions of several runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from aos_deploy.exit_codes import ExitCode
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import AsJson, Runs
+from aos_deploy.printing import count, print_json
+
+if TYPE_CHECKING:
+    from aos_deploy.drift_of_runs import ModelTests
+
+__all__ = ["register"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos drift runs/*")(drift)
+
+
+def drift(
+    run: Annotated[
+        list[Path] | None, typer.Argument(metavar="RUN...", help="Run directories; else the last run")
+    ] = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Test whether skills do what their documents say, over several runs.
+
+    The sequential tests of a mission go on from one run to the next here, for each model of its own. Where
+    a model is right, the probability that any alarm of it ever comes is 1 % at most. Exit code 1: there is an
+    alarm of the newest model.
+    """
+    from aos_deploy.drift_of_runs import drift_of_runs  # It imports the solver.
+
+    chosen = [chosen_run(each, runs).path for each in run] if run else [chosen_run(None, runs).path]
+    models = drift_of_runs(chosen)
+    if as_json:
+        print_json({"models": [_plain(model) for model in models]})
+    else:
+        _print(models)
+    if models and models[-1].begun_at:
+        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+
+
+def _plain(model: ModelTests) -> dict[str, Any]:
+    return {
+        "model_digest": model.tests.model_digest,
+        "revision": model.revision,
+        "missions": model.missions,
+        "responses": [
+            {
+                "skill": test.skill,
+                "response": test.response,
+                "uses": test.uses,
+                "modelled": test.expected / test.uses,
+                "seen": test.seen / test.uses,
+                "is_alarm": test.is_alarm,
+                "begun_at": model.begun_at.get((test.skill, test.response), ""),
+            }
+            for test in model.tests.tests
+            if test.uses
+        ],
+    }
+
+
+def _print(models: list[ModelTests]) -> None:
+    from rich.table import Table
+
+    from aos_deploy.terminal import console
+
+    if not models:
+        typer.echo("no mission here has tests of its skills")
+    for model in models:
+        digest = model.tests.model_digest[:12]
+        typer.echo(f"model {digest}, revision {model.revision}: {count(model.missions, 'mission')}")
+        used = [test for test in model.tests.tests if test.uses]
+        if not used:
+            typer.echo("  no skill with several responses was used")
+            continue
+        table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+        for column in ("skill", "response", "uses", "modelled", "seen", ""):
+            table.add_column(column, justify="left" if column in ("skill", "response", "") else "right")
+        for test in used:
+            place = model.begun_at.get((test.skill, test.response), "")
+            numbers = (str(test.uses), f"{test.expected / test.uses:.2f}", f"{test.seen / test.uses:.2f}")
+            said = f"does not hold since {place}" if place else ""
+            table.add_row(test.skill, test.response, *numbers, said, style="bold" if place else "")
+        console(is_wide=True).print(table)
