@@ -61,6 +61,18 @@ struct OnlineSarsop::Solver {
     return sarsop.graph().work() - before;
   }
 
+  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, std::uint64_t max_work, const IsOver& is_over,
+                                         std::uint64_t& work) {
+    const std::uint64_t before = sarsop.graph().work();
+    const auto done = [&] { return sarsop.graph().work() - before; };
+    const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };
+    std::mt19937_64 bits{1};
+    const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
+    const std::optional<PolicyValue> found = sarsop.best_policy(steps, decides_anew, ends, uniform);
+    work += done();
+    return found;
+  }
+
   FlatModel model;
   Outlook outlook;
   Regions regions;
@@ -111,14 +123,13 @@ std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t 
 std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
                                                     std::uint64_t& work) {
   if (!switches::simple_policies || !solver_->sarsop.has_start() || solver_->is_nearly_closed()) return std::nullopt;
-  const std::uint64_t before = solver_->sarsop.graph().work();
-  const auto done = [&] { return solver_->sarsop.graph().work() - before; };
-  const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };
-  std::mt19937_64 bits{1};
-  const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
-  const std::optional<PolicyValue> found = solver_->sarsop.best_policy(steps, ends, uniform);
-  work += done();
-  return found;
+  return solver_->best_policy(steps, false, max_work, is_over, work);
+}
+
+std::optional<PolicyValue> OnlineSarsop::best_policy_anew(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
+                                                         std::uint64_t& work) {
+  if (!solver_->sarsop.has_start()) return std::nullopt;
+  return solver_->best_policy(steps, true, max_work, is_over, work);
 }
 
 std::vector<ActionBounds> OnlineSarsop::action_bounds() {

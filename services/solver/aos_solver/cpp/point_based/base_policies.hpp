@@ -34,9 +34,10 @@ class BasePolicies {
   }
 
   // The policy that returns most from a node's belief over `steps` decisions, and what it returns; none if too few missions
-  // were played when `is_over()` came. `uniform()` draws.
+  // were played when `is_over()` came. Where it `decides_anew`, each decision has the whole horizon to go. `uniform()` draws.
   template <class IsOver, class Uniform>
-  std::optional<PolicyValue> best(const Node& node, std::size_t steps, IsOver&& is_over, Uniform&& uniform) {
+  std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, IsOver&& is_over, Uniform&& uniform) {
+    decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     std::vector<Candidate> candidates;
     for (const Policy& policy : policies_) candidates.push_back({{policy.share, policy.weight * worth}});
@@ -89,7 +90,8 @@ class BasePolicies {
     std::uint32_t action = candidate.first;
     double discount = 1, earned = 0, later = 0;
     for (std::size_t step = 0; step < steps; ++step) {
-      const std::uint32_t left = graph_.is_endless() ? 0 : start.left - static_cast<std::uint32_t>(step);
+      const std::uint32_t passed = graph_.is_endless() || decides_anew_ ? 0 : static_cast<std::uint32_t>(step);
+      const std::uint32_t left = start.left - passed;
       if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate.policy);
       if (step == 0) candidate.first = action;
       const Move& move = regions_.all[region].moves[action];
@@ -174,6 +176,7 @@ class BasePolicies {
   const Regions& regions_;
   BeliefGraph& graph_;
   Posterior posterior_;
+  bool decides_anew_ = false;
   std::vector<std::vector<double>> doubts_;  // [region * actions + action]
 };
 

@@ -24,11 +24,13 @@ struct ActionBounds {
 };
 
 // What the decisions of a mission lose of a lower bound, and the part of it that those lose which are not proven to be the best,
-// such as ties. They gain where it is negative. Without a horizon, `later` is what the bound counts beyond the decisions.
+// such as ties. They gain where it is negative. Without a horizon, `later` is what the bound counts beyond the decisions. `played`
+// is the share of what the bound promises that had been earned when the mission ended or broke off.
 struct MissionLoss {
   double all = 0;
   double unsettled = 0;
   double later = 0;
+  double played = 1;
 };
 
 // What a policy returns that needs no search (base_policies.hpp): its first action, its mean return, the part of that which
@@ -76,6 +78,9 @@ class OnlineSarsop {
   // The best of some simple policies from the belief, by missions of `steps` decisions; none where the bounds have nearly met,
   // and where too few missions fit the work. Adds the work to `work`.
   std::optional<PolicyValue> best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
+  // The best of them where each decision has the whole horizon to go, whatever the bounds; none where too few missions fit
+  // the work. Adds the work to `work`.
+  std::optional<PolicyValue> best_policy_anew(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
 
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
   // those of `bounds` hold in spite of rounding.

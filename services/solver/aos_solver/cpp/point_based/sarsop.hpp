@@ -121,6 +121,7 @@ class Sarsop {
     bool is_settled = true;
     MissionLoss loss;
     double discount = roots_.front().weight, played = 0;
+    const double all_promised = std::abs(discount * promised);
     std::size_t step = 0;
     for (; step < steps; ++step) {
       if (step > 0) std::tie(action, is_settled) = decided_anew(anew_of(number), precision, is_over);
@@ -143,6 +144,7 @@ class Sarsop {
       promised = graph_[number].lower;
       discount *= model_.discount;
     }
+    if (step < steps && all_promised > 0) loss.played = std::max(1 - std::abs(discount * promised) / all_promised, 0.0);
     double all = played;
     for (; step < steps; ++step, discount *= model_.discount) all += discount;
     loss.all *= all / played;
@@ -152,10 +154,10 @@ class Sarsop {
     return loss;
   }
 
-  // What the best of some simple policies returns from the only start.
+  // What the best of some simple policies returns from the only start (base_policies.hpp).
   template <class IsOver, class Uniform>
-  std::optional<PolicyValue> best_policy(std::size_t steps, IsOver&& is_over, Uniform&& uniform) {
-    const auto found = policies_.best(graph_[roots_.front().node], steps, is_over, uniform);
+  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, IsOver&& is_over, Uniform&& uniform) {
+    const auto found = policies_.best(graph_[roots_.front().node], steps, decides_anew, is_over, uniform);
     if (!found) return found;
     const double weight = roots_.front().weight;
     return PolicyValue{found->action, weight * found->value, weight * found->within, weight * found->standard_error};

@@ -64,6 +64,13 @@ inline std::vector<ActionEstimate> values_of_tree(std::vector<ActionEstimate> es
   return estimates;
 }
 
+// The error of a mean loss where fewer missions than `missions_that_tell` were played. Nothing is known of the others: by
+// Laplace's rule of succession one in `played + 2` of them loses `most`. So one mission without a loss is no proof.
+inline constexpr double missions_that_tell = 30;
+inline double error_of_unplayed(double played, double most) {
+  return std::max(1 - played / missions_that_tell, 0.0) * std::max(most, 0.0) / (played + 2);
+}
+
 // The values of actions with bounds; `lowers` and `uppers` are between what the values may be, proven or not.
 inline void set_between(std::vector<ActionEstimate>& estimates, const std::vector<double>& lowers,
                         const std::vector<double>& uppers, int choice) {

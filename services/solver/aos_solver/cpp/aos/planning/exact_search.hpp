@@ -10,6 +10,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/exact.hpp"
 #include "aos/planning/state_space.hpp"
@@ -57,6 +58,7 @@ class ExactSearch {
     for (const double loss : losses) mean_loss_ += loss / count;
     for (const double loss : losses) squares += (loss - mean_loss_) * (loss - mean_loss_);
     if (count > 1) loss_error_ = std::sqrt(squares / (count - 1) / count);
+    loss_error_ = std::hypot(loss_error_, error_of_unplayed(count, std::abs(values_[static_cast<std::size_t>(action)].value)));
     const std::uint64_t taken = simulations();
     evaluation_.reset();
     return taken;

@@ -85,7 +85,9 @@ class PointBased {
   std::uint64_t search(Budget budget, Choice&& choice) {
     loss_ = loss_error_ = later_ = 0;
     missions_ = 0;
+    played_ = 0;
     policy_.reset();
+    anew_.reset();
     if (running_ <= 0 || (budget.simulations == 0 && budget.seconds <= 0)) return 0;
     const Operations most = budget.operations(horizon_);
     const auto work_of = [&](double share) { return static_cast<Operations>(share * static_cast<double>(most)); };
@@ -109,10 +111,10 @@ class PointBased {
     const Operations most_of_policies = std::max<Operations>(work_of(1 - share_of_missions - share_of_trials), most > 0);
     policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most_of_policies, policies_are_over, work);
     if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
-    if (!policy_) {
-      try_until(1 - share_of_missions, policies_are_over);
-      if ((most == 0 || work < most) && !is_over()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
-    }
+    if (!policy_) try_until(1 - share_of_missions, policies_are_over);
+    const Operations most_of_anew = std::max<Operations>(work_of(share_of_anew), most > 0);
+    anew_ = search_->best_policy_anew(static_cast<std::size_t>(horizon_), most_of_anew, over_after(1 - share_of_missions + share_of_anew), work);
+    if (!policy_ && (most == 0 || work < most) && !is_over()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
     try_until(1, is_over);
     const std::uint64_t simulations = Budget::simulations_of(searched, horizon_);
     known_ += simulations;
@@ -162,9 +164,10 @@ class PointBased {
     }
     if (policy_) lowers[policy_->action] = std::clamp(policy_->within, lowers[policy_->action], uppers[policy_->action]);
     set_between(estimates, lowers, uppers, choice);
+    const double unknown = error_of_missions(estimates[static_cast<std::size_t>(choice)].q);
     for (ActionEstimate& estimate : estimates) {
       estimate.q = std::min(estimate.q, estimate.at_most);
-      estimate.standard_error = std::hypot(estimate.standard_error, loss_error_);
+      estimate.standard_error = std::hypot(estimate.standard_error, unknown);
     }
     return estimates;
   }
@@ -173,6 +176,7 @@ class PointBased {
   // Of the budget, at least. Policies have what is left.
   static constexpr double share_of_trials = 0.5;
   static constexpr double share_of_missions = 0.2;
+  static constexpr double share_of_anew = 0.05;  // of these, missions by simple policies that decide anew
   // Of a value, beyond the horizon.
   static constexpr double much = 0.5;
   static constexpr double next_to_nothing = 0.01;
@@ -188,12 +192,20 @@ class PointBased {
       loss_ += loss.all / count;
       later_ += loss.later / count;
       unsettled += std::abs(loss.unsettled) / count;
+      played_ += loss.played;
     }
     const double all = loss_ + later_;
     for (const point_based::MissionLoss& loss : losses) squares += std::pow(loss.all + loss.later - all, 2);
     // The mission itself may decide otherwise there. One mission alone tells no more than the size of what is lost.
     loss_error_ = std::hypot(unsettled, count > 1 ? std::sqrt(squares / (count - 1) / count) : std::abs(all));
     return work;
+  }
+
+  // The error of what planning anew loses: that of the missions that were played, and that too few were. A simple policy that
+  // decides anew tells how much may be lost, with twice the error of its mean: it puts off for ever what the mission may put off.
+  double error_of_missions(double promised) const {
+    const double most = anew_ ? promised - (anew_->value - 2 * anew_->standard_error) : std::abs(promised);
+    return std::hypot(loss_error_, policy_ ? policy_->standard_error : 0, error_of_unplayed(played_, most));
   }
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
@@ -272,7 +284,9 @@ class PointBased {
   double error_ = 0;  // of bounds
   double running_ = 0;
   std::optional<point_based::PolicyValue> policy_;  // that decides, since it returns more than is proven
+  std::optional<point_based::PolicyValue> anew_;    // that decides anew with the whole horizon at each step
   std::size_t missions_ = 0;  // that were played from this belief
+  double played_ = 0;         // of them, those that broke off by the share that was played
   double loss_ = 0;   // of missions that plan anew, against the lower bound
   double later_ = 0;  // of the lower bound, beyond the horizon
   double loss_error_ = 0;
