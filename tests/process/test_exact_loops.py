@@ -8,6 +8,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from loop_programs import loop_program, solved
 from mappings import mapping_text
 from models import built_text, engine_of
 from typer.testing import CliRunner
@@ -144,17 +145,14 @@ def machine(seed: int) -> tuple[str, dict[int, Fraction]]:
     return code, {end: odds for end, odds in ((0, first), (1, 1 - first)) if odds}
 
 
-def solved(system: list[list[Fraction]], right: list[Fraction]) -> list[Fraction]:
-    """The solution of linear equations, by Gauss and Jordan."""
-    rows = [[*row, value] for row, value in zip(system, right, strict=True)]
-    for column in range(len(rows)):
-        pivot = next(index for index in range(column, len(rows)) if rows[index][column])
-        rows[column], rows[pivot] = rows[pivot], rows[column]
-        rows[column] = [value / rows[column][column] for value in rows[column]]
-        for index, row in enumerate(rows):
-            if index != column:
-                rows[index] = [value - row[column] * at for value, at in zip(row, rows[column], strict=True)]
-    return [row[-1] for row in rows]
+def nested(seed: int) -> tuple[str, dict[int, Fraction]]:
+    """Loops in loops whose draws depend on one another and on the state, and where they end."""
+    text, odds_of = loop_program(seed, loops=1, depth=2)
+    mixed: dict[int, Fraction] = {}
+    for side, share in SIDES.items():
+        for spot, odds in odds_of(side).items():
+            mixed[spot] = mixed.get(spot, Fraction()) + share * odds
+    return f"int x = state.side;\n{text}\nstate__.spot = spot;", mixed
 
 
 COUNTER = """int rounds = 0;
@@ -175,6 +173,7 @@ do { state___.spot = AOS.SampleDiscrete(-1, {0.25, 0.5, 0.25}); } while (state__
 
 
 EXACT |= {f"machine_{seed}": machine(seed) for seed in range(1, 7)}
+EXACT |= {f"nested_{seed}": nested(seed) for seed in range(1, 9)}
 
 
 def document(code: str) -> str:
@@ -253,6 +252,7 @@ async def check_counter(engine: Engine) -> None:
     await engine.reset_belief()
 
 
+DEEP = loop_program(3, loops=2, depth=3)
 ISSUE = """project: loops
 horizon: 3
 discount: 0.5
@@ -284,6 +284,10 @@ __moduleResponse = yes;
             "while (state.side == 0) {"
             " state.side = (AOS.Bernoulli(0.5) ? 0 : 1) * (AOS.Bernoulli(0.5) ? 1 : 2); }",
             Fraction(3, 2),
+        ),
+        (
+            f"int x = 1;\n{DEEP[0]}\nstate.side = spot;",
+            sum((spot * odds for spot, odds in DEEP[1](1).items()), Fraction()),
         ),
     ],
 )
