@@ -35,6 +35,14 @@ def browser() -> Iterator[Browser]:
         found.close()
 
 
+@pytest.fixture(autouse=True)
+def closed_pages(browser: Browser) -> Iterator[None]:
+    """A page that stays open follows its mission, and takes the processor from the next test."""
+    yield
+    for context in browser.contexts:
+        context.close()
+
+
 def opened(browser: Browser, served: Gateway, width: int = 1440, theme: str = "light") -> Page:
     """A page that has the token. An error in its scripts fails the test."""
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=theme)
