@@ -213,6 +213,19 @@ async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_tak
     assert skills.count("take") == 3
 
 
+async def test_a_skill_that_answers_with_words_of_no_document_is_set_aside(cache_dir: Path) -> None:
+    built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
+    answers = {"look": "fine_weather", "ask": "said_right", "take": "taken"}
+
+    state, around = await run_mission(
+        built, lambda request: observed(request, answers[request.skill]), limits=LIMITS
+    )
+    skills = [record.skill for record in around.decisions]
+    assert state.ending == "goal"
+    assert skills[:4] == ["look", "look", "look", "ask"]
+    assert around.outcomes[2].remark.startswith("look is set aside for 300 s after 3 failures in a row")
+
+
 async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason(
     cache_dir: Path,
 ) -> None:

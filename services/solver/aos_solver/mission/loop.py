@@ -364,10 +364,12 @@ class Mission:
     def _take_failure(
         self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, now_s: float
     ) -> str:
+        # A response that the decision's own documents do not know is nonsense; others may have known it.
+        is_unknown = update.is_foreign and outcome.status == "observed"
         said = self._failures.take(
             decision,
             outcome,
-            is_excluded=update.is_excluded,
+            is_excluded=update.is_excluded or (is_unknown and decision.model_digest == self._model.digest),
             surprise=update.surprise,
             now_s=now_s,
             announced=self._ports.announced,
