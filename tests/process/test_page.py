@@ -151,6 +151,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     expect(page.locator(".phase")).to_contain_text("Holding")
     page.get_by_role("button", name="Do listen").click()
     expect(page.locator(".decision .sentence")).to_contain_text("was asked for by a person")
+    expect(page.get_by_role("button", name="Leave out open(door=left_door)")).to_be_enabled()
     page.get_by_role("button", name="Stop").click()
     expect(page.locator(".phase")).to_contain_text("Cancelled")
     expect(page.get_by_role("button", name="Stop")).to_have_count(0)

@@ -31,11 +31,16 @@ def _verdict(why: Why) -> str:
     if not why.is_close:
         return f"{head}: margin {_worth(why.margin, why.margin_stderr)}"
     more = (
-        f"about {why.simulations_to_tell:,} simulations would tell"
+        f"about {_rounded(why.simulations_to_tell):,} simulations would tell"
         if why.simulations_to_tell
         else ("no number of simulations is sure to tell")
     )
     return f"{head}: too close to call, {more}"
+
+
+def _rounded(number: int) -> int:
+    """Two digits: nobody knows more of what a search will need."""
+    return int(float(f"{number:.2g}"))
 
 
 def _worth(value: float, stderr: float) -> str:

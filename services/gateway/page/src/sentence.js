@@ -36,7 +36,7 @@ function came(step) {
   const expected = likely.map(([response, share], i) => html`${i ? ", " : ""}<span class="response">${response}</span> ${percent(share)}`);
   if (!step.status) {
     const how = progress.value;
-    return html`Expected ${expected}. ${how && how.id?.step === step.step ? `${how.state}${how.progress ? `, ${percent(how.progress)}` : ""}${how.text ? `: ${how.text}` : ""}` : html`<span class="waiting">It is running.</span>`}`;
+    return html`Expected ${expected}. ${how && how.id?.step === step.step && (how.progress || how.text) ? `It is running${how.progress ? `, ${percent(how.progress)}` : ""}${how.text ? `: ${how.text}` : ""}.` : html`<span class="waiting">It is running.</span>`}`;
   }
   if (step.status !== "observed") return html`Expected ${expected}. Nothing was observed: <b>${step.status.replace("_", " ")}</b>.`;
   const surprise = step.impossible ? "The model held that impossible." : `Surprise ${plain(step.surprise)}.`;

@@ -51,8 +51,10 @@ export const alarms = computed(() => {
 
 // An outcome, the next decision and the states around them come within milliseconds, and are drawn together.
 const TOGETHER_MS = 30;
+const MOST_LOOKS = 3;
 
 let source = null;
+let looks = 0;
 let waiting = [];
 let isFlushing = false;
 
@@ -126,6 +128,7 @@ function forget() {
   source?.close();
   source = null;
   waiting = [];
+  looks = 0;
   records.clear();
   batch(() => {
     mission.value = state.value = progress.value = successor.value = loadedIn.value = null;
@@ -214,7 +217,9 @@ function takeRows(events) {
     if (both.decided || !full.outcome) records.set(row.step, both);
     if (full.outcome) {
       progress.value = null;
-      if (!pictures.value.includes(row.step) && pictures.value.length) pictures.value = [...pictures.value, row.step];
+      // Most worlds have no camera: who sees no picture after a few steps asks no more.
+      if (!pictures.value.length && looks++ < MOST_LOOKS) loadPictures(full.mission);
+      else if (pictures.value.length && !pictures.value.includes(row.step)) pictures.value = [...pictures.value, row.step];
     }
   }
   steps.value = all;

@@ -33,7 +33,7 @@ export function System() {
     <${Card} id="logs" title="Logs" className="wide">
       <div class="files" role="tablist" aria-label="Processes">
         ${(processes?.services ?? []).map((each) => html`<button role="tab" aria-selected=${each.service === log} onClick=${() => setShown(each.service)}>
-          ${view.is_running && html`<i class=${`presence ${services.value.get(each.service) ? "is-there" : ""}`} title=${services.value.get(each.service) ? "on the bus" : "not on the bus"}></i>`}${each.service}</button>`)}
+          ${view.is_running && services.value.has(each.service) && html`<i class=${`presence ${services.value.get(each.service) ? "is-there" : ""}`} title=${services.value.get(each.service) ? "on the bus" : "not on the bus"}></i>`}${each.service}</button>`)}
       </div>
       <pre class="source log" tabindex="0" aria-label=${`Log of ${log}`}>${text || "The log is empty."}</pre>
       <${Findings} problem=${problem} />
@@ -47,7 +47,7 @@ export function System() {
           <div><dt>Directory</dt><dd class="path">${run.directory}</dd></div>
           <div><dt>Seed</dt><dd>${view.mission?.seed ?? run.seed}</dd></div>
           ${run.is_played && html`<div><dt>Skills</dt><dd>played by their documents</dd></div>`}
-          ${run.sandbox && html`<div><dt>Documents</dt><dd>${run.sandbox}</dd></div>`}
+          ${run.sandbox && html`<div><dt>Sandbox</dt><dd>${run.sandbox}</dd></div>`}
         </dl>`}
         ${(processes?.ends ?? []).map((end) => html`<p class="aside"><b>${end.name}</b> ended after ${end.after_s.toFixed(1)} s, ${end.how}: ${end.then}</p>`)}
       <//>

@@ -1,8 +1,8 @@
 // The values of the actions at a step: an estimate with its error, and what is proven.
-import { html, useState, useWidth, width } from "./ui.js";
+import { html, useEffect, useState, useWidth, width } from "./ui.js";
 import { briefAction, isNumber, signed } from "./format.js";
-import { at, record } from "./store.js";
-import { OfAction } from "./steering.js";
+import { at, index, loadRecord, record, records, recordsChanged, steps } from "./store.js";
+import { canSteer, OfAction } from "./steering.js";
 
 const SHOWN = 8;
 const ROW = 30;
@@ -22,10 +22,22 @@ export function Values() {
       ${shown.map((each) => html`<${Row} key=${each.action} each=${each} scale=${scale} size=${size} found=${found} />`)}
     </ol>
     ${sorted.length > SHOWN && html`<button class="link" onClick=${() => setShowsAll(!showsAll)}>${showsAll ? "Show fewer" : `Show all ${sorted.length}`}</button>`}
-    ${!sorted.length && html`<p class="empty">${found.planner ? `${found.planner} gives no values.` : "There are no values."}</p>`}
+    ${!sorted.length && html`<p class="empty">${found.planner ? `${found.planner} gives no values.` : "Nothing was searched for this action."}</p>`}
+    ${!sorted.length && canSteer() && html`<${WithoutValues} />`}
     ${Object.entries(found.set_aside ?? {}).map(([skill, why]) => html`<p class="aside"><b>${skill}</b> is set aside: ${why}</p>`)}
     ${(found.constraints ?? []).map((each) => html`<p class="aside">Never <code>${each.never}</code>: risks ${each.risk.toPrecision(2)} of ${each.left.toPrecision(2)} that are left.</p>`)}
   </div>`;
+}
+
+// What a person may do where the step has no values: the actions of the last decision that has some.
+function WithoutValues() {
+  const last = steps.value.slice(0, index.value).findLast((each) => each.actions > 0)?.step;
+  useEffect(() => {
+    if (last) loadRecord(last);
+  }, [last]);
+  recordsChanged.value;
+  const names = (records.get(last)?.decided?.actions ?? []).map((each) => each.action);
+  return html`<ol>${names.map((name) => html`<li class="value" key=${name}><span class="value-head"><span class="value-name" title=${name}>${briefAction(name)}</span><${OfAction} action=${name} /></span></li>`)}</ol>`;
 }
 
 function Row({ each, scale, size, found }) {

@@ -1,6 +1,6 @@
 // Why a decision was made: the margin and its lines of the documents, what each response leads to, and the beliefs at
 // which another action wins. The answer is computed when it is asked for.
-import { Card, Findings, html, useEffect, useState, useWidth } from "./ui.js";
+import { Card, Findings, html, useEffect, useState, useWidth, width } from "./ui.js";
 import { read, write, hasToken } from "./api.js";
 import { briefAction, chance, percent, plain, signed } from "./format.js";
 import { at, record } from "./store.js";
@@ -10,12 +10,16 @@ import { Tree } from "./tree.js";
 const known = new Map();
 // What a person has asked for need not be the better one now.
 const elsewhere = (why) => (why.margin < 0 ? why.action : why.other);
+const isPlanned = (why) => ["planner", "operator", "script"].includes(why.chosen_by);
+// A solver answers without the lines while it compiles the model with marks at them.
+const isWhole = (why) => Boolean(why.terms?.length) || !why.remark;
 const asker = (why) => ({ operator: ", which an operator has asked for", script: ", which a script has asked for" })[why.chosen_by] ?? "";
 
 export function Why() {
   const [instead, setInstead] = useState("");
   const [found, setFound] = useState(null);
   const [problem, setProblem] = useState(null);
+  const [asked, setAsked] = useState(0);
   const step = at.value?.step;
   const { name } = route.value;
   useEffect(() => setInstead(""), [name, step]);
@@ -31,7 +35,7 @@ export function Why() {
         read(path).then(
           (why) => {
             // Before the outcome is there, it does not say what was seen.
-            if (at.value?.status) known.set(path, why);
+            if (at.value?.status && isWhole(why)) known.set(path, why);
             if (isWanted) setFound(why);
           },
           (error) => isWanted && setProblem(error),
@@ -42,7 +46,7 @@ export function Why() {
       isWanted = false;
       clearTimeout(soon);
     };
-  }, [name, step, instead]);
+  }, [name, step, instead, asked]);
   if (!step) return html`<p class="empty">There is no decision yet.</p>`;
   const others = (record.value?.decided?.actions ?? []).map((each) => each.action).filter((each) => each !== at.value.action);
   return html`<div class="why" aria-busy=${!found && !problem}>
@@ -54,6 +58,7 @@ export function Why() {
     <${Findings} problem=${problem} />
     ${!found && !problem && html`<p class="empty">An engine of its own is brought to this step…</p>`}
     ${found && html`<${Answer} why=${found} />`}
+    ${found && !isWhole(found) && html`<p><button class="link" onClick=${() => setAsked(asked + 1)}>Ask again</button></p>`}
     ${step && html`<${Tree} key=${`tree ${name} ${step}`} name=${name} step=${step} seen=${at.value.seen} />`}
     ${step && html`<${WhatIf} key=${`${name} ${step}`} name=${name} step=${step} />`}
   </div>`;
@@ -69,7 +74,7 @@ const Answer = ({ why }) => html`<div class="columns even">
 
 function verdict(why) {
   if (why.is_close) {
-    const more = why.simulations_to_tell ? `about ${why.simulations_to_tell.toLocaleString("en")} simulations would tell` : "no number of simulations is sure to tell";
+    const more = why.simulations_to_tell ? `about ${Number(why.simulations_to_tell.toPrecision(2)).toLocaleString("en")} simulations would tell` : "no number of simulations is sure to tell";
     return `Too close to call against ${why.other}: ${more}.`;
   }
   const error = why.margin_stderr >= 0.005 ? ` ± ${plain(why.margin_stderr)}` : "";
@@ -82,7 +87,7 @@ function Terms({ why }) {
   const rest = (why.rest ?? 0) - (why.other_rest ?? 0);
   if (Math.abs(rest) > 5e-4) terms.push({ place: "later steps", margin: rest });
   const most = Math.max(...terms.map((each) => Math.abs(each.margin)), 1e-9);
-  const room = Math.max(80, size - (size < 420 ? 190 : 250));
+  const room = Math.max(80, size - (width.value < 720 ? 70 : 250));
   const x = (value) => room / 2 + (value / most) * (room / 2 - 2);
   const address = addressOf(route.value.name, "documents", route.value.step);
   return html`<div class="terms" ref=${ref}>
@@ -106,7 +111,7 @@ function Flips({ why }) {
   const x = (value) => value * room;
   const flips = (why.flips ?? []).slice(0, 5);
   return html`<div class="flips" ref=${ref}>
-    ${!flips.length && html`<p class="empty">${why.remark || `No probability of one value makes ${elsewhere(why)} better.`}</p>`}
+    ${!flips.length && html`<p class="empty">${isPlanned(why) ? `No probability of one value makes ${elsewhere(why)} better, as far as was looked.` : `It was chosen by ${why.chosen_by}, whatever is believed.`}</p>`}
     ${flips.map((flip) => {
       const rises = (flip.low + flip.high) / 2 > flip.now;
       const [from, to] = rises ? [flip.high, 1] : [0, flip.low];
