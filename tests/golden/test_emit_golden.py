@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import pytest
 from scripted_models import bundle_project
 
 from aos_solver.emission.emit import emit
@@ -15,12 +14,11 @@ from aos_solver.emission.outline import outline
 GOLDEN = Path(__file__).parent / "cpp"
 
 
-@pytest.mark.parametrize("bundle", ["armadillo-rough", "armadillo-finer"])
-def test_the_emitted_model_is_the_promoted_one(bundles: Path, bundle: str) -> None:
-    program, _ = lower(bundle_project(bundles / bundle))
+def test_the_emitted_model_is_the_promoted_one(bundles: Path) -> None:
+    program, _ = lower(bundle_project(bundles / "armadillo-finer"))
     assert program is not None
-    check(GOLDEN / f"{bundle}.cpp", emit(program).cpp)
-    check(GOLDEN / f"{bundle}.txt", outline(program))
+    check(GOLDEN / "armadillo-finer.cpp", emit(program).cpp)
+    check(GOLDEN / "armadillo-finer.txt", outline(program))
 
 
 def test_emission_gives_the_same_bytes_again(bundles: Path) -> None:
