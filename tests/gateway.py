@@ -22,6 +22,7 @@ __all__ = [
     "environment",
     "gateway",
     "played",
+    "running",
     "slow_deploy_file",
     "slow_system",
     "worn_system",
@@ -194,19 +195,27 @@ def environment(folder: Path, cache: Path) -> dict[str, str]:
 @contextmanager
 def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
     """A gateway of the runs and deploy files in a folder."""
+    port = () if "--port" in options else ("--port", "0")
+    with running(folder, cache, "aos", "serve", *port, *options) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline()
+        found = re.match(r"http://[^:]+:(\d+)/#/\S*\?token=(\S+)", address)
+        assert found is not None, address
+        yield Gateway(int(found[1]), found[2], process, folder)
+
+
+@contextmanager
+def running(folder: Path, cache: Path, command: str, *options: str | Path) -> Iterator[subprocess.Popen[str]]:
+    """A command of ours in a folder, with its output in a pipe. It is told to stop at the block's end."""
     process = subprocess.Popen(
-        [BIN / "aos", "serve", *(() if "--port" in options else ("--port", "0")), *options],
+        [BIN / command, *options],
         cwd=folder,
         env=environment(folder, cache),
         stdout=subprocess.PIPE,
         text=True,
     )
     try:
-        assert process.stdout is not None
-        address = process.stdout.readline()
-        found = re.match(r"http://[^:]+:(\d+)/#/\S*\?token=(\S+)", address)
-        assert found is not None, address
-        yield Gateway(int(found[1]), found[2], process, folder)
+        yield process
     finally:
         process.terminate()
         process.communicate(timeout=HANG_S)
@@ -267,16 +276,6 @@ def worn_system(folder: Path, cache: Path) -> Iterator[Path]:
 @contextmanager
 def _up(folder: Path, cache: Path, deploy_file: str, *options: str) -> Iterator[Iterator[dict[str, Any]]]:
     """The events of a system, which ends with the block."""
-    process = subprocess.Popen(
-        [BIN / "aos-up", deploy_file, "--json", *options],
-        cwd=folder,
-        env=environment(folder, cache),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    try:
+    with running(folder, cache, "aos-up", deploy_file, "--json", *options) as process:
         assert process.stdout is not None
         yield map(json.loads, process.stdout)
-    finally:
-        process.terminate()
-        process.communicate(timeout=HANG_S)

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.counters import counting
 from tests.hostile.cases import COMPILED, MAPPINGS, MODELS
 from tests.kept_cache import link_engines
 
@@ -29,36 +30,12 @@ _DID_NOT_END = "(it did not end when it was told to)"
 _HARMLESS = ("prints 1 GB",)
 """This is no fault: what is printed beyond the limit is dropped."""
 
-_ENVIRONMENT = """project: cell
-horizon: 2
-discount: 0.9
-
-state_variable: int count
-
-initial_belief:
-state.count = 0;
-
-reward_code:
-if (state.count >= 100000) { __reward = 10; __isGoalState = true; }
-"""
-_MODEL = """project: cell
-
-dynamic_model:
-state__.count = state.count + 1;
-CODE
-__moduleResponse = done;
-"""
-_MAPPING = """project: cell
-
-module_activation: skill
-path: /SKILL
-response: done
-response_rule: True
-local_variable: value
+_RESULT = """local_variable: value
 from_ros_service_response: true
 code:
 CODE
 """
+"""The rest of a mapping, whose code is Python."""
 _DEPLOY = """aos: 1
 robot: cell
 bundles: [{bundles}]
@@ -165,12 +142,14 @@ class Playground:
         hostile.mkdir(exist_ok=True)
         (place / "cell.yaml").write_text(_DEPLOY.format(bundles="good"))
         (place / "robot.py").write_text(_ROBOT)
-        (good / "cell.ef").write_text(_ENVIRONMENT)
-        (good / "step.sd").write_text(_MODEL.replace("CODE\n", ""))
-        (good / "step.am").write_text(_MAPPING.replace("SKILL", "step").replace("CODE", _GOOD))
+        files = counting("cell", steps="100000")
+        (good / "cell.ef").write_text(files["cell.ef"])
+        (good / "step.sd").write_text(files["step.sd"])
+        (good / "step.am").write_text(files["step.am"] + _RESULT.replace("CODE", _GOOD))
         model, mapping = ("", code) if kind == "mapping" else (code, _GOOD)
-        (hostile / "reach.sd").write_text(_MODEL.replace("CODE", model))
-        (hostile / "reach.am").write_text(_MAPPING.replace("SKILL", "reach").replace("CODE", mapping))
+        files = counting("cell", "reach", code=model)
+        (hostile / "reach.sd").write_text(files["reach.sd"])
+        (hostile / "reach.am").write_text(files["reach.am"] + _RESULT.replace("CODE", mapping))
         if kind == "mapping" and not apart:
             # Then the mission has no other skill to choose.
             (good / "step.sd").unlink()

@@ -5,13 +5,11 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from gateway import BIN, Gateway, environment, gateway, played, slow_system
-from processes import HANG_S
+from gateway import Gateway, gateway, played, running, slow_system
 
 
 def samples(served: Gateway) -> dict[str, float]:
@@ -28,21 +26,10 @@ def samples(served: Gateway) -> dict[str, float]:
 @contextmanager
 def resumed(run: Path, cache_dir: Path) -> Iterator[None]:
     """Somebody takes a run up, until the block ends."""
-    folder = run.parents[1]
-    process = subprocess.Popen(
-        [BIN / "aos-up", "--resume", run, "--json"],
-        cwd=folder,
-        env=environment(folder, cache_dir),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    try:
+    with running(run.parents[1], cache_dir, "aos-up", "--resume", run, "--json") as process:
         assert process.stdout is not None
         next(line for line in process.stdout if json.loads(line)["event"] == "decision")
         yield
-    finally:
-        process.terminate()
-        process.communicate(timeout=HANG_S)
 
 
 def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cache_dir: Path) -> None:

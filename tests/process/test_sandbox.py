@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from counters import counting
 from hostile.cases import MODELS
 from models import built_text, engine_of
 from processes import COMMAND_S
@@ -17,37 +18,10 @@ from aos_runtime.sandbox.trial import what_a_confined_program_can
 
 needs_sandbox = pytest.mark.skipif(not sandbox_support().is_whole, reason="needs a kernel with a sandbox")
 
-ENVIRONMENT = """project: lamp
-horizon: 3
-discount: 0.9
-
-state_variable: int count
-
-initial_belief:
-state.count = 0;
-
-reward_code:
-if (state.count > 2) __isGoalState = true;
-"""
-SKILL = """project: lamp
-
-dynamic_model:
-state__.count = state.count + 1;
-CODE
-__moduleResponse = clicked;
-"""
-MAPPING = """project: lamp
-response: clicked
-response_rule: True
-
-module_activation: skill
-path: /press
-"""
-
 
 def lamp(code: str) -> dict[str, str]:
     """The documents of a lamp whose skill runs the code; it begins in line 5 of press.sd."""
-    return {"lamp.ef": ENVIRONMENT, "press.sd": SKILL.replace("CODE", code), "press.am": MAPPING}
+    return counting("lamp", "press", code=code, steps="3")
 
 
 @needs_sandbox

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import zenoh
+from tests.counters import counting
 
 from aos_deploy.run_directory import RunDirectory
 from aos_runtime.credentials import credential_of_run
 
-from .counting import counting
 from .routed import opened
 
 __all__ = ["ROBOT", "STEPS", "Cell", "cell"]
@@ -28,7 +28,7 @@ STEPS = 8
 _PATIENCE_S = 600.0
 
 _FILES = {
-    **counting("cell"),
+    **{f"documents/{name}": text for name, text in counting("cell").items()},
     "robot.py": """import asyncio
 from pathlib import Path
 

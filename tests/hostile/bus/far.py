@@ -15,7 +15,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from .counting import counting
+from tests.counters import counting
+
 from .wire import Wire, wire
 
 __all__ = ["Cut", "FarMission", "far_mission", "is_possible"]
@@ -27,7 +28,7 @@ _START_S = 900.0
 _STEPS = 100_000
 
 _FILES = {
-    **counting("far"),
+    **{f"documents/{name}": text for name, text in counting("far").items()},
     "far_robot.py": """import asyncio
 from pathlib import Path
 
