@@ -60,7 +60,7 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
     <${A} problem=${qt.value} />
   </div>`}var Bt=({action:e})=>gt()&&a`<span class="of-action">
     <button class="quiet" disabled=${!!be.value} onClick=${()=>ge("act",{actions:[e]})} aria-label=${`Do ${e}`}>Do</button>
-    <button class="quiet" disabled=${!!be.value} onClick=${()=>ge("leave_out",{name:e})} aria-label=${`Leave out ${e}`}>Leave out</button>
+    ${!(e in(E.value?.left_out??{}))&&a`<button class="quiet" disabled=${!!be.value} onClick=${()=>ge("leave_out",{name:e})} aria-label=${`Leave out ${e}`}>Leave out</button>`}
   </span>`;function ts(){let e=Object.entries(E.value?.left_out??{}),t=E.value?.asked??[];return!e.length&&!t.length?null:a`<div class="left-out">
     ${t.length>0&&a`<p class="aside">Still to come: ${t.map(n=>a`<span class="chip">${n}</span> `)}</p>`}
     ${e.map(([n,s])=>a`<p class="aside"><span class="chip">${n}</span> is left out by ${s} ${gt()&&a`<button class="link" onClick=${()=>ge("take_back",{name:n})}>Take it back</button>`}</p>`)}

@@ -43,7 +43,7 @@ export function Controls() {
 export const OfAction = ({ action }) =>
   canSteer() && html`<span class="of-action">
     <button class="quiet" disabled=${Boolean(busy.value)} onClick=${() => steer("act", { actions: [action] })} aria-label=${`Do ${action}`}>Do</button>
-    <button class="quiet" disabled=${Boolean(busy.value)} onClick=${() => steer("leave_out", { name: action })} aria-label=${`Leave out ${action}`}>Leave out</button>
+    ${!(action in (state.value?.left_out ?? {})) && html`<button class="quiet" disabled=${Boolean(busy.value)} onClick=${() => steer("leave_out", { name: action })} aria-label=${`Leave out ${action}`}>Leave out</button>`}
   </span>`;
 
 export function LeftOut() {

@@ -128,7 +128,8 @@ class Chooser:
         choice = await self._choose(model, step, belief)
         left_out = self._left_out()
         if left_out and isinstance(choice, Ended) and choice.ending in _GIVES_UP:
-            why = "; ".join(dict.fromkeys([choice.remark, *left_out.values()]))
+            others = [reason for reason in left_out.values() if reason not in choice.remark]
+            why = "; ".join([choice.remark, *others])
             return Held(f"the mission holds: {why}", for_operator=True)
         return choice
 
