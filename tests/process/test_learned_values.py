@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+from exam.bundles import told_of_bundle
 from mappings import mapping_text
 from models import built_text, engine_of
 
@@ -171,3 +173,16 @@ async def test_values_are_learned_where_tables_of_few_variables_hold_them_and_wi
 
 async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much(cache_dir: Path) -> None:
     assert "learned" not in await _why(BERRIES, cache_dir)
+
+
+async def test_what_missions_return_is_told_where_values_are_learned(
+    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The tree promises that all is seen, some 20 more than a robot earns that has to open box after box."""
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    for name, text in COINS.items():
+        (tmp_path / name).write_text(text)
+    told = await told_of_bundle(tmp_path, "pomcp", missions=6, seed=1, seconds=None, simulations=300)
+    assert told.returned < -15
+    assert abs(told.value - told.returned) < 6
+    assert abs(told.value - told.returned) < 2 * told.error

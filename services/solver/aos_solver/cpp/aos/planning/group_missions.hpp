@@ -3,6 +3,8 @@
 // A group of states of the belief follows one policy: the action that is best on average over the group (QMDP: Littman,
 // Cassandra and Kaelbling, 1995), with the whole horizon to go at each decision. A group splits by what is observed. States
 // with rare observations stay together, since a policy that followed so few states would know what no robot can know.
+// Half of the states choose the actions, and the others tell what is returned: what is best for a few drawn states is too
+// good for these.
 // The robot of a mission can do all that, and it takes next to no time. So a mission that plans can be expected to
 // return as much, or more.
 //
@@ -116,6 +118,8 @@ class GroupMissions {
       losses_.push_back(listed_ != nullptr ? 0 : values_->value(state, horizon));
     });
     ends_.assign(1, followers_.size());
+    chooses_.clear();
+    for (std::size_t place = 0; place < losses_.size(); ++place) chooses_.push_back(place % 2 == 0);
   }
   std::uint32_t number_of(const State& state) const { return listed_ != nullptr ? listed_->number_of(state) : no_state; }
 
@@ -137,16 +141,33 @@ class GroupMissions {
   int best_on_average(std::size_t first, std::size_t last) {
     sums_.assign(action_count(), 0);
     worths_.resize(action_count());
-    const std::size_t stride = std::max<std::size_t>((last - first) / asked, 1);
-    for (std::size_t i = first; i < last; i += stride) {
+    find_choosers(first, last);
+    if (choosers_.empty()) return static_cast<int>(random_.uniform() * static_cast<double>(action_count()));
+    const std::size_t stride = std::max<std::size_t>(choosers_.size() / asked, 1);
+    for (std::size_t i = 0; i < choosers_.size(); i += stride) {
+      const Follower& chooser = *choosers_[i];
       if (listed_ != nullptr) {
-        listed_->add_action_values(followers_[i].number, sums_);
+        listed_->add_action_values(chooser.number, sums_);
         continue;
       }
-      values_->advantages(followers_[i].state, worths_.data(), random_);
+      values_->advantages(chooser.state, worths_.data(), random_);
       for (std::size_t a = 0; a < sums_.size(); ++a) sums_[a] += worths_[a];
     }
     return static_cast<int>(std::max_element(sums_.begin(), sums_.end()) - sums_.begin());
+  }
+
+  // Those of a group that choose. Where all of them have ended, every second one of the others does, and tells nothing any more.
+  // One that is left alone knows nothing.
+  void find_choosers(std::size_t first, std::size_t last) {
+    choosers_.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      if (chooses_[followers_[i].place]) choosers_.push_back(&followers_[i]);
+    }
+    if (!choosers_.empty()) return;
+    for (std::size_t i = first + 1; i < last; i += 2) {
+      chooses_[followers_[i].place] = true;
+      choosers_.push_back(&followers_[i]);
+    }
   }
 
   // A group takes a step and splits.
@@ -181,11 +202,11 @@ class GroupMissions {
   }
 
   void settle() {
-    const auto count = static_cast<double>(losses_.size());
+    const auto count = static_cast<double>(std::count(chooses_.begin(), chooses_.end(), false));
     loss_ = 0;
-    for (const double loss : losses_) loss_ += loss / count;
     double squares = 0;
-    for (const double loss : losses_) squares += (loss - loss_) * (loss - loss_);
+    for (std::size_t i = 0; i < losses_.size(); ++i) loss_ += chooses_[i] ? 0 : losses_[i] / count;
+    for (std::size_t i = 0; i < losses_.size(); ++i) squares += chooses_[i] ? 0 : (losses_[i] - loss_) * (losses_[i] - loss_);
     loss_error_ = std::sqrt(squares / count / std::max(count - 1, 1.0));
     is_known_ = count > 0;
   }
@@ -207,6 +228,8 @@ class GroupMissions {
   std::vector<std::size_t> next_ends_;
   std::vector<Follower> group_;
   std::vector<Follower> rare_;
+  std::vector<bool> chooses_;  // by place
+  std::vector<const Follower*> choosers_;
   std::vector<double> losses_;
   std::vector<double> sums_;
   std::vector<double> worths_;
