@@ -14,7 +14,7 @@ from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
-from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.belief_answers import ExportedBelief
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.beginning import begin_with

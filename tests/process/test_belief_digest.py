@@ -13,7 +13,7 @@ from models import built_text, engine_of
 from processes import descendants, until_ended
 
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.belief_answers import ExportedBelief
 from aos_solver.child.engine import Engine
 
 STEPS = 12

@@ -13,7 +13,7 @@ from models import built_text
 from processes import HANG_S
 
 from aos_protocol.errors import ModelError
-from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.belief_answers import ExportedBelief
 from aos_solver.child.command_line import command_line
 from aos_solver.child.engine import Engine, Restriction
 

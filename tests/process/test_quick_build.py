@@ -10,7 +10,8 @@ from scripted_models import bundle_project, lowered
 
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.building.project_build import emitted_model
-from aos_solver.child.answers import BeliefUpdate, Plan
+from aos_solver.child.answers import Plan
+from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.child.engine import Engine
 
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_protocol.errors import AosError, IntractableError
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.belief_answers import ExportedBelief
 from aos_solver.child.engine import Engine
 
 __all__ = ["Lattice", "Layers", "lattice_of"]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_solver.child.answers import WorldSteps
+from aos_solver.child.world_answers import WorldSteps
 from aos_solver.emission.program import Observed
 
 __all__ = ["NumberColumns", "Numbers"]

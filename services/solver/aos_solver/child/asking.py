@@ -18,14 +18,8 @@ from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import (
-    BeliefUpdate,
-    Believed,
-    Conditioned,
-    EngineDescription,
-    EngineFault,
-    Progress,
-)
+from aos_solver.child.answers import EngineDescription, EngineFault, Progress
+from aos_solver.child.belief_answers import BeliefUpdate, Believed, Conditioned
 from aos_solver.child.belief_draws import BeliefDraws
 from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.engine_child import (

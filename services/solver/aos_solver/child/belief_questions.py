@@ -10,16 +10,16 @@ import msgspec
 
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.answers import (
+from aos_solver.child.answers import EngineFault
+from aos_solver.child.asking import Asking, Done
+from aos_solver.child.belief_answers import (
     BeliefCount,
     BeliefUpdate,
     Conditioned,
-    EngineFault,
     ExportedBelief,
     ExportedBeliefs,
     Prediction,
 )
-from aos_solver.child.asking import Asking, Done
 from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.observed_numbers import numbers_field

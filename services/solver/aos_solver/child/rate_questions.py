@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from aos_solver.child.answers import SampleCount
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
 from aos_solver.child.command_line import command_line
+from aos_solver.child.world_answers import SampleCount
 
 __all__ = ["RateQuestions", "Stepping"]
 

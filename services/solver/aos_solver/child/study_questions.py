@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.answers import Believed, ExactValues, RewardTerms
+from aos_solver.child.answers import ExactValues, RewardTerms
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking, Done
+from aos_solver.child.belief_answers import Believed
 from aos_solver.child.command_line import command_line
 from aos_solver.child.mission_questions import EXACT_BELIEF_BUDGET, EXACT_TIME_S
 

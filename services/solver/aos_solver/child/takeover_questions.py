@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, Marginal
-from aos_solver.child.answers import BeliefCount, BeliefUpdate
 from aos_solver.child.asking import Asking, Done
+from aos_solver.child.belief_answers import BeliefCount, BeliefUpdate
 from aos_solver.child.command_line import command_line
 from aos_solver.emission.layout import Common, Layout
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Sequence
 
-from aos_solver.child.answers import EngineStep, Worlds, WorldStart, WorldState, WorldStep, WorldSteps
 from aos_solver.child.asking import Asking
 from aos_solver.child.command_line import command_line
 from aos_solver.child.observed_numbers import numbers_by_name
+from aos_solver.child.world_answers import EngineStep, Worlds, WorldStart, WorldState, WorldStep, WorldSteps
 
 __all__ = ["WorldQuestions"]
 

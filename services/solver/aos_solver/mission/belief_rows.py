@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from aos_protocol.messages import BeliefRow, BeliefSummary, WeightedStates
-from aos_solver.child.answers import ExportedBelief, ExportedBeliefs
+from aos_solver.child.belief_answers import ExportedBelief, ExportedBeliefs
 from aos_solver.mission.ports import Record
 from aos_solver.mission.takeover import RunningModel
 

@@ -23,7 +23,7 @@ from aos_protocol.messages import (
     Outcome,
     Steer,
 )
-from aos_solver.child.answers import BeliefUpdate
+from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
 from aos_solver.mission.choosing import Choice, Chooser, Ended, Held, Refused

@@ -15,7 +15,7 @@ from aos_protocol.messages import (
     ModelDrift,
     Outcome,
 )
-from aos_solver.child.answers import BeliefUpdate
+from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.choosing import Choice
 from aos_solver.mission.drift import text_of
 from aos_solver.mission.endings import Ending

@@ -15,7 +15,8 @@ import numpy as np
 
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ChosenBy
-from aos_solver.child.answers import ExportedBelief, Plan
+from aos_solver.child.answers import Plan
+from aos_solver.child.belief_answers import ExportedBelief
 from aos_solver.child.engine import Engine
 from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
