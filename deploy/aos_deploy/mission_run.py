@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import os
-import signal
 from collections.abc import Callable
 from contextlib import aclosing
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import Protocol
 
 import msgspec
 
@@ -46,7 +44,7 @@ from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 
-__all__ = ["MissionRun", "run_until_interrupted"]
+__all__ = ["MissionRun"]
 
 _END_NOTICE_S = 5.0
 CAUSE_NOTICE_S = 0.5
@@ -322,49 +320,6 @@ class MissionRun:
 
     def _elapsed_s(self) -> float:
         return round(self._clock.monotonic_s() - self._begun_s, 3)
-
-
-_STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-
-
-class _End(Protocol):
-    @property
-    def exit_code(self) -> int: ...
-
-
-class Stoppable(Protocol):
-    """A run that lasts until it ends or is cancelled, and that can be ended at once."""
-
-    async def run(self) -> _End: ...
-
-    def kill(self) -> None: ...
-
-
-async def run_until_interrupted(mission: Stoppable) -> int:
-    """The exit code. The first signal stops everything in order, any further one at once.
-
-    A signal after the end changes nothing: the process ignores it from then on.
-    """
-    loop = asyncio.get_running_loop()
-    work = loop.create_task(mission.run())
-    has_interrupted = False
-
-    def interrupt() -> None:
-        nonlocal has_interrupted
-        if has_interrupted:
-            mission.kill()
-        else:
-            has_interrupted = True
-            work.cancel()
-
-    for number in _STOPPING:
-        loop.add_signal_handler(number, interrupt)
-    try:
-        return (await work).exit_code
-    finally:
-        for number in _STOPPING:
-            loop.remove_signal_handler(number)
-            signal.signal(number, signal.SIG_IGN)
 
 
 def _nothing() -> None:

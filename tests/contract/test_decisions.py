@@ -20,7 +20,8 @@ from aos_protocol.messages import (
     MissionState,
 )
 from aos_runtime.bus import Bus
-from aos_runtime.client import AosClient, DecisionFeed
+from aos_runtime.client import AosClient
+from aos_runtime.decision_feed import DecisionFeed
 
 
 def record(sequence: int, mission: str = "m") -> DecisionRecord:

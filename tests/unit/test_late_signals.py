@@ -10,7 +10,7 @@ from processes import HANG_S
 
 RUN = """
 import asyncio, os, signal, sys
-from aos_deploy.mission_run import run_until_interrupted
+from aos_deploy.interruption import run_until_interrupted
 
 class Over:
     exit_code = 6

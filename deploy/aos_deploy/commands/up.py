@@ -97,8 +97,9 @@ def up(
     import asyncio  # For --help none of this is needed.
 
     from aos_deploy.deploy_file import read_deploy_file
+    from aos_deploy.interruption import run_until_interrupted
     from aos_deploy.living_runs import RUNS
-    from aos_deploy.mission_run import MissionRun, run_until_interrupted
+    from aos_deploy.mission_run import MissionRun
     from aos_deploy.needed_here import check_needed_here, check_sandbox
     from aos_deploy.run_directory import LATEST
     from aos_deploy.serve_run import ServeRun
