@@ -158,12 +158,13 @@ struct Tree {
   explicit Tree(const Belief& belief, int horizon) { obstacle = tree.prepare(belief, horizon); }
   std::vector<aos::ActionEstimate> searched(const Belief& belief, int horizon, std::uint64_t simulations) {
     aos::Sampler random{7};
-    tree.search({.simulations = simulations}, horizon, random, {});
+    tree.search_from_root({.simulations = simulations}, horizon, random, {});
     return tree.estimates(belief);
   }
   Space space;
   aos::MdpValues<Whispering> values{space};
-  aos::BeliefTree<Whispering> tree{space, values};
+  aos::GroupMissions<Whispering> missions;
+  aos::BeliefTree<Whispering> tree{space, values, missions};
   std::string obstacle;
 };
 

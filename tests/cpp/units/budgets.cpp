@@ -1,5 +1,5 @@
 // What a budget in simulations buys in each planner: budget.hpp. Work is counted here, and no clock is asked.
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 
 #include <initializer_list>
 #include <string>
@@ -35,11 +35,14 @@ struct Unlisted : TableModel {
 };
 
 // The steps that a planner takes of a prepared search.
-template <class Search>
-double steps_of(Search& search, const aos::Belief<Unlisted>& belief) {
+double steps_of(aos::Planner<Unlisted>& planner, const aos::Belief<Unlisted>& belief) {
+  const aos::BarredActions none;
+  const aos::Question<Unlisted> question{belief, {.simulations = simulations}, horizon, none};
   aos::Sampler random{1};
+  aos::Choosing choosing;
+  planner.prepare(question, random, choosing);
   Unlisted::steps = 0;
-  search.search(belief, {.simulations = simulations}, horizon, random);
+  planner.search(question, random, choosing.why);
   return static_cast<double>(Unlisted::steps);
 }
 
@@ -50,10 +53,9 @@ TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up t
   const auto belief = aos::Belief<Unlisted>::drawn(random);
   aos::StateSpace<Unlisted> space;
   aos::MdpValues<Unlisted> values{space};
-  aos::Pomcp<Unlisted> pomcp{space, values};
-  pomcp.prepare(belief, horizon, 1, random);
-  aos::Despot<Unlisted> despot{values};
-  despot.prepare(belief, horizon);
+  aos::GroupMissions<Unlisted> missions;
+  aos::Pomcp<Unlisted> pomcp{space, values, missions};
+  aos::Despot<Unlisted> despot{space, values, missions};
   const double of_pomcp = steps_of(pomcp, belief);
   const double of_despot = steps_of(despot, belief);
   EXPECT(of_pomcp < 3 * of_despot);
@@ -66,7 +68,7 @@ TEST("No planner takes much more than its budget in simulations, and POMCP takes
   aos::Sampler random{1};
   const auto belief = aos::Belief<TableModel>::initial(random);
   for (const PlannerKind kind : {PlannerKind::pomcp, PlannerKind::despot, PlannerKind::sarsop, PlannerKind::automatic}) {
-    aos::Planner<TableModel> planner;
+    aos::Planners<TableModel> planner;
     aos::Sampler own{1};
     const std::uint64_t taken = planner.search(kind, belief, {.simulations = simulations}, horizon, own);
     EXPECT(taken <= simulations * 11 / 10);
@@ -79,7 +81,7 @@ TEST("A search by SARSOP that has nothing left to search says where its bounds c
   TableModel::take(problem);
   aos::Sampler random{1};
   const auto belief = aos::Belief<TableModel>::initial(random);
-  aos::Planner<TableModel> planner;
+  aos::Planners<TableModel> planner;
   const auto search = [&] { return planner.search(PlannerKind::sarsop, belief, {.simulations = 100'000}, horizon, random); };
   search();
   EXPECT_EQUAL(search(), 0u);
@@ -106,7 +108,7 @@ TEST("A search by POMCP that ends all at once still comes to an end") {
   TableModel::take(problem);
   aos::Sampler random{1};
   const auto belief = aos::Belief<TableModel>::initial(random);
-  aos::Planner<TableModel> planner;
+  aos::Planners<TableModel> planner;
   EXPECT_EQUAL(planner.search(PlannerKind::pomcp, belief, {.simulations = 50}, horizon, random), 50u);
 }
 

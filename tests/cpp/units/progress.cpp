@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -26,7 +26,7 @@ std::uint64_t decided() {
   TableModel::take(tiger);
   aos::Sampler random{1};
   const auto belief = aos::Belief<TableModel>::initial(random);
-  aos::Planner<TableModel> planner;
+  aos::Planners<TableModel> planner;
   planner.search(aos::PlannerKind::sarsop, belief, {.simulations = 10}, tiger.horizon, random);
   return random.bits();
 }

@@ -16,7 +16,7 @@
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/exact.hpp"
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 #include "bisimulation.hpp"
 #include "flat.hpp"
 #include "point_based/online.hpp"
@@ -36,7 +36,7 @@ struct ClaimOptions {
 class Claims {
  public:
   using Belief = aos::Belief<TableModel>;
-  using Planner = aos::Planner<TableModel>;
+  using Planner = aos::Planners<TableModel>;
 
   Claims(const Problem& problem, ClaimOptions options)
       : problem_(problem), options_(options), flat_(problem, true), plain_(problem, false), random_(options.seed) {

@@ -24,7 +24,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 #include "flat.hpp"
 #include "problem.hpp"
 #include "table_model.hpp"
@@ -47,7 +47,7 @@ struct RegretOptions {
 class Regret {
  public:
   using Belief = aos::Belief<TableModel>;
-  using Planner = aos::Planner<TableModel>;
+  using Planner = aos::Planners<TableModel>;
 
   Regret(const Problem& problem, RegretOptions options)
       : problem_(problem), options_(std::move(options)), flat_(problem, true),

@@ -26,7 +26,7 @@
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/violations.hpp"
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 
 namespace aos {
 
@@ -37,7 +37,7 @@ class BeliefCommands {
 
   // `draws` is the seed of what the initial belief draws. `kept_beliefs` is the descriptor of KeptBeliefs. `search` follows
   // the changes of the belief.
-  BeliefCommands(std::uint64_t draws, ImpossiblePolicy policy, int kept_beliefs, Planner<Model>& search)
+  BeliefCommands(std::uint64_t draws, ImpossiblePolicy policy, int kept_beliefs, Planners<Model>& search)
       : random_(draws), policy_(policy), believed_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
 
   const Belief<Model>& belief() const { return believed_.belief(); }
@@ -348,7 +348,7 @@ class BeliefCommands {
   std::optional<Hypotheses> aside_;
   std::vector<Belief<Model>> incoming_;
   KeptBeliefs<Model> kept_;
-  Planner<Model>& search_;
+  Planners<Model>& search_;
 };
 
 }  // namespace aos

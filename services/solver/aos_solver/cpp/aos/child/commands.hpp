@@ -19,7 +19,7 @@
 #include "aos/child/watchdog.hpp"
 #include "aos/child/world_commands.hpp"
 #include "aos/model/values.hpp"
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 
 namespace aos {
 
@@ -149,7 +149,7 @@ class Commands {
     throw BadCommand{"unknown command: " + std::string{command}};
   }
 
-  Planner<Model> search_;
+  Planners<Model> search_;
   Beliefs beliefs_;
   Planning planning_;
   Studies studies_;

@@ -25,14 +25,14 @@
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/exact.hpp"
-#include "aos/planning/planner.hpp"
+#include "aos/planning/planners.hpp"
 
 namespace aos {
 
 template <class Model>
 class PlanningCommands {
  public:
-  PlanningCommands(BeliefCommands<Model>& beliefs, Planner<Model>& search) : beliefs_(beliefs), search_(search) {}
+  PlanningCommands(BeliefCommands<Model>& beliefs, Planners<Model>& search) : beliefs_(beliefs), search_(search) {}
 
   // The command's items are the numbers of the actions that cannot be carried out now. The skills that it names as
   // `without`, and the actions whose numbers are `without_actions`, are not there for the whole search.
@@ -42,7 +42,7 @@ class PlanningCommands {
     const std::vector<int> left = actions_left(left_out);
     if (left.empty()) throw BadCommand{"no action is left"};
     const typename Model::Without without{left_out};
-    if (!shorter_search_ || left != left_) shorter_search_ = std::make_unique<Planner<Model>>();
+    if (!shorter_search_ || left != left_) shorter_search_ = std::make_unique<Planners<Model>>();
     left_ = left;
     shorter_search_->forget();
     plan_with(*shorter_search_, json, command, left);
@@ -165,7 +165,7 @@ class PlanningCommands {
   }
 
   // Plans with the model's actions as they are now; `numbers` are those that they have in the documents.
-  void plan_with(Planner<Model>& search, JsonWriter& json, const Command& command, const std::vector<int>& numbers) {
+  void plan_with(Planners<Model>& search, JsonWriter& json, const Command& command, const std::vector<int>& numbers) {
     const auto start = std::chrono::steady_clock::now();
     const auto processor_start = processor_time();
     const Belief<Model>& belief = beliefs_.belief_for(command);
@@ -238,11 +238,11 @@ class PlanningCommands {
   }
 
   BeliefCommands<Model>& beliefs_;
-  Planner<Model>& search_;
+  Planners<Model>& search_;
   int planned_horizon_ = 0;
   bool planned_cautiously_ = false;
   std::vector<int> left_;
-  std::unique_ptr<Planner<Model>> shorter_search_;  // with the actions that are `left_`
+  std::unique_ptr<Planners<Model>> shorter_search_;  // with the actions that are `left_`
   std::optional<Pondered> pondered_;
   std::vector<std::uint64_t> pondered_simulations_;  // since the last plan
   std::optional<Listing<Model>> listing_;

@@ -23,6 +23,7 @@
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
@@ -31,6 +32,7 @@
 #include "aos/planning/sensed_belief.hpp"
 #include "aos/planning/sensing_tables.hpp"
 #include "aos/planning/state_space.hpp"
+#include "aos/planning/tree_planner.hpp"
 
 namespace aos {
 
@@ -42,9 +44,21 @@ inline constexpr std::size_t spreading = 7919;  // a prime, by which states are 
 inline constexpr double max_unknown_share = 0.5;      // of what is observed
 
 template <class Model>
-class BeliefTree {
+class BeliefTree final : public TreePlanner<Model> {
  public:
-  BeliefTree(const StateSpace<Model>& space, MdpValues<Model>& values) : space_(space), values_(values) {}
+  using typename Planner<Model>::Estimates;
+
+  BeliefTree(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
+      : TreePlanner<Model>(space, values, missions), space_(space), values_(values) {}
+
+  const char* name() const override { return "belief-tree"; }
+
+  bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& choosing) override {
+    if (!switches::belief_tree || !question.is_listed || space_.lists_observations()) return false;
+    const std::string obstacle = prepare(question.belief, question.horizon);
+    choosing.why += obstacle.empty() ? "; their probabilities are estimated" : "; their probabilities cannot be estimated: " + obstacle;
+    return obstacle.empty();
+  }
 
   // Makes tables for a belief of listed states. Returns why they do not tell what observations tell; empty if they do.
   std::string prepare(const Belief<Model>& belief, int horizon) {
@@ -61,11 +75,10 @@ class BeliefTree {
     return tables_.unknown_share() > max_unknown_share ? "hardly a response comes twice" : "";
   }
 
-  // Begins another mission, which does not depend on earlier ones.
-  void start_over() { tables_.forget(); }
+  void start_over() override { tables_.forget(); }
 
   // Runs the search for the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
-  std::uint64_t search(Budget budget, int horizon, Sampler& random, const BarredActions& barred) {
+  std::uint64_t search_from_root(Budget budget, int horizon, Sampler& random, const BarredActions& barred) {
     const auto start = PlanningClock::now();
     barred_ = barred;
     horizon_ = horizon;
@@ -85,9 +98,8 @@ class BeliefTree {
     return Budget::simulations_of(work_, horizon);
   }
 
-  // An estimate for each action. Values are over the whole belief, whose ended part counts as 0.
-  std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
-    std::vector<ActionEstimate> result(space_.actions());
+  Estimates estimates(const Belief<Model>& belief) const override {
+    Estimates result(space_.actions());
     if (nodes_.empty()) return result;
     const double running = belief.probability_of(Ending::running);
     for (std::size_t a = 0; a < space_.actions(); ++a) {
@@ -97,11 +109,19 @@ class BeliefTree {
     }
     return result;
   }
-  // The mean value of the belief's states.
-  double value_of_states(int horizon) const {
+
+ protected:
+  std::uint64_t search_tree(const Question<Model>& question, Sampler& random, std::string& /*why*/) override {
+    return search_from_root(question.budget, question.horizon, random, question.barred);
+  }
+  const StateValues<Model>* values_of_ends() const override { return &values_; }
+  double value_of_states(const Belief<Model>& /*belief*/) const override {
     double sum = 0;
-    for (const auto& [state, weight] : root_) sum += weight * values_.value(state, horizon);
+    for (const auto& [state, weight] : root_) sum += weight * values_.value(state, horizon_);
     return sum;
+  }
+  bool is_reliable(const ActionEstimate& estimate, const ActionEstimate& most) const override {
+    return is_well_visited(estimate.n, most.n);
   }
 
  private:

@@ -27,7 +27,10 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/mdp_values.hpp"
 #include "aos/planning/scenarios.hpp"
+#include "aos/planning/state_values.hpp"
+#include "aos/planning/tree_planner.hpp"
 
 namespace aos {
 
@@ -40,29 +43,54 @@ inline constexpr std::size_t max_scenario_bytes = std::size_t{512} << 20;
 inline constexpr std::size_t max_node_bytes = std::size_t{128} << 20;
 
 template <class Model>
-class Despot {
+class Despot final : public TreePlanner<Model> {
  public:
   using State = typename Model::State;
+  using typename Planner<Model>::Estimates;
 
-  explicit Despot(MdpValues<Model>& values)
-      : evaluation_(values),
-        nodes_(with_room_for<Node>(max_node_bytes / sizeof(Node))),
-        actions_(with_room_for<ActionNode>(max_node_bytes / sizeof(ActionNode))),
-        scenarios_(with_room_for<Scenario<Model>>(max_scenario_bytes / scenario_bytes())) {}
+  Despot(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
+      : TreePlanner<Model>(space, values, missions), evaluation_(values), values_(values) {}
+
+  const char* name() const override { return "despot"; }
 
   // Prepares the values of states. The first decision may take some seconds here, later ones take next to nothing.
-  void prepare(const Belief<Model>& belief, int horizon) { evaluation_.prepare(belief, horizon); }
+  bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& /*choosing*/) override {
+    if (nodes_.capacity() == 0) {
+      nodes_ = with_room_for<Node>(max_node_bytes / sizeof(Node));
+      actions_ = with_room_for<ActionNode>(max_node_bytes / sizeof(ActionNode));
+      scenarios_ = with_room_for<Scenario<Model>>(max_scenario_bytes / scenario_bytes());
+    }
+    evaluation_.prepare(question.belief, question.horizon);
+    return true;
+  }
 
-  // Searches from the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
-  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
-                       const BarredActions& barred = {}) {
+  // The standard errors follow from the number of scenarios.
+  Estimates estimates(const Belief<Model>& belief) const override {
+    Estimates result(action_count());
+    if (nodes_.size() == 0 || nodes_[0].first_action == no_node) return result;
+    const double running = belief.probability_of(Ending::running);
+    for (std::size_t a = 0; a < deviations_.size(); ++a) {
+      const ActionNode& action = actions_[nodes_[0].first_action + a];
+      result[a] = {running * (origin_ + action.lower), action.trials, running * deviations_[a], running * rewards_[a]};
+    }
+    return result;
+  }
+  Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const override {
+    for (ActionEstimate& estimate : estimates) estimate.standard_error = error(belief);
+    return TreePlanner<Model>::values(belief, std::move(estimates), choice);
+  }
+
+ protected:
+  std::uint64_t search_tree(const Question<Model>& question, Sampler& random, std::string& /*why*/) override {
+    const Belief<Model>& belief = question.belief;
+    const Budget budget = question.budget;
     using Seconds = std::chrono::duration<double>;
     budget_ = budget;
     latest_ = budget.seconds > 0
                   ? PlanningClock::now() + std::chrono::duration_cast<PlanningClock::duration>(Seconds{budget.seconds})
                   : PlanningClock::time_point::max();
-    horizon_ = horizon;
-    barred_ = barred;
+    horizon_ = question.horizon;
+    barred_ = question.barred;
     nodes_.clear();
     actions_.clear();
     scenarios_.clear();
@@ -74,29 +102,15 @@ class Despot {
     return simulations();
   }
 
-  // An estimate for each action. Values are over the whole belief, whose ended part counts as 0. The standard
-  // errors follow from the number of scenarios.
-  std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
-    std::vector<ActionEstimate> result(action_count());
-    if (nodes_.size() == 0 || nodes_[0].first_action == no_node) return result;
-    const double running = belief.probability_of(Ending::running);
-    for (std::size_t a = 0; a < deviations_.size(); ++a) {
-      const ActionNode& action = actions_[nodes_[0].first_action + a];
-      result[a] = {running * (origin_ + action.lower), action.trials, running * deviations_[a], running * rewards_[a]};
-    }
-    return result;
-  }
-  // Whether values of states are known, which give upper bounds.
-  bool has_values() const { return evaluation_.has_values(); }
-  // The mean value of the belief's states.
-  double value_of_states(const Belief<Model>& belief) const { return belief.probability_of(Ending::running) * origin_; }
+  const StateValues<Model>* values_of_ends() const override { return evaluation_.has_values() ? &values_ : nullptr; }
+  double value_of_states(const Belief<Model>& belief) const override { return belief.probability_of(Ending::running) * origin_; }
   // The upper bound of an action that was tried: what the scenarios may return.
-  double upper(const Belief<Model>& belief, int action) const {
+  double most(const Belief<Model>& belief, const Estimates& /*estimates*/, int action) const override {
     const ActionNode& node = actions_[nodes_[0].first_action + static_cast<std::size_t>(action)];
     return belief.probability_of(Ending::running) * (origin_ + node.upper);
   }
-  // Where the tree ends, and what it has gained over the default policies.
-  TreeReach reach(const Belief<Model>& belief) const {
+  // What it has gained is that over the default policies.
+  TreeReach reach(const Belief<Model>& belief, const Estimates& /*estimates*/, int /*choice*/) const override {
     TreeReach result;
     result.beyond.assign(action_count(), 1);
     if (nodes_.size() == 0 || nodes_[0].first_action == no_node) return result;
@@ -106,12 +120,12 @@ class Despot {
     }
     return result;
   }
+
+ private:
   // The standard error of what a policy earns in the scenarios.
   double error(const Belief<Model>& belief) const {
     return belief.probability_of(Ending::running) * penalty_ / penalty_in_deviations * std::sqrt(static_cast<double>(scenario_count_));
   }
-
- private:
   static std::size_t scenario_bytes() { return sizeof(Scenario<Model>) + Model::bytes_elsewhere(); }
   using Evaluation = ScenarioEvaluation<Model>;
 
@@ -378,6 +392,7 @@ class Despot {
   }
 
   Evaluation evaluation_;
+  const MdpValues<Model>& values_;
   Budget budget_;
   PlanningClock::time_point latest_;
   int horizon_ = 0;

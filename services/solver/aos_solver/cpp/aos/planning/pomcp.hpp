@@ -17,60 +17,50 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
+#include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/exploration.hpp"
 #include "aos/planning/learned_values.hpp"
 #include "aos/planning/mdp_values.hpp"
 #include "aos/planning/prior_values.hpp"
 #include "aos/planning/search_threads.hpp"
 #include "aos/planning/simulated_state.hpp"
 #include "aos/planning/step_cost.hpp"
+#include "aos/planning/state_values.hpp"
 #include "aos/planning/step_table.hpp"
+#include "aos/planning/tree_planner.hpp"
 #include "aos/planning/tree_search.hpp"
 #include "aos/planning/wide_values.hpp"
 
 namespace aos {
 
 template <class Model>
-class Pomcp {
+class Pomcp final : public TreePlanner<Model> {
  public:
   using State = typename Model::State;
+  using typename Planner<Model>::Estimates;
+  using typename Planner<Model>::IsOver;
 
-  Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values) : space_(space), values_(values) {}
+  Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
+      : TreePlanner<Model>(space, values, missions), space_(space), values_(values) {}
+
+  const char* name() const override { return "pomcp"; }
 
   // Finds out what states are worth, and lists the steps of a small model. The first decision may take long here.
-  void prepare(const Belief<Model>& belief, int horizon, int threads, Sampler& random) {
-    threads_.prepare(threads);
-    state_values_ = known_values(belief, horizon, random);
-    const auto worth = [&](const State& state) { return state_values_->value(state, horizon); };
-    mdp_value_ = state_values_ != nullptr ? mean_value(belief, worth) : 0;
-    prior_.clear();
-    has_table_ = false;
-    if (belief.probability_of(Ending::running) <= 0) return;
-    has_table_ = switches::step_table && source_ == ValueSource::listed && steps_.prepare(space_, belief);
-    if (!switches::prior) return;
-    if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
-    if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
+  bool prepare(const Question<Model>& question, Sampler& random, Choosing& /*choosing*/) override {
+    get_ready(question, random);
+    return true;
+  }
+  void ponder(int action, const Question<Model>& question, Sampler& random, const IsOver& is_over) override {
+    get_ready(question, random);
+    search_below(action, question, random, is_over);
   }
 
   // Whether the values of many states can be computed.
   bool has_wide_values(const Belief<Model>& belief, int horizon) { return switches::wide_values && wide_values_.prepare(belief, horizon); }
 
-  // Searches from the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
-  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
-                       const BarredActions& barred = {}) {
-    return search(belief, budget, horizon, random, barred, -1, [] { return false; });
-  }
-
-  // Searches below one action while it is carried out, from the belief of `prepare`, until `is_over()`, which is called every millisecond or so.
-  template <class IsOver>
-  std::uint64_t ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
-                       IsOver&& is_over) {
-    return search(belief, budget, horizon, random, {}, action, is_over);
-  }
-
-  // An estimate for each action. Values are over the whole belief, whose ended part counts as 0.
-  std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
-    std::vector<ActionEstimate> result(static_cast<std::size_t>(Model::action_count()));
+  Estimates estimates(const Belief<Model>& belief) const override {
+    Estimates result(static_cast<std::size_t>(Model::action_count()));
     const double running = belief.probability_of(Ending::running);
     for (int a = 0; a < Model::action_count(); ++a) {
       double n = 0;
@@ -95,11 +85,36 @@ class Pomcp {
     draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, max_visits); });
     return result;
   }
-  // What is known of the values of states, and their mean over the belief of the last search; null and 0 if nothing is known.
-  const StateValues<Model>* state_values() const { return state_values_; }
-  double value_of_states(const Belief<Model>& belief) const { return belief.probability_of(Ending::running) * mdp_value_; }
-  // Where the trees of the last search end, and what they have gained over the rollouts there.
-  TreeReach reach(const std::vector<ActionEstimate>& estimates, int choice, const Belief<Model>& belief) const {
+
+  std::vector<std::uint64_t> simulations_by_thread() const override { return threads_.simulations(); }
+  // How many simulations went through the root.
+  std::uint64_t known_simulations() const override {
+    std::uint64_t sum = 0;
+    for (const auto& tree : threads_.trees()) sum += tree->known_simulations();
+    return sum;
+  }
+
+  // Keeps the part of the trees below an action and an observation, which is empty if these were never simulated.
+  void advance(int action, Observation observation) override {
+    for (const auto& tree : threads_.trees()) tree->move_to(action, observation);
+  }
+  void forget() override {
+    for (const auto& tree : threads_.trees()) tree->forget();
+  }
+
+ protected:
+  std::uint64_t search_tree(const Question<Model>& question, Sampler& random, std::string& why) override {
+    const std::uint64_t simulations = search_below(-1, question, random, [] { return false; });
+    if (source_ == ValueSource::learned) why += "; what states are worth is learned from simulations";
+    if (source_ == ValueSource::wide) {
+      why += "; without observations all " + std::to_string(wide_values_.states()) + " can be, and their values are computed";
+    }
+    return simulations;
+  }
+  const StateValues<Model>* values_of_ends() const override { return state_values_; }
+  bool has_learned_values() const override { return source_ == ValueSource::learned; }
+  double value_of_states(const Belief<Model>& belief) const override { return belief.probability_of(Ending::running) * mdp_value_; }
+  TreeReach reach(const Belief<Model>& belief, const Estimates& estimates, int choice) const override {
     TreeReach result;
     for (int a = 0; a < Model::action_count(); ++a) {
       double beyond = 0;
@@ -115,33 +130,10 @@ class Pomcp {
     if (chosen.n > 0) result.gain = chosen.q - belief.probability_of(Ending::running) * rolled_out_;
     return result;
   }
-  // Whether values are drawn towards a prior.
-  bool has_prior() const { return !prior_.empty(); }
-  // Whether rollouts value new histories. No value is then too high because few simulations went on below it.
-  bool rolls_out() const { return source_ == ValueSource::none; }
-  // Whether what states are worth was learned, and may be wrong by any amount.
-  bool has_learned_values() const { return source_ == ValueSource::learned; }
-  // Where the values of states come from in the last search, for a plan's `why`; empty if the state space lists them.
-  std::string value_source() const {
-    if (source_ == ValueSource::learned) return "what states are worth is learned from simulations";
-    if (source_ != ValueSource::wide) return "";
-    return "without observations all " + std::to_string(wide_values_.states()) + " can be, and their values are computed";
-  }
-
-  const std::vector<std::uint64_t>& simulations_by_thread() const { return threads_.simulations(); }
-  // How many simulations went through the root.
-  std::uint64_t known_simulations() const {
-    std::uint64_t sum = 0;
-    for (const auto& tree : threads_.trees()) sum += tree->known_simulations();
-    return sum;
-  }
-
-  // Keeps the part of the trees below an action and an observation, which is empty if these were never simulated.
-  void move_to(int action, Observation observation) {
-    for (const auto& tree : threads_.trees()) tree->move_to(action, observation);
-  }
-  void forget() {
-    for (const auto& tree : threads_.trees()) tree->forget();
+  // With a prior every value counts. Where rollouts value new histories, one that is certain does, too.
+  bool is_reliable(const ActionEstimate& estimate, const ActionEstimate& most) const override {
+    return !prior_.empty() || is_well_visited(estimate.n, most.n) ||
+           (switches::certain_actions && rolls_out() && is_certain(estimate, most));
   }
 
  private:
@@ -153,6 +145,25 @@ class Pomcp {
   static constexpr Operations cost_of_value = 60;  // of a state that code has stepped
   static constexpr Operations cost_of_listed_worth = 20;
 
+  void get_ready(const Question<Model>& question, Sampler& random) {
+    const Belief<Model>& belief = question.belief;
+    const int horizon = question.horizon;
+    threads_.prepare(question.budget.threads);
+    state_values_ = known_values(belief, horizon, random);
+    const auto worth = [&](const State& state) { return state_values_->value(state, horizon); };
+    mdp_value_ = state_values_ != nullptr ? mean_value(belief, worth) : 0;
+    prior_.clear();
+    has_table_ = false;
+    if (belief.probability_of(Ending::running) <= 0) return;
+    has_table_ = switches::step_table && source_ == ValueSource::listed && steps_.prepare(space_, belief);
+    if (!switches::prior) return;
+    if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
+    if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
+  }
+
+  // Whether rollouts value new histories. No value is then too high because few simulations went on below it.
+  bool rolls_out() const { return source_ == ValueSource::none; }
+
   // Where states are listed, steps by code are compared with steps by the list. Elsewhere all planners step by code.
   Operations cost_of_code() {
     if (source_ != ValueSource::listed) return operations_of_step;
@@ -160,9 +171,13 @@ class Pomcp {
     return step_cost_;
   }
 
-  template <class IsOver>
-  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
-                       const BarredActions& barred, int first, IsOver&& is_over) {
+  // Searches below one action, or from the root if that is -1.
+  template <class Ends>
+  std::uint64_t search_below(int first, const Question<Model>& question, Sampler& random, Ends&& is_over) {
+    const Belief<Model>& belief = question.belief;
+    const Budget budget = question.budget;
+    const int horizon = question.horizon;
+    const BarredActions barred = first < 0 ? question.barred : BarredActions{};
     const auto start = PlanningClock::now();
     if (belief.probability_of(Ending::running) <= 0) return 0;
     if (rolls_out() && first < 0) roll_out(belief, budget, horizon, Sampler{Sampler{random}.bits()});

@@ -1,0 +1,147 @@
+// The planners of a model, and which of them decides: the one that was asked for, or the first that can.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/belief_tree.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/despot.hpp"
+#include "aos/planning/exact_search.hpp"
+#include "aos/planning/group_missions.hpp"
+#include "aos/planning/mdp_values.hpp"
+#include "aos/planning/options_planner.hpp"
+#include "aos/planning/planner.hpp"
+#include "aos/planning/pomcp.hpp"
+#include "aos/planning/sarsop_planner.hpp"
+#include "aos/planning/state_space.hpp"
+
+namespace aos {
+
+// What can be asked for; `options` only by tests.
+enum class PlannerKind { automatic, pomcp, despot, sarsop, options };
+inline constexpr const char* planner_names[] = {"auto", "pomcp", "despot", "sarsop", "options"};
+
+// The planner of this name, if there is one that can be asked for.
+inline std::optional<PlannerKind> planner_kind(std::string_view name) {
+  const auto* const last = planner_names + static_cast<std::size_t>(PlannerKind::options);
+  const auto* const found = std::find(planner_names, last, name);
+  return found == last ? std::nullopt : std::optional{static_cast<PlannerKind>(found - planner_names)};
+}
+
+template <class Model>
+class Planners {
+ public:
+  using Estimates = typename Planner<Model>::Estimates;
+
+  // Chooses the planner, prepares it and searches. Returns how many simulations it took, as budget.hpp counts them.
+  std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+                       const BarredActions& barred = {}) {
+    // Actions that were barred have few visits in the tree and would be neglected further.
+    if (barred != barred_) forget();
+    barred_ = barred;
+    horizon_ = horizon;
+    const auto start = thread_time();
+    Choosing choosing;
+    const bool is_by_name = kind != PlannerKind::automatic;
+    const Question<Model> question{belief, budget, horizon, barred_, is_by_name, space_.reach(belief)};
+    choosing.why = is_by_name           ? "it was asked for"
+                   : question.is_listed ? "all " + std::to_string(space_.size()) + " states can be listed"
+                                        : space_.obstacle();
+    const auto& order = order_[static_cast<std::size_t>(kind)];
+    used_ = *std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); });
+    const auto prepared = thread_time();
+    const std::uint64_t simulations = used_->search(question, random, choosing.why);
+    why_ = std::move(choosing.why);
+    preparing_ = prepared - start - choosing.searching;
+    searching_ = choosing.searching + thread_time() - prepared;
+    return simulations + choosing.simulations;
+  }
+
+  // This thread's processor time of the last search, and that of the lists, values and first bounds before it, which no budget counts.
+  std::chrono::duration<double> searching() const { return searching_; }
+  std::chrono::duration<double> preparing() const { return preparing_; }
+
+  // The planner of the last search, and why it was that one.
+  const char* name() const { return used_->name(); }
+  const std::string& why() const { return why_; }
+
+  // See Planner.
+  Estimates estimates(const Belief<Model>& belief) const { return used_->estimates(belief); }
+  int choice(const Estimates& estimates, const BarredActions& barred = {}) const {
+    return used_->choice(estimates, horizon_, barred);
+  }
+  std::vector<std::uint64_t> simulations_by_thread() const { return used_->simulations_by_thread(); }
+  std::uint64_t known_simulations() const { return used_->known_simulations(); }
+
+  // What a decision tells: an estimate of what is returned over the next `horizon` decisions, beginning with each action,
+  // while the mission plans anew at each of them (action_values.hpp). `estimates` are those by which `choice` was made.
+  Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const {
+    Estimates values = used_->values(belief, std::move(estimates), choice);
+    const double slack = used_->slack(belief, horizon_);
+    for (ActionEstimate& value : values) {
+      value.at_least -= slack;
+      value.at_most += slack;
+    }
+    return values;
+  }
+
+  // Searches below the action that is being carried out, if the last planner can use that.
+  template <class IsOver>
+  void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, IsOver&& is_over) {
+    used_->ponder(action, {belief, budget, horizon, barred_}, random, is_over);
+  }
+  void move_to(int action, Observation observation) {
+    for (Planner<Model>* const planner : all_) {
+      if (planner == used_) planner->advance(action, observation);
+      else planner->forget();
+    }
+  }
+  // Drops what holds for the last belief only.
+  void forget() {
+    for (Planner<Model>* const planner : all_) planner->forget();
+  }
+  // Begins another mission.
+  void start_over() {
+    space_.start_over();
+    missions_.start_over();
+    for (Planner<Model>* const planner : all_) planner->start_over();
+  }
+
+ private:
+  using List = std::vector<Planner<Model>*>;
+
+  StateSpace<Model> space_;
+  MdpValues<Model> values_{space_};
+  GroupMissions<Model> missions_;
+  Pomcp<Model> pomcp_{space_, values_, missions_};
+  ExactSearch<Model> exact_{space_};
+  SarsopPlanner<Model> sarsop_{space_};
+  BeliefTree<Model> belief_tree_{space_, values_, missions_};
+  OptionsPlanner<Model> options_{space_, pomcp_};
+  Despot<Model> despot_{space_, values_, missions_};
+  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &pomcp_, &despot_};
+  // Which planners are tried in turn, by what was asked for. The last ones can always decide.
+  const List order_[std::size(planner_names)] = {
+      {&exact_, &sarsop_, &belief_tree_, &options_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}};
+  Planner<Model>* used_ = &pomcp_;
+  int horizon_ = 1;       // of the last search
+  BarredActions barred_;  // in the last search
+  std::string why_;
+  std::chrono::nanoseconds preparing_{};
+  std::chrono::nanoseconds searching_{};
+};
+
+}  // namespace aos
