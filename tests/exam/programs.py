@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from aos_solver.building.build import SOURCES, build_engine
+from aos_solver.building.build import NUMBERS, SOURCES, build_engine, number_object
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 
@@ -21,8 +21,8 @@ PATIENCE_S = 800.0
 async def built_program(cache_dir: Path, source: Path, *options: str, includes: Iterable[Path] = ()) -> Path:
     """The executable of a source file, from the cache or compiled now.
 
-    It may include the engine's headers, its own folder and those of `includes`. The engine's point-based
-    search is linked to it.
+    It may include the engine's headers, its own folder and those of `includes`. What the engine
+    has of numbers is linked to it.
     """
     compiler = await find_compiler()
     folders = [source.parent, *includes]
@@ -32,7 +32,8 @@ async def built_program(cache_dir: Path, source: Path, *options: str, includes: 
     async def make(staging: Path) -> None:
         compilation = compiler.compilation(str(source), "part.o", str(SOURCES), *more)
         await asyncio.to_thread(run, compilation, staging)
-        run(compiler.linking(["part.o", str(engine / "point_based.o")], source.stem), staging)
+        numbers = (str(engine / number_object(part)) for part in NUMBERS)
+        run(compiler.linking(["part.o", *numbers], source.stem), staging)
 
     name = f"{source.stem}-{digest_of([source.name, *more, *what_decides(compiler, *folders)])}"
     return await BuildCache(cache_dir).fill(name, make, patience_s=PATIENCE_S) / source.stem

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "aos/planning/exact.hpp"
+#include "aos/planning/exact_root.hpp"
 #include "aos/planning/step_table.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
@@ -179,18 +179,18 @@ TEST("Exact values are those that can be worked out by hand") {
   const Belief belief = initial_belief(tiger);
   Space space;
   EXPECT(space.reach(belief));
-  const aos::ObservableValues<TableModel> observable{space, 3};
-  aos::ExactEvaluation<TableModel> evaluation{space, observable, {.beliefs = 1000}};
-  const auto one = evaluation.action_values(belief, 1);
+  const aos::ObservableValues observable{space.rows(), space.numbering(), 3};
+  aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 1000}};
+  const auto one = evaluation.action_values(aos::exact_root(space, belief), 1);
   EXPECT_NEAR(one[0].value, -1.0, 1e-12);
   EXPECT_NEAR(one[1].value, -45.0, 1e-12);
-  const auto two = evaluation.action_values(belief, 2);
+  const auto two = evaluation.action_values(aos::exact_root(space, belief), 2);
   EXPECT_NEAR(two[0].value, -1 - 0.95, 1e-12);
   EXPECT_NEAR(two[2].value, -45 - 0.95, 1e-12);
   // Listen twice; hear the same (0.745) and open the other door, or listen once more.
   const double same = 0.85 * 0.85 + 0.15 * 0.15;
   const double open = (0.85 * 0.85 * 10 - 0.15 * 0.15 * 100) / same;
-  const auto three = evaluation.action_values(belief, 3);
+  const auto three = evaluation.action_values(aos::exact_root(space, belief), 3);
   EXPECT_NEAR(three[0].value, -1 - 0.95 + 0.95 * 0.95 * (same * open - (1 - same)), 1e-12);
 }
 
@@ -211,11 +211,11 @@ TEST("Exact values that exceed the budget are refused, and no wrong ones given")
   const Belief belief = initial_belief(tiger);
   Space space;
   EXPECT(space.reach(belief));
-  const aos::ObservableValues<TableModel> observable{space, 10};
-  aos::ExactEvaluation<TableModel> evaluation{space, observable, {.beliefs = 3}};
+  const aos::ObservableValues observable{space.rows(), space.numbering(), 10};
+  aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3}};
   bool is_refused = false;
   try {
-    evaluation.action_values(belief, 10);
+    evaluation.action_values(aos::exact_root(space, belief), 10);
   } catch (const aos::NotEnumerable&) {
     is_refused = true;
   }

@@ -15,7 +15,7 @@
 
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/planning/exact.hpp"
+#include "aos/planning/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 #include "bisimulation.hpp"
 #include "flat.hpp"
@@ -127,12 +127,12 @@ class Claims {
   void check_exact_values(const Belief& belief, const Mass& exact, double running) {
     aos::StateSpace<TableModel> space;
     if (!space.reach(belief)) return;
-    const aos::ObservableValues<TableModel> observable{space, problem_.horizon};
+    const aos::ObservableValues observable{space.rows(), space.numbering(), problem_.horizon};
     for (const int decisions : {1, 3, problem_.horizon}) {
-      aos::ExactEvaluation<TableModel> evaluation{space, observable, {.beliefs = 3000, .work = 100'000'000}};
+      aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3000, .work = 100'000'000}};
       try {
         std::vector<double> values;
-        for (const auto& of_action : evaluation.action_values(belief, decisions)) values.push_back(of_action.value);
+        for (const auto& of_action : evaluation.action_values(aos::exact_root(space, belief), decisions)) values.push_back(of_action.value);
         check_action_values("exact value of action ", values, exact, running, decisions);
       } catch (const aos::NotEnumerable&) {
         return;

@@ -27,7 +27,17 @@ from aos_solver.building.compiler_messages import read_messages, without_line_di
 from aos_solver.building.compiler_run import LIMIT_HINT, Given, internal_error, ran_out, run_compiler
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
-__all__ = ["ANY_SIZE", "SOURCES", "SUPPORT", "BuildKind", "BuiltModel", "build", "build_engine"]
+__all__ = [
+    "ANY_SIZE",
+    "NUMBERS",
+    "SOURCES",
+    "SUPPORT",
+    "BuildKind",
+    "BuiltModel",
+    "build",
+    "build_engine",
+    "number_object",
+]
 
 SOURCES = Path(__file__).parents[1] / "cpp"
 """The engine, and what emitted models stand on."""
@@ -72,8 +82,8 @@ _SECONDS = "seconds"
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
-_NUMBERS_OBJECT = "point_based.o"
-"""Point-based search is mostly loops over numbers, and the same for states of any size."""
+NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values")
+"""The parts of the engine that know models as numbers only: loops over these, the same for states of any size."""
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -169,9 +179,9 @@ async def build_engine(
         on_progress(f"compiling the engine with {compiler.version}, once for all models")
         if compiler.family == "zig":
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
-        commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}")]
+        commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}", "engine")]
         if state_bytes == STATE_BYTES[0]:
-            commands.append(_part(compiler, _NUMBERS_OBJECT, "-O3"))
+            commands += [_part(compiler, number_object(part), "-O3", part) for part in NUMBERS]
             for kind in _HURRIED:
                 (staging / kind / SUPPORT).parent.mkdir(parents=True)
                 commands.append(compiler.precompilation(SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
@@ -199,9 +209,14 @@ def _patience_s(compiler: Compiler, deadline_s: float) -> float:
     return _ENGINE_DEADLINES * compiler.deadline_s + 2 * deadline_s
 
 
-def _part(compiler: Compiler, part: str, option: str) -> list[str]:
-    """The command that compiles a part of the engine from the source of its name."""
-    return compiler.compilation(str((SOURCES / part).with_suffix(".cpp")), part, str(SOURCES), option)
+def number_object(part: str) -> str:
+    """Returns the name of the object file of one of `NUMBERS`."""
+    return f"{Path(part).name}.o"
+
+
+def _part(compiler: Compiler, made: str, option: str, source: str) -> list[str]:
+    """The command that compiles a part of the engine."""
+    return compiler.compilation(str(SOURCES / f"{source}.cpp"), made, str(SOURCES), option)
 
 
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
@@ -226,7 +241,7 @@ class _Build(msgspec.Struct, frozen=True):
         usual, _ = await _together(self._engine(STATE_BYTES[0]), self._compile(staging))
         state_bytes = self._state_bytes(staging / _OBJECT)
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
-        await self._link(staging, [engine / _ENGINE_OBJECT, usual / _NUMBERS_OBJECT])
+        await self._link(staging, [engine / _ENGINE_OBJECT, *(usual / number_object(part) for part in NUMBERS)])
 
     def _ready_engine(self, state_bytes: int) -> Path | None:
         return self.cache.find(_engine_name(self.compiler, state_bytes))

@@ -36,6 +36,13 @@ struct Rows {
   std::span<const Element> operator[](std::size_t row) const { return {begin(row), end(row)}; }
 };
 
+// Tells which number stands for which state: in two equal numberings, the numbers are the same.
+struct Numbering {
+  std::uint64_t restarts = 0;
+  std::size_t states = 0;
+  bool operator==(const Numbering&) const = default;
+};
+
 struct FlatModel {
   std::size_t states = 0;
   std::size_t actions = 0;

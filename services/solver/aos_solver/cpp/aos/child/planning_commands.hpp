@@ -24,7 +24,7 @@
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/exact.hpp"
+#include "aos/planning/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 
 namespace aos {
@@ -85,9 +85,9 @@ class PlanningCommands {
     const auto is_over = [=] { return std::chrono::steady_clock::now() - start > limit; };
     StateSpace<Model> space;
     space.reach_within(belief(), horizon);
-    const ObservableValues<Model> observable{space, horizon};
-    ExactEvaluation<Model> evaluation{space, observable, {.beliefs = command.number<std::uint64_t>("beliefs"), .is_over = is_over}};
-    const auto values = evaluation.action_values(belief(), horizon);
+    const ObservableValues observable{space.rows(), space.numbering(), horizon};
+    ExactEvaluation evaluation{space.rows(), observable, {.beliefs = command.number<std::uint64_t>("beliefs"), .is_over = is_over}};
+    const auto values = evaluation.action_values(exact_root(space, belief()), horizon);
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       json.begin_object().member("action", Model::action_name(action));

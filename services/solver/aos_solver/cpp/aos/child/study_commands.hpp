@@ -12,7 +12,7 @@
 #include "aos/child/command.hpp"
 #include "aos/child/reward_terms.hpp"
 #include "aos/child/wording.hpp"
-#include "aos/planning/exact.hpp"
+#include "aos/planning/exact_root.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
@@ -27,7 +27,7 @@ class StudyCommands {
     const int horizon = horizon_of(command);
     const Belief<Model>& belief = beliefs_.belief_for(command);
     auto evaluation = evaluation_for(command, belief, horizon);
-    const auto values = evaluation.action_values(belief, horizon);
+    const auto values = evaluation.action_values(exact_root(*space_, belief), horizon);
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       json.begin_object().member("action", Model::action_name(action));
@@ -50,8 +50,8 @@ class StudyCommands {
     }
     const int horizon = horizon_of(command);
     auto evaluation = evaluation_for(command, belief, horizon);
-    evaluation.action_values(belief, horizon);
-    const auto times = evaluation.occupancy(belief, static_cast<std::size_t>(action), horizon);
+    evaluation.action_values(exact_root(*space_, belief), horizon);
+    const auto times = evaluation.occupancy(space_->weights_of(belief), static_cast<std::size_t>(action), horizon);
     for (const auto& [where, weight] : times) {
       terms.add((*space_)[where.first], static_cast<int>(where.second), weight);
     }
@@ -64,20 +64,20 @@ class StudyCommands {
     return horizon > 0 ? horizon : Model::horizon;
   }
 
-  ExactEvaluation<Model> evaluation_for(const Command& command, const Belief<Model>& belief, int horizon) {
+  ExactEvaluation evaluation_for(const Command& command, const Belief<Model>& belief, int horizon) {
     const std::chrono::duration<double> limit{command.number<double>("seconds")};
     const auto start = std::chrono::steady_clock::now();
     if (!space_) space_ = std::make_unique<StateSpace<Model>>();
     space_->reach_within(belief, horizon);
-    observable_.prepare(*space_, horizon);
-    return {*space_, observable_,
+    observable_.prepare(space_->rows(), space_->numbering(), horizon);
+    return {space_->rows(), observable_,
             {.beliefs = command.number<std::uint64_t>("beliefs"),
              .is_over = [=] { return std::chrono::steady_clock::now() - start > limit; }}};
   }
 
   const BeliefCommands<Model>& beliefs_;
   std::unique_ptr<StateSpace<Model>> space_;
-  ObservableValues<Model> observable_;
+  ObservableValues observable_;
 };
 
 }  // namespace aos

@@ -14,9 +14,10 @@
 #include "aos/belief/belief.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/exact.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/state_space.hpp"
+#include "numbers/exact.hpp"
+#include "numbers/observable_values.hpp"
 
 namespace aos {
 
@@ -37,7 +38,7 @@ class ExactSearch final : public Planner<Model> {
       --put_off_;
       return false;
     }
-    observable_.prepare(space_, question.horizon);
+    observable_.prepare(space_.rows(), space_.numbering(), question.horizon);
     const auto start = thread_time();
     const bool fits = evaluate(question.belief, question.budget, question.horizon);
     choosing.searching += thread_time() - start;
@@ -51,7 +52,7 @@ class ExactSearch final : public Planner<Model> {
   std::uint64_t search(const Question<Model>& question, Sampler& /*random*/, std::string& /*why*/) override {
     const auto action = static_cast<std::size_t>(best(question.barred));
     mean_loss_ = loss_error_ = 0;
-    const auto losses = evaluation_->losses(question.belief, action, horizon_, limits_of(question.budget, horizon_));
+    const auto losses = evaluation_->losses(space_.weights_of(question.belief), action, horizon_, limits_of(question.budget, horizon_));
     const auto count = static_cast<double>(losses.size());
     double squares = 0;
     for (const double loss : losses) mean_loss_ += loss / count;
@@ -86,10 +87,10 @@ class ExactSearch final : public Planner<Model> {
 
   // Tries to compute the values with a share of the budget.
   bool evaluate(const Belief<Model>& belief, Budget budget, int horizon) {
-    evaluation_.emplace(space_, observable_, limits_of(budget, horizon));
+    evaluation_.emplace(space_.rows(), observable_, limits_of(budget, horizon));
     horizon_ = horizon;
     try {
-      values_ = evaluation_->action_values(belief, horizon);
+      values_ = evaluation_->action_values(space_.weights_of(belief), horizon);
       error_ = evaluation_->error(horizon);
       failures_ = 0;
       return true;
@@ -124,12 +125,12 @@ class ExactSearch final : public Planner<Model> {
   }
 
   const StateSpace<Model>& space_;
-  ObservableValues<Model> observable_;
+  ObservableValues observable_;
   std::vector<ExactValue> values_;  // by action
   double error_ = 0;                // of the values, at most
   double mean_loss_ = 0;
   double loss_error_ = 0;
-  std::optional<ExactEvaluation<Model>> evaluation_;  // between `prepare` and `search`
+  std::optional<ExactEvaluation> evaluation_;  // between `prepare` and `search`
   int horizon_ = 1;
   int put_off_ = 0;  // how many decisions make no try
   int failures_ = 0;

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/planning/state_space.hpp"
 #include "aos/planning/state_values.hpp"
+#include "numbers/observable_values.hpp"
 #include "point_based/rounding.hpp"
 
 namespace aos {
@@ -119,7 +119,9 @@ class MdpValues final : public StateValues<Model> {
     while (decisions < horizon_) {
       progress::tell("computing values of states", static_cast<std::uint64_t>(decisions), static_cast<std::uint64_t>(horizon_));
       std::vector<double> values(space_.size());
-      change = one_more_decision(layers_.back(), values);
+      const MoreValues more = one_more_decision(rows(), layers_.back(), values, &action_values_);
+      change = more.change;
+      highest_ = more.highest;
       if (!has_room) layers_.clear();
       layers_.push_back(std::move(values));
       ++decisions;
@@ -145,28 +147,7 @@ class MdpValues final : public StateValues<Model> {
     return 2 * once * decisions * decisions * largest;
   }
 
-  double value_of(std::size_t row, const std::vector<double>& later) const {
-    return rows().rewards[row] + Model::discount * rows().later_value(row, later);
-  }
-
-  // Computes one more layer. Returns the largest change.
-  double one_more_decision(const std::vector<double>& later, std::vector<double>& values) {
-    double change = 0;
-    highest_ = -std::numeric_limits<double>::infinity();
-    for (std::size_t number = 0; number < values.size(); ++number) {
-      double best = -std::numeric_limits<double>::infinity();
-      for (std::size_t action = 0; action < actions(); ++action) {
-        const std::size_t row = rows().row(number, action);
-        const double value = value_of(row, later);
-        action_values_[row] = static_cast<float>(value);
-        best = std::max(best, value);
-      }
-      values[number] = best;
-      highest_ = std::max(highest_, best);
-      change = std::max(change, std::abs(best - later[number]));
-    }
-    return change;
-  }
+  double value_of(std::size_t row, const std::vector<double>& later) const { return backed_up(rows(), row, later); }
 
   const std::vector<double>& layer(int horizon) const {
     return layers_[std::min(static_cast<std::size_t>(std::max(horizon, 0)), layers_.size() - 1)];

@@ -41,12 +41,7 @@ inline constexpr SpaceLimits later_limits{.states = 16'000, .outcomes = 500'000,
 
 inline constexpr std::uint32_t states_between_looks = 256;  // at the progress
 
-// Tells which number stands for which state: in two equal numberings, the numbers are the same.
-struct Numbering {
-  std::uint64_t restarts = 0;
-  std::size_t states = 0;
-  bool operator==(const Numbering&) const = default;
-};
+using point_based::Numbering;
 
 // Outcomes that end the mission are left out of the rows: ended states have no number and are worth nothing.
 template <class Model>

@@ -1,0 +1,211 @@
+#include "numbers/exact.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/mixed.hpp"
+#include "aos/base/progress.hpp"
+
+namespace aos {
+
+namespace {
+
+constexpr std::uint64_t per_outcome = 80;  // operations, of an outcome that is added to a posterior
+constexpr std::uint64_t per_bound = 10;    // of an action in a state
+constexpr std::uint64_t per_belief = 300;
+
+ExactValue scaled(ExactValue value, double by) { return {by * value.value, by * value.growth}; }
+
+}  // namespace
+
+std::vector<ExactValue> ExactEvaluation::action_values(const Weighted& belief, int horizon) {
+  std::vector<ExactValue> values(rows_.actions);
+  if (horizon <= 0 || belief.empty()) return values;
+  for (std::size_t action = 0; action < values.size(); ++action) values[action] = action_value(belief, action, horizon);
+  return values;
+}
+
+std::vector<double> ExactEvaluation::losses(Weighted belief, std::size_t action, int horizon, ExactLimits limits) {
+  constexpr std::size_t missions = 30;
+  std::vector<double> found;
+  double total = 0;
+  for (const auto& part : belief) total += part.second;
+  if (total <= 0) return found;
+  for (auto& part : belief) part.second /= total;
+  limits_ = std::move(limits);
+  if (limits_.work > 0) limits_.work += work_;
+  limits_.beliefs += evaluated_;
+  Sampler random{1};
+  try {
+    while (found.size() < missions) found.push_back(total * loss_of_mission(belief, action, horizon, random));
+  } catch (const NotEnumerable&) {
+    // What was found counts.
+  }
+  return found;
+}
+
+std::map<std::pair<std::uint32_t, std::size_t>, double> ExactEvaluation::occupancy(const Weighted& belief, std::size_t action, int horizon) {
+  struct Visit {
+    Weighted belief;  // of sum 1
+    double weight = 0;
+  };
+  std::map<std::pair<std::uint32_t, std::size_t>, double> found;
+  std::unordered_map<BeliefKey, Visit, KeyHash> level;
+  const auto add = [](auto& visits, Weighted states, double weight) {
+    double total = 0;
+    for (const auto& part : states) total += part.second;
+    if (total <= 0) return;
+    for (auto& part : states) part.second /= total;
+    Visit& visit = visits[key_of(states)];
+    visit.weight += weight * total;
+    if (visit.belief.empty()) visit.belief = std::move(states);
+  };
+  add(level, belief, 1);
+  for (int left = horizon; left > 0 && !level.empty(); --left) {
+    std::unordered_map<BeliefKey, Visit, KeyHash> next;
+    for (const auto& [key, visit] : level) {
+      const std::size_t chosen = left == horizon ? action : best_action(visit.belief, left);
+      for (const auto& [state, weight] : visit.belief) found[{state, chosen}] += visit.weight * weight;
+      if (left == 1) continue;
+      for (const auto& [observation, states] : posteriors(visit.belief, chosen)) {
+        add(next, {states.begin(), states.end()}, visit.weight * rows_.discount);
+      }
+    }
+    level = std::move(next);
+  }
+  return found;
+}
+
+double ExactEvaluation::error(int horizon) const {
+  double largest = 0;
+  for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
+  const double once = 1e-12 * (4 + static_cast<double>(observable_.states()));
+  return once * largest * horizon * horizon;
+}
+
+// Posteriors are not normalised here: a weight is the probability of getting to that state.
+ExactValue ExactEvaluation::action_value(const Weighted& belief, std::size_t action, int horizon) {
+  ExactValue result;
+  for (const auto& [state, weight] : belief) result.value += weight * rows_.rewards[rows_.row(state, action)];
+  if (horizon == 1) return result;
+  for (const auto& [observation, states] : posteriors(belief, action)) {
+    const ExactValue later = best_value({states.begin(), states.end()}, horizon - 1);
+    result.value += rows_.discount * later.value;
+    result.growth += later.value + rows_.discount * later.growth;
+  }
+  return result;
+}
+
+// The weights of the states after an action, by what is observed.
+ExactEvaluation::Posteriors ExactEvaluation::posteriors(const Weighted& belief, std::size_t action) {
+  Posteriors result;
+  for (const auto& [state, weight] : belief) {
+    for (const auto& outcome : rows_.outcomes[rows_.row(state, action)]) {
+      for (const auto& likelihood : rows_.likelihoods[outcome.sensing]) {
+        result[likelihood.observation][outcome.next] += weight * outcome.probability * likelihood.probability;
+        work_ += per_outcome;
+      }
+    }
+  }
+  if (limits_.work > 0 && work_ > limits_.work) throw NotEnumerable{"there are more outcomes than the budget"};
+  return result;
+}
+
+// What a mission loses of an action's value if it plans a whole horizon anew at each later decision. It may put off for
+// ever what is best at the end of a horizon.
+double ExactEvaluation::loss_of_mission(Weighted belief, std::size_t action, int horizon, Sampler& random) {
+  double loss = 0;
+  double discount = 1;
+  for (int left = horizon; left > 1; --left) {
+    // Where the mission has ended, nothing is observed.
+    double place = random.uniform();
+    Weighted next;
+    for (const auto& [observation, states] : posteriors(belief, action)) {
+      double total = 0;
+      for (const auto& part : states) total += part.second;
+      if (place < total) {
+        next.assign(states.begin(), states.end());
+        for (auto& part : next) part.second /= total;
+        break;
+      }
+      place -= total;
+    }
+    if (next.empty()) break;
+    belief = std::move(next);
+    discount *= rows_.discount;
+    action = best_action(belief, horizon);
+    loss += discount * (best_value(belief, left - 1).value - action_value(belief, action, left - 1).value);
+  }
+  return loss;
+}
+std::size_t ExactEvaluation::best_action(const Weighted& belief, int horizon) {
+  std::size_t best = 0;
+  ExactValue highest = action_value(belief, best, horizon);
+  for (std::size_t action = 1; action < rows_.actions; ++action) {
+    const ExactValue value = action_value(belief, action, horizon);
+    if (!value.is_better_than(highest)) continue;
+    highest = value;
+    best = action;
+  }
+  return best;
+}
+
+ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {
+  double total = 0;
+  for (const auto& part : belief) total += part.second;
+  if (total <= 0) return {};
+  for (auto& part : belief) part.second /= total;
+
+  auto& known = values_[static_cast<std::size_t>(horizon)];
+  const BeliefKey key = key_of(belief);
+  if (const auto found = known.find(key); found != known.end()) return scaled(found->second, total);
+  if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"more beliefs than the budget can be reached"};
+  if (evaluated_ % 64 == 0) progress::tell("evaluating beliefs", evaluated_);
+  if (evaluated_ % 64 == 0 && limits_.is_over()) throw NotEnumerable{"it takes longer than allowed"};
+  const ExactValue best = best_of_actions(belief, horizon);
+  known.emplace(key, best);
+  return scaled(best, total);
+}
+
+// Evaluates the actions in the order of their bounds.
+ExactValue ExactEvaluation::best_of_actions(const Weighted& belief, int horizon) {
+  std::vector<std::pair<double, std::size_t>> order;
+  work_ += per_belief + per_bound * belief.size() * rows_.actions;
+  for (std::size_t action = 0; action < rows_.actions; ++action) order.emplace_back(-bound(belief, action, horizon), action);
+  std::sort(order.begin(), order.end());
+  ExactValue best = action_value(belief, order.front().second, horizon);
+  for (std::size_t next = 1; next < order.size() && -order[next].first > best.value; ++next) {
+    const ExactValue candidate = action_value(belief, order[next].second, horizon);
+    if (candidate.is_better_than(best)) best = candidate;
+  }
+  return best;
+}
+
+// An upper bound of the action's value; infinite if none is known.
+double ExactEvaluation::bound(const Weighted& belief, std::size_t action, int horizon) const {
+  if (static_cast<std::size_t>(horizon) > observable_.layers()) return std::numeric_limits<double>::infinity();
+  const std::vector<double>& later = observable_.layer(horizon - 1);
+  double sum = 0;
+  double magnitude = 0;
+  for (const auto& [state, weight] : belief) {
+    const double value = weight * backed_up(rows_, rows_.row(state, action), later);
+    sum += value;
+    magnitude += std::abs(value);
+  }
+  const double rounding = 1e-15 * static_cast<double>(100 + belief.size());
+  return sum + rounding * magnitude;
+}
+
+// Probabilities are rounded to 1e-13, so that sums of the same terms in different orders give the same key.
+ExactEvaluation::BeliefKey ExactEvaluation::key_of(const Weighted& belief) {
+  BeliefKey key{0x9ae16a3b2f90404fu, 0xc949d7c7509e6557u};
+  for (const auto& [number, weight] : belief) {
+    const auto rounded = static_cast<std::uint64_t>(std::llround(weight * 1e13));
+    key.high = mixed(key.high, rounded * 31 + number);
+    key.low = mixed(key.low ^ number, rounded);
+  }
+  return key;
+}
+
+}  // namespace aos
