@@ -38,10 +38,8 @@ ROUTES = (
             "endless",
             "certainty_equivalent",
             "repeated_trials",
-            "middle_trials",
             "lower_trials",
             "simple_policies",
-            "despot_rule",
         ),
     ),
     Route("pomcp", "pomcp", (), ("listed_values", "step_table", *_SEARCH)),
@@ -85,9 +83,7 @@ class BundleRoute(NamedTuple):
 _WITHOUT_OPTIONS = ("learned_values", "prior", "prior_draw", "asked_leaves")
 
 BUNDLES = (
-    BundleRoute(
-        "diagnosis200", 2000, 40, ("simple_policies", "repeated_trials", "lower_trials", "middle_trials")
-    ),
+    BundleRoute("diagnosis200", 2000, 40, ("simple_policies", "repeated_trials", "lower_trials")),
     BundleRoute(
         "lightdark",
         2000,
@@ -97,7 +93,6 @@ BUNDLES = (
             "certainty_equivalent",
             "repeated_trials",
             "lower_trials",
-            "middle_trials",
             "simple_policies",
         ),
     ),

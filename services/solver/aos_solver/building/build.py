@@ -83,7 +83,7 @@ _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
 NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values")
-"""The parts of the engine that know models as numbers only: loops over these, the same for states of any size."""
+"""The parts of the engine that know models as numbers only, the same for states of any size: mostly loops."""
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -241,7 +241,8 @@ class _Build(msgspec.Struct, frozen=True):
         usual, _ = await _together(self._engine(STATE_BYTES[0]), self._compile(staging))
         state_bytes = self._state_bytes(staging / _OBJECT)
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
-        await self._link(staging, [engine / _ENGINE_OBJECT, *(usual / number_object(part) for part in NUMBERS)])
+        numbers = [usual / number_object(part) for part in NUMBERS]
+        await self._link(staging, [engine / _ENGINE_OBJECT, *numbers])
 
     def _ready_engine(self, state_bytes: int) -> Path | None:
         return self.cache.find(_engine_name(self.compiler, state_bytes))

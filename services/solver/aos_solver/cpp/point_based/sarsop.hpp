@@ -3,8 +3,7 @@
 // A trial follows the action with the highest upper bound and the observation that matters most for the gap
 // at the root. It ends when nothing more can be learnt for the root, and both bounds are backed up along its
 // path. Upper bounds that are far too high say little about what is worth improving, and the policy follows
-// the lower bound. So one trial of three follows the highest middle of both bounds, and one opens all actions
-// and follows the highest lower bound. Before these, the first trials from a belief repeat one action each:
+// the lower bound. So one trial of three opens all actions and follows the highest lower bound. Before these, the first trials from a belief repeat one action each:
 // bounds hardly find what lies behind a long detour. Actions whose upper bound is below the belief's lower
 // bound are dropped, and so are alpha vectors that are best at no remaining belief.
 #pragma once
@@ -277,7 +276,7 @@ class Sarsop {
     return {best, *std::max_element(uppers.begin(), uppers.end()) < highest};
   }
 
-  // Runs one trial. Returns false after three in a row, one by each rule, that learnt nothing.
+  // Runs one trial. Returns false after three in a row, one of them by the lower bound, that learnt nothing.
   template <class IsOver>
   bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
     const bool persists = switches::repeated_trials && persisted_ < model_.actions;

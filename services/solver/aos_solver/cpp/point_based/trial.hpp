@@ -26,7 +26,7 @@ class Trial {
   const std::vector<std::uint32_t>& begun() const { return begun_; }
   void set_begun(std::vector<std::uint32_t> begun) { begun_ = std::move(begun); }
   void forget_begun() { begun_.assign(model_.actions, 0); }
-  // Begins again with the first of the rules.
+  // Begins again with the upper bound.
   void start_over() { sampled_ = 0; }
 
   // Repeats an action, with the likeliest observation each time, as long as it may be the best and leads on.
@@ -53,13 +53,11 @@ class Trial {
     return has_learnt_;
   }
 
-  // Follows one of three rules in turn, towards the gap that matters most at the root.
+  // Follows the upper bound or, every third time, the lower one, towards the gap that matters most at the root.
   template <class IsOver>
   bool sample(std::uint32_t number, double precision, IsOver&& is_over) {
     begin();
-    auto follows = static_cast<Follows>(sampled_++ % 3);
-    if (!switches::middle_trials && follows == Follows::middle) follows = Follows::upper;
-    if (!switches::lower_trials && follows == Follows::lower) follows = Follows::upper;
+    const bool by_lower = switches::lower_trials && sampled_++ % 3 == 2;
     const double gap = graph_[number].upper - graph_[number].lower;
     double allowed = std::max(precision, share_of_gap_ * gap);
     double low = graph_[number].lower;
@@ -73,7 +71,7 @@ class Trial {
       path_.push_back(number);
       graph_.expand(node);
       if (is_over()) break;
-      const Branch* const best = followed_branch(node, follows, is_over);
+      const Branch* const best = followed_branch(node, by_lower, is_over);
       if (best == nullptr) break;
       double best_lower = -std::numeric_limits<double>::infinity();
       for (const Branch& branch : node.branches) best_lower = std::max(best_lower, branch.lower);
@@ -112,9 +110,6 @@ class Trial {
   }
 
  private:
-  // The bound by which a trial chooses actions.
-  enum class Follows { middle, upper, lower };
-
   static constexpr double share_of_gap_ = 0.1;  // a trial aims below this share of the root's gap
   static constexpr std::size_t longest_trial_ = 1000;
   static constexpr std::size_t longest_detour_ = 30;
@@ -124,12 +119,12 @@ class Trial {
     has_learnt_ = false;
   }
 
-  // The best of the open branches by the rule. The branch with the highest upper bound is opened if it is
-  // closed. Refreshes the bounds of open branches. Null if `is_over()` comes first.
+  // The best of the open branches by one of the bounds. By the lower one all are opened; else the one with the highest upper
+  // bound is. Refreshes the bounds of open branches. Null if `is_over()` comes first.
   template <class IsOver>
-  const Branch* followed_branch(Node& node, Follows follows, IsOver&& is_over) {
+  const Branch* followed_branch(Node& node, bool by_lower, IsOver&& is_over) {
     for (Branch& branch : node.branches) {
-      if (follows == Follows::lower && !branch.is_open && !is_over()) {
+      if (by_lower && !branch.is_open && !is_over()) {
         graph_.open(node, branch);
         has_learnt_ = true;
       }
@@ -140,7 +135,7 @@ class Trial {
       Branch* followed = nullptr;
       for (Branch& branch : node.branches) {
         if (branch.upper > highest->upper) highest = &branch;
-        if (branch.is_open && (followed == nullptr || merit(branch, follows) > merit(*followed, follows))) followed = &branch;
+        if (branch.is_open && (followed == nullptr || merit(branch, by_lower) > merit(*followed, by_lower))) followed = &branch;
       }
       if (highest->is_open) return followed;
       graph_.open(node, *highest);
@@ -151,9 +146,7 @@ class Trial {
     return nullptr;
   }
 
-  static double merit(const Branch& branch, Follows follows) {
-    return (follows == Follows::upper ? 0 : branch.lower) + (follows == Follows::lower ? 0 : branch.upper);
-  }
+  static double merit(const Branch& branch, bool by_lower) { return by_lower ? branch.lower : branch.upper; }
 
   const FlatModel& model_;
   BeliefGraph& graph_;

@@ -10,17 +10,17 @@
 #endif
 
 // Which planner decides:
-//   lists (of states), exact, near_states, belief_tree, options, despot_rule
+//   lists (of states), exact, near_states, belief_tree, options
 // SARSOP:
-//   endless, certainty_equivalent, repeated_trials, middle_trials, lower_trials, simple_policies
+//   endless, certainty_equivalent, repeated_trials, lower_trials, simple_policies
 // POMCP's values of states, and its prior:
 //   listed_values, wide_values, learned_values, prior, prior_draw, asked_leaves, first_state, step_table, expected_rewards
 // POMCP's search:
 //   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
-  of(lists) of(exact) of(near_states) of(belief_tree) of(options) of(despot_rule)                              \
-  of(endless) of(certainty_equivalent) of(repeated_trials) of(middle_trials) of(lower_trials) of(simple_policies) \
+  of(lists) of(exact) of(near_states) of(belief_tree) of(options)                                              \
+  of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state)  \
   of(step_table) of(expected_rewards)                                                                           \
   of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns)              \
