@@ -75,6 +75,7 @@ class PointBased {
   // Forgets what searches have found out, so that a mission does not depend on those before it.
   void start_over() {
     if (search_) search_->start_over();
+    put_off_ = failures_ = 0;
     known_ = 0;
   }
 
@@ -109,8 +110,8 @@ class PointBased {
     };
     try_until(share_of_trials, trials_are_over);
     const Operations most_of_policies = std::max<Operations>(work_of(1 - share_of_missions - share_of_trials), most > 0);
-    policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most_of_policies, policies_are_over, work);
-    if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
+    if (put_off_ > 0) --put_off_;
+    else try_policies(most_of_policies, policies_are_over, work);
     if (!policy_) try_until(1 - share_of_missions, policies_are_over);
     const Operations most_of_anew = std::max<Operations>(work_of(share_of_anew), most > 0);
     anew_ = search_->best_policy_anew(static_cast<std::size_t>(horizon_), most_of_anew, over_after(1 - share_of_missions + share_of_anew), work);
@@ -176,10 +177,21 @@ class PointBased {
   // Of the budget, at least. Policies have what is left.
   static constexpr double share_of_trials = 0.5;
   static constexpr double share_of_missions = 0.2;
+  static constexpr int max_failures = 4;  // of policies, that put off longer
   static constexpr double share_of_anew = 0.05;  // of these, missions by simple policies that decide anew
   // Of a value, beyond the horizon.
   static constexpr double much = 0.5;
   static constexpr double next_to_nothing = 0.01;
+
+  // Finds out whether a simple policy decides. Where none does, or too few missions were played to tell, the next tries are put
+  // off, and trials have the time.
+  void try_policies(Operations most, const point_based::OnlineSarsop::IsOver& is_over, Operations& work) {
+    const Operations before = work;
+    policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most, is_over, work);
+    if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
+    if (policy_) failures_ = 0;
+    else if (work > before) put_off_ = (1 << std::min(++failures_, max_failures)) - 1;
+  }
 
   // Finds what missions lose that begin with an action and plan anew at each step. Returns the work.
   Operations play(int action, Operations most, const point_based::OnlineSarsop::IsOver& is_over) {
@@ -283,6 +295,8 @@ class PointBased {
   NumberCells cells_;
   double error_ = 0;  // of bounds
   double running_ = 0;
+  int put_off_ = 0;   // how many decisions do not try policies
+  int failures_ = 0;  // tries in a row by which no policy decides
   std::optional<point_based::PolicyValue> policy_;  // that decides, since it returns more than is proven
   std::optional<point_based::PolicyValue> anew_;    // that decides anew with the whole horizon at each step
   std::size_t missions_ = 0;  // that were played from this belief
