@@ -1,5 +1,6 @@
 // Point-based search for the engine; compiled once for all models, whatever the size of their states.
 #include "aos/base/switches.hpp"
+#include "point_based/constants.hpp"
 #include "point_based/online.hpp"
 
 #include <algorithm>
@@ -15,10 +16,7 @@ namespace aos::point_based {
 
 namespace {
 
-constexpr double closed_share = 1e-5;  // of the value: a smaller gap matters to no decision
-constexpr double nearly_closed_share = 0.05;
 constexpr double share_of_bits = 0x1p-64;
-constexpr std::size_t max_bytes = std::size_t{512} << 20;
 
 }  // namespace
 
@@ -86,7 +84,7 @@ void OnlineSarsop::start_over() { solver_->sarsop.start_over(); }
 
 bool OnlineSarsop::move_to(const std::vector<std::pair<std::uint32_t, double>>& belief) {
   if (!solver_->is_in_one_region(belief)) return false;
-  solver_->sarsop.move_to({1, belief}, max_bytes);
+  solver_->sarsop.move_to({1, belief}, max_graph_bytes);
   return true;
 }
 

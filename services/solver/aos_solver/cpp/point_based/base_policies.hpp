@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "point_based/belief_graph.hpp"
+#include "point_based/constants.hpp"
 #include "point_based/online.hpp"
 
 namespace aos::point_based {
@@ -41,7 +42,7 @@ class BasePolicies {
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     std::vector<Candidate> candidates;
     for (const Policy& policy : policies_) candidates.push_back({{policy.share, policy.weight * worth}});
-    std::size_t missions = fewest_;
+    std::size_t missions = fewest_missions;
     while (true) {
       for (Candidate& candidate : candidates) {
         for (std::size_t i = 0; i < missions && !is_over(); ++i) play(node, candidate, steps, uniform);
@@ -52,7 +53,7 @@ class BasePolicies {
       candidates.resize(candidates.size() / 2);
       // The mean of the best of several is too high. What the last one returns is found anew.
       if (candidates.size() == 1) candidates.front().returns = {};
-      missions = candidates.size() == 1 ? most_ : 2 * missions;
+      missions = candidates.size() == 1 ? most_missions : 2 * missions;
     }
   }
 
@@ -73,12 +74,10 @@ class BasePolicies {
   };
 
   static constexpr Policy policies_[] = {{1, 0}, {1, 0.1}, {0.9, 0.03}, {0.9, 0.1}, {0.9, 0.3}, {0.9, 1}};
-  static constexpr std::size_t fewest_ = 4;  // missions by each policy
-  static constexpr std::size_t most_ = 32;
 
   static std::optional<PolicyValue> value_of(const Candidate& candidate) {
     const Returns& returns = candidate.returns;
-    if (returns.count < static_cast<double>(fewest_)) return std::nullopt;
+    if (returns.count < static_cast<double>(fewest_missions)) return std::nullopt;
     return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count, returns.error()};
   }
 

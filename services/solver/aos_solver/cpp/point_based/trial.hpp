@@ -11,6 +11,7 @@
 #include "aos/base/switches.hpp"
 #include "point_based/backups.hpp"
 #include "point_based/belief_graph.hpp"
+#include "point_based/constants.hpp"
 
 namespace aos::point_based {
 
@@ -33,7 +34,7 @@ class Trial {
   template <class IsOver>
   bool persist(std::uint32_t number, std::uint32_t action, IsOver&& is_over) {
     begin();
-    while (path_.size() < longest_detour_) {
+    while (path_.size() < longest_detour) {
       Node& node = graph_[number];
       graph_.expand(node);
       const auto branch = std::find_if(node.branches.begin(), node.branches.end(),
@@ -59,10 +60,10 @@ class Trial {
     begin();
     const bool by_lower = switches::lower_trials && sampled_++ % 3 == 2;
     const double gap = graph_[number].upper - graph_[number].lower;
-    double allowed = std::max(precision, share_of_gap_ * gap);
+    double allowed = std::max(precision, share_of_gap * gap);
     double low = graph_[number].lower;
     double high = low + allowed;
-    const std::size_t longest = path_.size() + longest_trial_;
+    const std::size_t longest = path_.size() + longest_trial;
     while (path_.size() < longest) {
       Node& node = graph_[number];
       graph_.refresh_lower(node);
@@ -110,10 +111,6 @@ class Trial {
   }
 
  private:
-  static constexpr double share_of_gap_ = 0.1;  // a trial aims below this share of the root's gap
-  static constexpr std::size_t longest_trial_ = 1000;
-  static constexpr std::size_t longest_detour_ = 30;
-
   void begin() {
     path_.clear();
     has_learnt_ = false;

@@ -7,12 +7,10 @@
 
 #include <cstdint>
 
+#include "aos/planning/pomcp_constants.hpp"
 #include "aos/planning/search_tree.hpp"
 
 namespace aos {
-
-inline constexpr std::uint32_t settled_visits = 16;     // of a history, before its best action gives its value
-inline constexpr std::uint32_t well_visited_share = 4;  // at least 1/4 of the most visited action's visits
 
 // Whether an action has enough visits, beside the most visited one, for its value to be reliable.
 inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {

@@ -14,11 +14,9 @@
 #include "aos/base/fault.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 
 namespace aos {
-
-inline constexpr int max_reward_paths = 32;       // of a step
-inline constexpr std::size_t expected_steps = 2;  // of a simulation
 
 template <class Model>
 class ExpectedRewards {

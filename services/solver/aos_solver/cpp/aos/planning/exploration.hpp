@@ -14,13 +14,10 @@
 #include "aos/base/switches.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 #include "aos/planning/search_tree.hpp"
 
 namespace aos {
-
-inline constexpr double prior_visits = 4;   // of a spread that was seen elsewhere
-inline constexpr double even_share = 0.1;   // of the exploration, independent of the rollout policy
-inline constexpr double usual_share = 0.9;  // an even share, less a margin for rounding
 
 // The bonuses of one history's actions. The spread of an action is that of its own returns and of `prior_visits`
 // returns with the history's spread. The history's spread is filled up with the root's in the same way.
@@ -57,7 +54,7 @@ class RootSpread {
  public:
   // Begins a simulation.
   void count(const ActionNode& best) {
-    if (++simulations_ % renewal != 0 && simulations_ != settled_visits) return;
+    if (++simulations_ % spread_renewal != 0 && simulations_ != settled_visits) return;
     variance_ = best.n >= settled_visits ? best.squares / best.n : squares_ / static_cast<double>(simulations_);
   }
   // Ends a simulation by its return.
@@ -70,8 +67,6 @@ class RootSpread {
   double variance() const { return variance_; }
 
  private:
-  static constexpr std::uint64_t renewal = 256;
-
   std::uint64_t simulations_ = 0;
   double mean_ = 0;     // of all returns
   double squares_ = 0;  // sum of the returns' squared deviations from their mean

@@ -18,12 +18,9 @@
 #include "aos/base/random.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 
 namespace aos {
-
-inline constexpr double cells_of_one_visit = 4;
-inline constexpr double widening = 0.05;  // the exponent of the visits
-inline constexpr std::size_t max_cells = 4'000'000;
 
 class ObservationCells {
  public:
@@ -68,8 +65,8 @@ class ObservationCells {
       min_distance = distance;
       nearest = &cell;
     }
-    const double wanted = cells_of_one_visit * std::pow(static_cast<double>(place.visits), widening);
-    const bool is_new = nearest == nullptr || (static_cast<double>(place.cells.size()) < wanted && cells_ < max_cells);
+    const double wanted = cells_of_one_visit * std::pow(static_cast<double>(place.visits), cell_widening);
+    const bool is_new = nearest == nullptr || (static_cast<double>(place.cells.size()) < wanted && cells_ < max_observation_cells);
     if (!is_new) return nearest->name;
     ++cells_;
     const auto name = mixed(static_cast<std::uint64_t>(response), place.cells.size() + 1);

@@ -24,9 +24,12 @@
 #include "aos/planning/budget.hpp"
 #include "aos/planning/number_cells.hpp"
 #include "aos/planning/state_space.hpp"
+#include "point_based/constants.hpp"
 #include "point_based/online.hpp"
 
 namespace aos {
+
+using point_based::share_of_anew, point_based::share_of_missions, point_based::share_of_trials;
 
 template <class Model>
 class PointBased {
@@ -174,15 +177,6 @@ class PointBased {
   }
 
  private:
-  // Of the budget, at least. Policies have what is left.
-  static constexpr double share_of_trials = 0.5;
-  static constexpr double share_of_missions = 0.2;
-  static constexpr int max_failures = 4;  // of policies, that put off longer
-  static constexpr double share_of_anew = 0.05;  // of these, missions by simple policies that decide anew
-  // Of a value, beyond the horizon.
-  static constexpr double much = 0.5;
-  static constexpr double next_to_nothing = 0.01;
-
   // Finds out whether a simple policy decides. Where none does, or too few missions were played to tell, the next tries are put
   // off, and trials have the time.
   void try_policies(Operations most, const point_based::OnlineSarsop::IsOver& is_over, Operations& work) {
@@ -190,7 +184,7 @@ class PointBased {
     policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most, is_over, work);
     if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
     if (policy_) failures_ = 0;
-    else if (work > before) put_off_ = (1 << std::min(++failures_, max_failures)) - 1;
+    else if (work > before) put_off_ = (1 << std::min(++failures_, point_based::max_failures)) - 1;
   }
 
   // Finds what missions lose that begin with an action and plan anew at each step. Returns the work.
@@ -223,7 +217,7 @@ class PointBased {
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
-    const double most_later = is_long() || is_large(model) ? much : next_to_nothing;
+    const double most_later = is_long() || is_large(model) ? point_based::much : point_based::next_to_nothing;
     is_endless_ = switches::endless && may_be_endless_ && Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
     try {
       search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
@@ -248,12 +242,11 @@ class PointBased {
   bool is_long() const { return horizon_ > 30; }
   // Whether it takes long to go through all observations of all states once for each decision to go.
   bool is_large(const point_based::FlatModel& model) const {
-    constexpr double max_likelihoods = 2e6;
     double likelihoods = 0;
     for (const point_based::Outcome& outcome : model.outcomes.elements) {
       likelihoods += static_cast<double>(model.likelihoods[outcome.sensing].size());
     }
-    return likelihoods * horizon_ > max_likelihoods;
+    return likelihoods * horizon_ > point_based::max_likelihoods_in_layers;
   }
   point_based::FlatModel flat_model() const {
     point_based::FlatModel model = space_.rows();

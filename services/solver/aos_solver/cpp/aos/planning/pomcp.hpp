@@ -22,6 +22,7 @@
 #include "aos/planning/exploration.hpp"
 #include "aos/planning/learned_values.hpp"
 #include "aos/planning/mdp_values.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 #include "aos/planning/prior_values.hpp"
 #include "aos/planning/search_threads.hpp"
 #include "aos/planning/simulated_state.hpp"
@@ -138,9 +139,6 @@ class Pomcp final : public TreePlanner<Model> {
 
  private:
   enum class ValueSource { none, listed, wide, learned };
-  static constexpr std::uint64_t fewest_rollouts = 10;
-  static constexpr std::uint64_t most_rollouts = 100;
-
   static constexpr Operations cost_by_table = 40;
   static constexpr Operations cost_of_value = 60;  // of a state that code has stepped
   static constexpr Operations cost_of_listed_worth = 20;

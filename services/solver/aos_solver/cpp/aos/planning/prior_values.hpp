@@ -18,11 +18,10 @@
 #include "aos/planning/budget.hpp"
 #include "aos/planning/learned_values.hpp"
 #include "aos/planning/mdp_values.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
-
-inline constexpr std::size_t max_prior_steps = 20'000;
 
 // Makes a prior: how much less each action is worth than the best one.
 inline std::vector<double> below_best(std::vector<double> worths) {

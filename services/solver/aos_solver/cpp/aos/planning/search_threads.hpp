@@ -16,12 +16,10 @@
 #include "aos/base/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 #include "aos/planning/tree_search.hpp"
 
 namespace aos {
-
-inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
-inline constexpr double min_time_share = 0.1;  // of a budget in time, which is always used
 
 template <class Model>
 class SearchThreads {

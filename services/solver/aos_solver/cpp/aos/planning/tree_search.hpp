@@ -24,13 +24,11 @@
 #include "aos/planning/expected_rewards.hpp"
 #include "aos/planning/exploration.hpp"
 #include "aos/planning/observation_cells.hpp"
+#include "aos/planning/pomcp_constants.hpp"
 #include "aos/planning/root_record.hpp"
 #include "aos/planning/search_tree.hpp"
 
 namespace aos {
-
-inline constexpr std::uint64_t turns = 8;
-inline constexpr std::uint32_t asked_states = 8;  // of a history; they tell what its actions are worth
 
 template <class Model>
 class TreeSearch {

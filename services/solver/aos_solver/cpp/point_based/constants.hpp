@@ -1,0 +1,53 @@
+// The constants by which SARSOP decides, each with its evidence. What the operations cost that a budget counts stands where they
+// are counted; docs/lab/budgets.md has measured it.
+#pragma once
+
+#include <cstddef>
+
+namespace aos::point_based {
+
+// --- the budget of a decision ------------------------------------------------------------------------
+
+// Of the budget: missions that tell the value, and of these missions by simple policies that decide anew. Trials have 0.5 at
+// least, and policies what is left, which cost 36 in lightdark where they decided nothing (docs/lab/simple-policies.md).
+// Nobody has varied the shares.
+inline constexpr double share_of_missions = 0.2;
+inline constexpr double share_of_anew = 0.05;
+inline constexpr double share_of_trials = 0.5;
+// Tries in a row by which no policy decides, that put off longer; after four, 15 decisions pass. Nobody has varied it.
+inline constexpr int max_failures = 4;
+
+// --- the horizon -------------------------------------------------------------------------------------
+
+// What a discount may leave of a value beyond the horizon of a search that has none: much, where there are many decisions or
+// observations. Where the line is drawn hardly matters: docs/lab/horizons.md.
+inline constexpr double much = 0.5;
+inline constexpr double next_to_nothing = 0.01;
+inline constexpr double max_likelihoods_in_layers = 2e6;  // times decisions; nobody has varied it
+
+// --- trials ------------------------------------------------------------------------------------------
+
+// A trial aims below this share of the root's gap. Nobody has varied it.
+inline constexpr double share_of_gap = 0.1;
+inline constexpr std::size_t longest_trial = 1000;
+// Of the first trials, which repeat one action. Nobody has varied it.
+inline constexpr std::size_t longest_detour = 30;
+
+// --- the end of a search -----------------------------------------------------------------------------
+
+// A gap of this share of the value matters to no decision. Nobody has varied it.
+inline constexpr double closed_share = 1e-5;
+// A gap of this share is small enough to ask what missions lose of the value, and for no policy to be tried. Nobody has varied it.
+inline constexpr double nearly_closed_share = 0.05;
+
+// --- simple policies ---------------------------------------------------------------------------------
+
+// Missions by each policy, and by the last one that is left. Nobody has varied them.
+inline constexpr std::size_t fewest_missions = 4;
+inline constexpr std::size_t most_missions = 32;
+
+// --- limits ------------------------------------------------------------------------------------------
+
+inline constexpr std::size_t max_graph_bytes = std::size_t{512} << 20;  // of beliefs, before those are forgotten
+
+}  // namespace aos::point_based
