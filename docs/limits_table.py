@@ -104,7 +104,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         Row("particles of a sampled belief", "belief/history.hpp:particle_count", "", "drawn anew"),
         Row(
             "memory of the search trees",
-            "planning/search_threads.hpp:max_search_bytes", "bytes", "trees grow no more",
+            "planning/pomcp_constants.hpp:max_search_bytes", "bytes", "trees grow no more",
         ),
         Row("threads of a search", "planning/budget.hpp:max_search_threads", "", "refused", "`threads`"),
         Row("states of `aos solve`", "aos_solver.offline.enumeration.MAX_STATES", "", "AOS220", "`--states`"),
