@@ -1,15 +1,18 @@
-"""The settings that an adapter makes of the words of its command and of its environment."""
+"""The settings that an adapter makes of the words of its command, and the class that these name."""
 
 from __future__ import annotations
 
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
 
+from aos_protocol.errors import DeployError
 from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.adapters.host import load_adapter
 from aos_runtime.adapters.told import settings_told
 
 HERE = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "fetch", "AOS_ADAPTER": "arm"}
@@ -93,3 +96,18 @@ def test_nobody_else_has_the_folder_of_the_ledger(
 
 def test_a_settings_file_is_left_to_the_service() -> None:
     assert settings_told(["arm.json"], HERE) is None
+
+
+def test_an_adapter_whose_file_is_no_python_is_told_with_its_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "unfinished_arm.py").write_text(
+        "class Arm:\n    def start(self):\n        await self.serve()\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    host: Any = None
+    with pytest.raises(DeployError) as told:
+        load_adapter("unfinished_arm:Arm", host)
+    assert told.value.code == "AOS802"
+    place = f"{tmp_path / 'unfinished_arm.py'}:3"
+    assert f"unfinished_arm:Arm cannot be loaded: {place}: 'await' outside" in told.value.message

@@ -225,7 +225,7 @@ class Host:
 
 
 def load_adapter(name: str, host: Host) -> Adapter:
-    """An adapter by `module:Class`; DeployError AOS802 if there is no such class."""
+    """An adapter by `module:Class`; DeployError AOS802 without such a class, or Python in its file."""
     module, _, attribute = name.partition(":")
     try:
         adapter: Adapter = getattr(importlib.import_module(module), attribute)(host)
@@ -234,5 +234,11 @@ def load_adapter(name: str, host: Host) -> Adapter:
             f"the adapter {name} cannot be loaded: {error}",
             code="AOS802",
             hint="It is named module:Class; see that the module can be imported here",
+        ) from error
+    except SyntaxError as error:
+        raise DeployError(
+            f"the adapter {name} cannot be loaded: {error.filename}:{error.lineno}: {error.msg}",
+            code="AOS802",
+            hint="It is no Python as it stands there",
         ) from error
     return adapter
