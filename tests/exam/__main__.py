@@ -94,7 +94,7 @@ def _add_models(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
             command.add_argument(
                 "--planner",
                 action="append",
-                help="auto, pomcp, despot, sarsop, options, belief-tree, look-ahead",
+                help="auto, pomcp, despot, sarsop, options, look-ahead",
             )
             command.add_argument("--seconds", type=float, help="of processor time for a decision; 0.1")
             missions = 4 if name == "regret" else 30
