@@ -5,6 +5,7 @@
   python -m tests.exam regret --needles --models 20
   python -m tests.exam values --models 66 --planner auto --planner despot
   python -m tests.exam values --bundle deploy/bundles/bench/tiger --seconds 0.1
+  python -m tests.exam intervals --models 50
   python -m tests.exam solve --models 200
   python -m tests.exam documents --models 40 --texts 2000
   python -m tests.exam failures --models 200
@@ -17,7 +18,9 @@ the problem is written there. `regret` tells per family what planners lose again
 the range between random actions and the optimum. `values` holds what first decisions tell against the mean
 of missions: it is right within two standard errors, or 5 % of that range. `documents` compiles bundles in
 which a value goes from one variable to the next by idioms of C++; in `--texts` more it only looks for
-variables that are wrongly left out. `failures` breaks a skill of a robot that uses it: it always fails, is
+variables that are wrongly left out. `intervals` has POMCP decide, and
+holds the value of its choice and the margin over the runner-up, each with two standard errors, against the
+exact ones. `failures` breaks a skill of a robot that uses it: it always fails, is
 always lost, or says what the model excludes. `budgets` measures what a simulation costs in each planner, on
 bundles. Exit code 1: a claim was false, or a target was missed.
 """
@@ -69,6 +72,7 @@ def _add_models(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         ("bounds", "hold claims against the truth"),
         ("regret", "play missions"),
         ("values", "hold the first decision's value against what missions return"),
+        ("intervals", "hold values and margins by POMCP, with their errors, against the truth"),
         ("solve", "hold bounds of the offline solver against the truth"),
     ):
         command = commands.add_parser(name, help=text)

@@ -17,6 +17,7 @@ from .documents import Documents, documents
 from .driver import Driver, built_driver
 from .families import FAMILIES, NEEDLES
 from .generation import named_problem, problems
+from .intervals import Intervals
 from .offline import false_bounds
 from .pomdp_file import pomdp_text
 from .problem import Problem
@@ -121,10 +122,10 @@ async def examine_bundles(arguments: argparse.Namespace) -> int:
 
 def examine_engine(arguments: argparse.Namespace) -> int:
     """Bounds, regret or values of problems as tables, in the engine's headers."""
-    summaries = {"bounds": Bounds, "regret": Regrets, "values": Values}
-    summary: Bounds | Regrets | Values = summaries[arguments.command]()
+    summaries = {"bounds": Bounds, "regret": Regrets, "values": Values, "intervals": Intervals}
+    summary: Bounds | Regrets | Values | Intervals = summaries[arguments.command]()
     # Values are held against the missions that regret is measured by.
-    report_of = "bounds" if arguments.command == "bounds" else "regret"
+    report_of = "regret" if arguments.command == "values" else arguments.command
     options = _options(arguments)
     drivers: SimpleQueue[Driver] = SimpleQueue()
     executable = asyncio.run(built_driver(CACHE))
@@ -164,7 +165,7 @@ def _options(arguments: argparse.Namespace) -> dict[str, object]:
     for name in ("truth", "simulations", "steps"):
         if (value := getattr(arguments, name)) is not None:
             options[name] = value
-    if arguments.command != "bounds":
+    if arguments.command in PLANNERS:
         has_budget = arguments.simulations is not None and arguments.seconds is None
         options["seconds"] = 0 if has_budget else arguments.seconds or 0.1
         options["missions"] = arguments.missions

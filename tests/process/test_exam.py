@@ -14,6 +14,7 @@ from exam.driver import Driver
 from exam.failures import Failures
 from exam.families import FAMILIES, NEEDLES
 from exam.generation import named_problem, problems
+from exam.intervals import Intervals
 from exam.jobs import job
 from exam.problem import RUNNING, Problem
 from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
@@ -65,6 +66,17 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
     assert len(excesses) >= 20
     assert sum(excesses) / len(excesses) <= MEAN_TARGET
     assert max(excesses) <= WORST_TARGET
+
+
+def test_margins_hold_the_exact_ones_and_those_that_are_sure_have_the_right_sign(executable: Path) -> None:
+    found = Intervals()
+    options = {"seed": 5, "simulations": 2000, "truth": 1}
+    for problem, answer in reports(
+        executable, "intervals", options, problems(list(FAMILIES), 44, 3000, False, 100)
+    ):
+        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    assert found.counts["decisions"] >= 90
+    assert found.is_passed(), found.table()
 
 
 def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(executable: Path) -> None:

@@ -11,6 +11,7 @@
 
 #include "aos/model/support.hpp"
 #include "claims.hpp"
+#include "intervals.hpp"
 #include "regret.hpp"
 #include "truth.hpp"
 
@@ -43,6 +44,14 @@ inline std::string report_of(const std::string& what, const exam::Problem& probl
     const auto decisions = static_cast<int>(number_of(options, "decisions", problem.horizon));
     return values_of(problem, decisions, number_of(options, "truth", 1));
   }
+  if (what == "intervals") {
+    exam::IntervalOptions intervals;
+    intervals.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
+    intervals.simulations = static_cast<std::uint64_t>(number_of(options, "simulations", 5000));
+    intervals.truth_seconds = number_of(options, "truth", 0.5);
+    intervals.steps = static_cast<int>(number_of(options, "steps", 3));
+    return exam::intervals_of(problem, intervals);
+  }
   if (what == "bounds") {
     exam::ClaimOptions claims;
     claims.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
@@ -73,8 +82,8 @@ inline int answer_problems(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   Options options;
   for (int i = 2; i + 1 < argc; i += 2) options[argv[i]] = argv[i + 1];
-  if (what != "bounds" && what != "regret" && what != "values") {
-    std::fprintf(stderr, "usage: %s bounds|regret|values [NAME VALUE]... < PROBLEMS\n", argv[0]);
+  if (what != "bounds" && what != "regret" && what != "values" && what != "intervals") {
+    std::fprintf(stderr, "usage: %s bounds|regret|values|intervals [NAME VALUE]... < PROBLEMS\n", argv[0]);
     return 2;
   }
   try {

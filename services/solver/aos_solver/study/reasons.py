@@ -47,6 +47,8 @@ class Reasons:
             raise StudyError(f"{decision.action} has no value: the search did without it")
         other = self._other(instead, values)
         action, others = values[decision.action], values[other]
+        if not valuing.is_exact and decision.chosen_by != "policy":
+            others = await valuing.alone(self._engine, other)
         margin = Margin.of(action, others)
         belief = await self._engine.summary()
         async with put_aside(self._engine):
@@ -98,8 +100,6 @@ class Reasons:
             if instead in self._valuing.barred:
                 made = deciding_search(self._decision)
                 self._remarks.append(f"{instead} was barred: {made.barred[instead] if made else ''}")
-            if not values[instead].n:
-                self._remarks.append(f"the search never tried {instead}: its value is unknown")
             return instead
         left = {name: value for name, value in values.items() if name not in self._valuing.barred}
         if len(left) < 2:

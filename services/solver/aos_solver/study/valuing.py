@@ -59,9 +59,9 @@ class Valuing:
         self.within = replay.restriction_of(made) if made is not None else Restriction()
         self.is_exact = decision.planner == "exact" and not self.within.without
         self.horizon = decision.horizon
-        self.share = 1 / 4
-        """The share of the decision's budget for each belief beside its own: of seven at most, so that all
-        searches of an explanation take twice the budget."""
+        self.share, self.share_alone = 1 / 8, 1.0
+        """The share of the decision's budget for each belief beside its own, of seven at most, and that for
+        an action alone: so that all searches of an explanation take twice the budget."""
         self.spent = sum(made.simulations) + made.known if made is not None else 0
         """The simulations that the values of the decision stand on."""
         self.begun: Mapping[str, Value] | None = None
@@ -78,7 +78,7 @@ class Valuing:
         self.horizon = plan.horizon
         self.spent = plan.simulations + plan.known_simulations
         self.begun = _values_of(plan)
-        self.share = 1 / 8  # A whole budget is spent.
+        self.share, self.share_alone = 1 / 16, 1 / 2  # A whole budget is spent.
         return plan.planner
 
     async def values(
@@ -95,6 +95,17 @@ class Valuing:
             plan = await self._with(share).run(engine, self._step, within)
             values = _values_of(plan)
         return values if anywhere else {name: v for name, v in values.items() if name not in self.barred}
+
+    async def alone(self, engine: Engine, action: str) -> Value:
+        """The value of an action in a search that begins with it alone.
+
+        A search that decides tries what seems worse less often, and so undervalues what comes after it.
+        """
+        actions = engine.description.actions
+        barred = [number for number, each in enumerate(actions) if each.name != action]
+        within = msgspec.structs.replace(self.within, barred=barred)
+        plan = await self._with(self.share_alone).run(engine, self._step, within)
+        return _values_of(plan)[action]
 
     def _with(self, share: float) -> Search:
         """The search with a share of its budget."""
