@@ -133,16 +133,18 @@ class ModelOf {
   }
   static Step step(State& state, int action, auto& random) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
-      if constexpr (Project::has_costs && !Skill::is_monitor) {
-        const State before = state;
-        Step step = aos::step<Environment, Skill>(state, parameters, random);
-        if (before.aos_ending == Ending::running) {
-          step.reward -= Project::cost_of(Project::template violations<Skill>(before, state, parameters));
+      // Two conditions, one in the other: Clang looks up what a project without costs does not have in the first.
+      if constexpr (Project::has_costs) {
+        if constexpr (!Skill::is_monitor) {
+          const State before = state;
+          Step step = aos::step<Environment, Skill>(state, parameters, random);
+          if (before.aos_ending == Ending::running) {
+            step.reward -= Project::cost_of(Project::template violations<Skill>(before, state, parameters));
+          }
+          return step;
         }
-        return step;
-      } else {
-        return aos::step<Environment, Skill>(state, parameters, random);
       }
+      return aos::step<Environment, Skill>(state, parameters, random);
     });
   }
   static void pass(State& state, auto& random) {
