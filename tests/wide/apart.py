@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from .delivery import delivery
 from .writing import Bundle, BundleWriter
 
 __all__ = ["APART", "APART_SIZES", "arms", "courier", "drone", "plant"]
@@ -255,5 +256,6 @@ APART: dict[str, Callable[[int], Bundle]] = {
     "drone": drone,
     "courier": courier,
     "arms": arms,
+    "delivery": delivery,
 }
-APART_SIZES = {"plant": 16, "drone": 12, "courier": 6, "arms": 8}
+APART_SIZES = {"plant": 16, "drone": 12, "courier": 6, "arms": 8, "delivery": 6}

@@ -5,6 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .delivery import delivery_rule
+
 __all__ = ["APART_RULES", "arms", "courier", "drone", "plant"]
 
 
@@ -130,4 +132,5 @@ APART_RULES: dict[str, Callable[[int, random.Random], float]] = {
     "drone": drone,
     "courier": courier,
     "arms": arms,
+    "delivery": delivery_rule,
 }

@@ -16,6 +16,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/leaf_cells.hpp"
 #include "aos/planning/option_search.hpp"
+#include "aos/planning/own_changes.hpp"
 #include "aos/planning/sampled_belief.hpp"
 
 namespace aos {
@@ -26,9 +27,9 @@ class OptionGains {
   using State = typename Model::State;
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-  // Takes each option from each state.
+  // Takes each option from each state. What changes by itself touches nothing.
   void measure(const std::vector<Option>& options, const std::vector<State>& states, const LeafCells<Model>& cells,
-               double& steps, Sampler& random) {
+               const OwnChanges<Model>& changes, double& steps, Sampler& random) {
     options_ = &options;
     states_ = states.size();
     earned_.assign(options.size() * states_, 0);
@@ -43,6 +44,9 @@ class OptionGains {
       discounts_.push_back(std::pow(Model::discount, options[o].size()));
       for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
       steps -= tries * static_cast<double>(options[o].size() * states_);
+    }
+    for (auto& changed : changed_) {
+      for (std::size_t i = 0; i < cells.size(); ++i) changed[i] = changed[i] && !changes.is_worlds(i);
     }
     touches_.assign(options.size() * options.size(), false);
     for (std::size_t o = 0; o < options.size(); ++o) {
@@ -59,19 +63,6 @@ class OptionGains {
   }
   // Whether the option was among the best ones of a call since the last measurement.
   bool is_used(std::size_t option) const { return used_[option]; }
-
-  // The share of pairs that touch each other, of options that do not end the mission.
-  double touching() const {
-    double pairs = 0, touching = 0;
-    for (std::size_t o = 0; o < size(); ++o) {
-      for (std::size_t other = 0; other < o; ++other) {
-        if (ends_[o] || ends_[other]) continue;
-        ++pairs;
-        touching += touches(o, other) ? 1 : 0;
-      }
-    }
-    return pairs > 0 ? touching / pairs : 0;
-  }
 
   // What the best options earn. What cannot follow the option `before` is left out.
   double best(const StateWeights& weights, std::size_t before = none) const {

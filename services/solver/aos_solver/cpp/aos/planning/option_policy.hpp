@@ -32,6 +32,7 @@
 #include "aos/planning/option_search.hpp"
 #include "aos/planning/option_tests.hpp"
 #include "aos/planning/option_values.hpp"
+#include "aos/planning/own_changes.hpp"
 #include "aos/planning/sampled_belief.hpp"
 #include "aos/planning/step_cost.hpp"
 
@@ -53,8 +54,9 @@ class OptionPolicy {
     belief_.draw(belief, static_cast<std::size_t>(states), random);
     library_.drop_unused(gains_);
     double left = of_options * affordable_;
+    changes_.measure(belief_.states(), library_.cells(), left, random);
     const double found = library_.extend(belief_, left, random);
-    gains_.measure(library_.options(), belief_.states(), library_.cells(), left, random);
+    gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, left, random);
     steps_ = of_options * affordable_ - left;
     std::string obstacle = found < enough_found ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
@@ -94,7 +96,6 @@ class OptionPolicy {
   static constexpr double of_options = 0.4;  // of the affordable steps
   static constexpr double of_states = 0.05;
   static constexpr double enough_found = 0.5;   // of the belief
-  static constexpr double most_touching = 0.5;  // of pairs of options
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
 
@@ -108,9 +109,8 @@ class OptionPolicy {
 
   // What keeps the policy from deciding in this model.
   std::string obstacle_of_model(Sampler& random) {
-    if (gains_.touching() > most_touching) return "most ways to a reward change the same variables";
     double left = 0;
-    tests_.observe_all(library_.cells(), {}, left, random);
+    tests_.observe_all({}, left, random);
     steps_ -= left;
     const bool only_changes = tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
     return only_changes ? "nothing is observed but by what changes the state" : "";
@@ -141,7 +141,7 @@ class OptionPolicy {
   }
 
   void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
-    tests_.observe_all(library_.cells(), barred, left, random);
+    tests_.observe_all(barred, left, random);
     tests_.add_to(candidates_, left, random);
     moves_.add_to(candidates_, left, random);
     for (const std::size_t option : likely) {
@@ -180,7 +180,8 @@ class OptionPolicy {
   // Of the last decision:
   SampledBelief<Model> belief_;
   OptionRegret<Model> regret_{belief_, gains_};
-  OptionTests<Model> tests_{belief_, regret_};
+  OwnChanges<Model> changes_;
+  OptionTests<Model> tests_{belief_, regret_, changes_};
   OptionValues<Model> values_{library_.cells()};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   std::vector<OptionCandidate> candidates_;

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <vector>
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/leaf_cells.hpp"
 #include "aos/planning/option_regret.hpp"
+#include "aos/planning/own_changes.hpp"
 #include "aos/planning/repeated_observation.hpp"
 #include "aos/planning/sampled_belief.hpp"
 #include "aos/planning/step_reports.hpp"
@@ -32,10 +31,11 @@ class OptionTests {
     return (of_step + of_likelihood * OptionRegret<Model>::observations) * static_cast<double>(states);
   }
 
-  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret) : belief_(belief), regret_(regret) {}
+  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes)
+      : belief_(belief), regret_(regret), changes_(changes) {}
 
   // Takes each action once from each state, and notes what is observed. `steps` is counted down.
-  void observe_all(const LeafCells<Model>& cells, const BarredActions& barred, double& steps, Sampler& random) {
+  void observe_all(const BarredActions& barred, double& steps, Sampler& random) {
     const auto actions = static_cast<std::size_t>(Model::action_count());
     reports_.resize(actions);
     informations_.assign(actions, 0);
@@ -44,13 +44,12 @@ class OptionTests {
     for (std::size_t a = 0; a < actions; ++a) {
       reports_[a].resize(belief_.size());
       if (barred.contains(a)) continue;
-      double reward = 0;
-      const bool changes = take(static_cast<int>(a), cells, reward, random);
-      steps -= steps_of_information(belief_.size());
-      if (changes) {
+      if (changes_.is_move(static_cast<int>(a))) {
         moves_.push_back(static_cast<int>(a));
         continue;
       }
+      const double reward = take(static_cast<int>(a), random);
+      steps -= steps_of_information(belief_.size());
       informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
       if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
     }
@@ -58,9 +57,9 @@ class OptionTests {
   }
 
   bool empty() const { return tests_.empty(); }
-  // The actions that change the state.
+  // The actions that change the state, those that are barred left out.
   const std::vector<int>& moves() const { return moves_; }
-  bool is_move(int action) const { return std::ranges::find(moves_, action) != moves_.end(); }
+  bool is_move(int action) const { return changes_.is_move(action); }
   double information_of(int action) const { return informations_[static_cast<std::size_t>(action)]; }
 
   // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
@@ -100,30 +99,24 @@ class OptionTests {
     candidates.push_back({test.action, paid + discount * (regret_.value_seen() - left), discount, "what can be observed"});
   }
 
-  // Takes an action from all states. Returns whether it changes any of them.
-  bool take(int action, const LeafCells<Model>& cells, double& reward, Sampler& random) {
-    before_.resize(cells.size());
-    after_.resize(cells.size());
-    bool changes = false;
+  // Takes an action from all states. Returns the mean reward.
+  double take(int action, Sampler& random) {
+    double reward = 0;
     for (std::size_t k = 0; k < belief_.size(); ++k) {
       State state = belief_.states()[k];
-      cells.write(state, before_.data());
       reward += belief_.weights()[k] * step_.take(state, action, reports_[static_cast<std::size_t>(action)][k], random);
-      cells.write(state, after_.data());
-      changes = changes || before_ != after_ || Model::ending(state) != Ending::running;
     }
-    return changes;
+    return reward;
   }
 
   const SampledBelief<Model>& belief_;
   const OptionRegret<Model>& regret_;
+  const OwnChanges<Model>& changes_;
   ReportedStep<Model> step_;
   std::vector<std::vector<StepReports>> reports_;  // [action][state]
   std::vector<double> informations_;               // by action
   std::vector<Test> tests_;
   std::vector<int> moves_;
-  std::vector<std::uint64_t> before_;
-  std::vector<std::uint64_t> after_;
 };
 
 }  // namespace aos
