@@ -31,8 +31,10 @@ class OptionMoves {
   // Adds each move, once or several times in a row, where they are few, the latter while there are steps.
   void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) {
     if (tests_.moves().size() > few) return;
-    for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats && (repeats == 1 || steps > 0); repeats *= 2) {
-      for (const int move : tests_.moves()) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
+    for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats; repeats *= 2) {
+      for (const int move : tests_.moves()) {
+        if (repeats == 1 || steps > 0) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
+      }
     }
   }
 
@@ -40,16 +42,16 @@ class OptionMoves {
   void add_view(std::vector<OptionCandidate>& candidates, int move, const BarredActions& barred, double& steps, Sampler& random) {
     std::vector<State> now = belief_.states();
     std::vector<StepReports> reports(now.size());
-    for (State& state : now) step_.take(state, move, reports.front(), random);
+    for (State& state : now) step_.take(state, move, reports.front(), steps, random);
     int best = -1;
     double most = OptionTests<Model>::least_information;
     for (int action = 0; action < Model::action_count(); ++action) {
       if (barred.contains(static_cast<std::size_t>(action)) || tests_.is_move(action)) continue;
       for (std::size_t k = 0; k < now.size(); ++k) {
         State state = now[k];
-        step_.take(state, action, reports[k], random);
+        step_.take(state, action, reports[k], steps, random);
       }
-      steps -= OptionTests<Model>::steps_of_information(now.size());
+      steps -= OptionTests<Model>::steps_of_weighing(now.size());
       const double told = information(belief_.weights(), reports, OptionRegret<Model>::observations, random);
       const double gained = told - tests_.information_of(action);
       if (gained <= most) continue;
@@ -69,14 +71,14 @@ class OptionMoves {
     double discount = 1;
     for (std::size_t step = 0; step < way.size(); ++step, discount *= Model::discount) {
       for (std::size_t k = 0; k < now.size(); ++k) {
-        if (goes_on(k)) earned += discount * belief_.weights()[k] * step_.take(now[k], way[step], reports[step][k], random);
+        if (goes_on(k)) earned += discount * belief_.weights()[k] * step_.take(now[k], way[step], reports[step][k], steps, random);
       }
     }
-    steps -= 2 * static_cast<double>(now.size() * way.size());
     double share = 0;
     for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
     if (share < 0.5) return;
     const RepeatedObservation last{share < 1 - 1e-9 || !tell_nothing(reports) ? std::vector<StepReports>{} : reports.back()};
+    if (!last.is_listed(1)) steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
     const double left = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
       if (weights[k] <= 0) return;

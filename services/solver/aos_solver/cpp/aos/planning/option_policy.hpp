@@ -70,7 +70,7 @@ class OptionPolicy {
     candidates_.clear();
     regret_.begin();
     double left = affordable_ - steps_;
-    values_.begin(belief_, horizon, left, random);
+    values_.begin(belief_, horizon, asked_gains(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
     const double blind = regret_.value_seen() - regret_.now();
@@ -114,6 +114,13 @@ class OptionPolicy {
     steps_ -= left;
     const bool only_changes = tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
     return only_changes ? "nothing is observed but by what changes the state" : "";
+  }
+
+  // How often a decision asks for the gain of a move, each of them tried once.
+  std::size_t asked_gains() const {
+    std::size_t moves = 0;
+    for (int action = 0; action < Model::action_count(); ++action) moves += changes_.is_move(action) ? 1 : 0;
+    return tried_options + (moves > OptionMoves<Model>::few ? 0 : moves);
   }
 
   // The options with the highest income by the belief.
@@ -182,7 +189,7 @@ class OptionPolicy {
   OptionRegret<Model> regret_{belief_, gains_};
   OwnChanges<Model> changes_;
   OptionTests<Model> tests_{belief_, regret_, changes_};
-  OptionValues<Model> values_{library_.cells()};
+  OptionValues<Model> values_{library_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   std::vector<OptionCandidate> candidates_;
   std::vector<ActionEstimate> estimates_;

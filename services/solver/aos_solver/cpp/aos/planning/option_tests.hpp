@@ -24,11 +24,10 @@ class OptionTests {
   static constexpr double least_information = 1e-3;  // in nats
   static constexpr int most_repeats = 8;
 
-  // How many steps the information of an action takes from so many states.
-  static double steps_of_information(std::size_t states) {
-    constexpr double of_step = 2;
+  // How many steps of the model take as long as to weigh so many states by what is drawn from them.
+  static double steps_of_weighing(std::size_t states) {
     constexpr double of_likelihood = 0.2;
-    return (of_step + of_likelihood * OptionRegret<Model>::observations) * static_cast<double>(states);
+    return of_likelihood * OptionRegret<Model>::observations * static_cast<double>(states);
   }
 
   OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes)
@@ -48,8 +47,8 @@ class OptionTests {
         moves_.push_back(static_cast<int>(a));
         continue;
       }
-      const double reward = take(static_cast<int>(a), random);
-      steps -= steps_of_information(belief_.size());
+      const double reward = take(static_cast<int>(a), steps, random);
+      steps -= steps_of_weighing(belief_.size());
       informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
       if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
     }
@@ -65,8 +64,10 @@ class OptionTests {
   // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
   void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) const {
     const std::vector<Test> tests = most_telling();
-    for (int repeats = 1; repeats <= most_repeats && (repeats == 1 || steps > 0); repeats *= 2) {
-      for (const Test& test : tests) add(candidates, test, repeats, steps, random);
+    for (int repeats = 1; repeats <= most_repeats; repeats *= 2) {
+      for (const Test& test : tests) {
+        if (repeats == 1 || steps > 0) add(candidates, test, repeats, steps, random);
+      }
     }
   }
 
@@ -93,18 +94,20 @@ class OptionTests {
     double paid = 0;
     double discount = 1;
     for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
-    const double left = regret_.after(RepeatedObservation{reports}, repeats, steps, random, [&](std::size_t k, StateWeights& weights) {
+    const RepeatedObservation observation{reports};
+    if (!observation.is_listed(repeats)) steps -= repeats * steps_of_weighing(belief_.size());
+    const double left = regret_.after(observation, repeats, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
     });
     candidates.push_back({test.action, paid + discount * (regret_.value_seen() - left), discount, "what can be observed"});
   }
 
   // Takes an action from all states. Returns the mean reward.
-  double take(int action, Sampler& random) {
+  double take(int action, double& steps, Sampler& random) {
     double reward = 0;
     for (std::size_t k = 0; k < belief_.size(); ++k) {
       State state = belief_.states()[k];
-      reward += belief_.weights()[k] * step_.take(state, action, reports_[static_cast<std::size_t>(action)][k], random);
+      reward += belief_.weights()[k] * step_.take(state, action, reports_[static_cast<std::size_t>(action)][k], steps, random);
     }
     return reward;
   }

@@ -1,17 +1,16 @@
-// What a state is worth if it is seen: one way to a reward after the other is taken, up to the horizon. The options of a
-// belief count once each; here the same may be earned again and again.
+// What a few states of a belief are worth if they are seen, and what is gained by actions that lead from them to others. The
+// options of a belief count once each; here the same may be earned again and again.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <utility>
+#include <numeric>
 #include <vector>
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/leaf_cells.hpp"
-#include "aos/planning/option_search.hpp"
+#include "aos/planning/option_following.hpp"
+#include "aos/planning/option_library.hpp"
 #include "aos/planning/sampled_belief.hpp"
 
 namespace aos {
@@ -21,16 +20,25 @@ class OptionValues {
  public:
   using State = typename Model::State;
 
-  explicit OptionValues(const LeafCells<Model>& cells) : cells_(cells) {}
+  explicit OptionValues(const OptionLibrary<Model>& library) : following_(library) {}
 
-  // Values a few states of a belief, the more of them the more steps there are. `steps` is counted down.
-  void begin(const SampledBelief<Model>& belief, int horizon, double& steps, Sampler& random) {
+  // Values a few states of a belief. `gains` times the gain of actions will be asked for: the fewer, the more states, and the
+  // further they are followed. `steps` is counted down.
+  void begin(const SampledBelief<Model>& belief, int horizon, std::size_t gains, double& steps, Sampler& random) {
     horizon_ = static_cast<std::size_t>(horizon);
     valued_.clear();
-    const auto count = static_cast<std::size_t>(std::clamp(of_values * steps / value_steps, fewest_valued, most_valued));
-    const std::size_t stride = std::max<std::size_t>(belief.size() / count, 1);
-    for (std::size_t k = stride / 2; k < belief.size(); k += stride) {
-      valued_.push_back({k, value_of(belief.states()[k], horizon_, steps, random)});
+    following_.begin();
+    const double affordable = of_values * steps / static_cast<double>(1 + gains);
+    value_steps_ = std::clamp(affordable / fewest_valued, least_value_steps, most_value_steps);
+    const double before = steps;
+    // States at a distance first, so that those that are valued are spread over the belief.
+    const std::size_t stride = std::max<std::size_t>(belief.size() / most_valued, 1);
+    const std::size_t count = std::min(belief.size(), most_valued);
+    const std::size_t jump = coprime_jump(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i >= fewest_valued && (before - steps) * static_cast<double>(i + 1) / static_cast<double>(i) > affordable) break;
+      const std::size_t k = i * jump % count * stride;
+      valued_.push_back({k, following_.value(belief.states()[k], horizon_, value_steps_, steps, random)});
     }
   }
 
@@ -40,7 +48,8 @@ class OptionValues {
     double count = 0;
     for (const auto& [k, value] : valued_) {
       if (Model::ending(next[k]) != Ending::running) continue;
-      gain += value_of(next[k], horizon_ > actions ? horizon_ - actions : 0, steps, random) - value;
+      const std::size_t left = horizon_ > actions ? horizon_ - actions : 0;
+      gain += following_.value(next[k], left, value_steps_, steps, random) - value;
       ++count;
     }
     return count > 0 ? gain / count : 0;
@@ -55,44 +64,27 @@ class OptionValues {
   }
 
  private:
-  static constexpr double fewest_valued = 3;
-  static constexpr double most_valued = 12;
-  static constexpr double of_values = 0.25;  // of the steps
-  static constexpr int tries = 8;                // of a way
-  static constexpr double value_steps = 20'000;  // to find ways from a state
+  static constexpr std::size_t fewest_valued = 3;
+  static constexpr std::size_t most_valued = 16;
+  static constexpr double of_values = 0.6;             // of the steps
+  static constexpr double least_value_steps = 10'000;  // to follow options from a state
+  static constexpr double most_value_steps = 20'000;
 
   struct Valued {
     std::size_t state;
     double value;
   };
 
-  double value_of(State state, std::size_t horizon, double& steps, Sampler& random) const {
-    OptionSearch<Model> search{cells_};
-    double value = 0;
-    double discount = 1;
-    double left = value_steps;
-    while (Model::ending(state) == Ending::running && left > 0) {
-      const std::vector<Option> ways = search.from(state, left, random);
-      if (ways.empty() || ways.front().size() > horizon) break;
-      const Option& way = ways.front();
-      State next = state;
-      double earned = 0;
-      for (int i = 0; i < tries; ++i) {
-        next = state;
-        earned += taken_option<Model>(way, next, random).earned / tries;
-      }
-      left -= tries * static_cast<double>(way.size());
-      state = std::move(next);
-      value += discount * earned;
-      discount *= std::pow(Model::discount, way.size());
-      horizon -= way.size();
-    }
-    steps -= value_steps - left;
-    return value;
+  // A step that goes through all numbers below a count, far apart from one to the next.
+  static std::size_t coprime_jump(std::size_t count) {
+    std::size_t jump = std::max<std::size_t>(count * 3 / 8, 1);
+    while (std::gcd(jump, count) != 1) ++jump;
+    return jump;
   }
 
-  const LeafCells<Model>& cells_;
+  OptionFollowing<Model> following_;
   std::size_t horizon_ = 1;
+  double value_steps_ = most_value_steps;
   std::vector<Valued> valued_;
 };
 

@@ -91,7 +91,8 @@ class StepReports {
   std::vector<Branch> branches_;
 };
 
-// Takes a step and notes what it may report. The state becomes one of the next ones, drawn. Returns the mean reward.
+// Takes a step and notes what it may report. The state becomes one of the next ones, drawn. Returns the mean reward. Each run
+// of the step counts `steps` down.
 template <class Model>
 class ReportedStep {
  public:
@@ -101,7 +102,7 @@ class ReportedStep {
   ReportedStep(const ReportedStep&) = delete;
   ReportedStep& operator=(const ReportedStep&) = delete;
 
-  double take(State& state, int action, StepReports& reports, Sampler& random) {
+  double take(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
     reports.clear();
     double reward = 0;
     double sum = 0;
@@ -111,6 +112,7 @@ class ReportedStep {
       Step step;
       const auto run = [&](Enumerator& path) {
         next_ = start;
+        --steps;
         step = Model::step(next_, action, path);
       };
       paths_.for_nearly_each_path(run, [&](Enumerator& path) {
@@ -125,15 +127,16 @@ class ReportedStep {
     } catch (const ModelFault&) {  // on a path that may never be drawn
     }
     blame::at(0);
-    return drawn(state, action, reports, random);
+    return drawn(state, action, reports, steps, random);
   }
 
  private:
   static constexpr int max_paths = 64;
   static constexpr int draws = 8;  // of a step with more
 
-  double drawn(State& state, int action, StepReports& reports, Sampler& random) {
+  double drawn(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
     reports.clear();
+    steps -= draws;
     const State start = state;
     double reward = 0;
     for (int i = 0; i < draws; ++i) {
