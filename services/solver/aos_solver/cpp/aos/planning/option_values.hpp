@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -38,29 +40,40 @@ class OptionValues {
     for (std::size_t i = 0; i < count; ++i) {
       if (i >= fewest_valued && (before - steps) * static_cast<double>(i + 1) / static_cast<double>(i) > affordable) break;
       const std::size_t k = i * jump % count * stride;
-      valued_.push_back({k, following_.value(belief.states()[k], horizon_, value_steps_, steps, random)});
+      valued_.push_back({k, belief.weights()[k], following_.value(belief.states()[k], horizon_, value_steps_, steps, random)});
     }
   }
 
-  // How much more the next states are worth than those before, after so many actions.
+  // How much more the next states are worth than those before, after so many actions, less its standard error: of many gains
+  // that are as uncertain, the highest one is too high.
   double gain_of(const std::vector<State>& next, std::size_t actions, double& steps, Sampler& random) const {
     double gain = 0;
-    double count = 0;
-    for (const auto& [k, value] : valued_) {
+    double weights = 0;
+    std::vector<std::pair<double, double>> gains;  // weight and gain
+    for (const auto& [k, weight, value] : valued_) {
       if (Model::ending(next[k]) != Ending::running) continue;
       const std::size_t left = horizon_ > actions ? horizon_ - actions : 0;
-      gain += following_.value(next[k], left, value_steps_, steps, random) - value;
-      ++count;
+      gains.emplace_back(weight, following_.value(next[k], left, value_steps_, steps, random) - value);
+      gain += weight * gains.back().second;
+      weights += weight;
     }
-    return count > 0 ? gain / count : 0;
+    if (!(weights > 0)) return 0;
+    gain /= weights;
+    double squares = 0;
+    for (const auto& [weight, of_state] : gains) squares += weight * weight * (of_state - gain) * (of_state - gain);
+    return gain - std::sqrt(squares) / weights;
   }
 
   // How much more states are worth than by the values that `seen` has of them.
   template <class Seen>
   double beyond(Seen&& seen) const {
     double sum = 0;
-    for (const auto& [k, value] : valued_) sum += value - seen(k);
-    return valued_.empty() ? 0 : sum / static_cast<double>(valued_.size());
+    double weights = 0;
+    for (const auto& [k, weight, value] : valued_) {
+      sum += weight * (value - seen(k));
+      weights += weight;
+    }
+    return weights > 0 ? sum / weights : 0;
   }
 
  private:
@@ -72,6 +85,7 @@ class OptionValues {
 
   struct Valued {
     std::size_t state;
+    double weight;
     double value;
   };
 
