@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from models import built_text, engine_of
+from wide.delivery import delivery
 from wide.problems import open_field, parcels
 
 from aos_solver.child.engine import Restriction
@@ -41,3 +42,21 @@ async def test_an_action_that_is_barred_is_not_taken(cache_dir: Path) -> None:
         other = await engine.plan(simulations=1000, seed=1, planner="auto", within=within)
     assert other.planner == "options"
     assert other.index != plan.index
+
+
+async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_dir: Path) -> None:
+    """A lift breaks at any step, whatever the robot does, and all ways to a reward change its place."""
+    async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
+        plan = await engine.plan(simulations=4000, seed=1, planner="auto")
+        assert plan.planner == "options"
+        search = Search(simulations=4000, seed=1)
+        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
+    assert sum(action.startswith("hand") for action in run.actions) >= 4
+    assert run.discounted_return > 10
+
+
+async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> None:
+    async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
+        plan = await engine.plan(simulations=10_000, seed=1, planner="auto")
+    assert plan.planner == "options"
+    assert plan.simulations < 12_500
