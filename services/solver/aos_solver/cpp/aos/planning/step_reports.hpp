@@ -91,8 +91,8 @@ class StepReports {
   std::vector<Branch> branches_;
 };
 
-// Takes a step and notes what it may report. The state becomes one of the next ones, drawn. Returns the mean reward. `steps` is
-// counted down.
+// Takes a step and notes what it may report. The state becomes one of the next ones, drawn. Returns the mean reward. Each run
+// of the step counts `steps` down.
 template <class Model>
 class ReportedStep {
  public:
@@ -112,7 +112,7 @@ class ReportedStep {
       Step step;
       const auto run = [&](Enumerator& path) {
         next_ = start;
-        steps -= steps_of_run;
+        --steps;
         step = Model::step(next_, action, path);
       };
       paths_.for_nearly_each_path(run, [&](Enumerator& path) {
@@ -132,7 +132,6 @@ class ReportedStep {
 
  private:
   static constexpr int max_paths = 64;
-  static constexpr double steps_of_run = 2.5;  // a run along a path takes so many times as long as a step that is drawn
   static constexpr int draws = 8;  // of a step with more
 
   double drawn(State& state, int action, StepReports& reports, double& steps, Sampler& random) {
