@@ -101,7 +101,7 @@ def up(
     from aos_deploy.living_runs import RUNS
     from aos_deploy.mission_run import MissionRun
     from aos_deploy.needed_here import check_needed_here, check_sandbox
-    from aos_deploy.run_directory import LATEST
+    from aos_deploy.run_directory import RunDirectory
     from aos_deploy.serve_run import ServeRun
     from aos_deploy.system_run import SystemRun
     from aos_deploy.taking_up import take_up
@@ -112,7 +112,7 @@ def up(
     if resume:
         flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
         _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
-        deployment, taken_up = take_up(deploy or RUNS / LATEST)
+        deployment, taken_up = take_up(deploy or RunDirectory.latest(RUNS).path)
     elif deploy is None:
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:
