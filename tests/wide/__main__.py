@@ -19,12 +19,13 @@ from .apart_rules import APART_RULES
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
 from .rules import RULES
+from .upkeep import greenhouse, greenhouse_rule
 
 _STEPS = 120  # at most, in a mission
 
-_BUNDLES = PROBLEMS | APART
-_SIZES = SIZES | APART_SIZES
-_RULES = RULES | APART_RULES
+_BUNDLES = PROBLEMS | APART | {"greenhouse": greenhouse}
+_SIZES = SIZES | APART_SIZES | {"greenhouse": 5}
+_RULES = RULES | APART_RULES | {"greenhouse": greenhouse_rule}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:
