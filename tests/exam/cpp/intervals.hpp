@@ -31,7 +31,7 @@ inline aos::ActionEstimate value_alone(const aos::Belief<TableModel>& belief, st
   for (std::size_t other = 0; other < actions; ++other) {
     if (other != action) others.insert(other);
   }
-  aos::Planner<TableModel> planner;
+  aos::Planners<TableModel> planner;
   planner.search(aos::PlannerKind::pomcp, belief, budget, horizon, random, others);
   return planner.values(belief, planner.estimates(belief), static_cast<int>(action))[action];
 }
@@ -47,7 +47,7 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
   aos::Sampler random{options.seed};
   Belief belief = Belief::initial(random);
   Mass exact = flat.start().first;
-  aos::Planner<TableModel> planner;
+  aos::Planners<TableModel> planner;
   aos::JsonWriter json;
   json.begin_object().member("problem", problem.name).key("cases").begin_array();
   for (int step = 0; step < options.steps && !exact.empty(); ++step) {
