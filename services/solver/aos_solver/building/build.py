@@ -84,6 +84,7 @@ _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
 NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values")
 """The parts of the engine that know models as numbers only, the same for states of any size: mostly loops."""
+_NUMBERS_OPTION = "-O3"
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -181,7 +182,7 @@ async def build_engine(
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
         commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}", "engine")]
         if state_bytes == STATE_BYTES[0]:
-            commands += [_part(compiler, number_object(part), "-O3", part) for part in NUMBERS]
+            commands += [_part(compiler, number_object(part), _NUMBERS_OPTION, part) for part in NUMBERS]
             for kind in _HURRIED:
                 (staging / kind / SUPPORT).parent.mkdir(parents=True)
                 commands.append(compiler.precompilation(SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
@@ -222,7 +223,7 @@ def _part(compiler: Compiler, made: str, option: str, source: str) -> list[str]:
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
     # Clang looks for what was precompiled by the path of the sources.
     place = [] if compiler.family == "gcc" else [str(SOURCES)]
-    return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), *place])}"
+    return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), _NUMBERS_OPTION, *place])}"
 
 
 class _Build(msgspec.Struct, frozen=True):
