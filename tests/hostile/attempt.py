@@ -13,9 +13,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from tests.counters import counting
 from tests.hostile.cases import COMPILED, MAPPINGS, MODELS
 from tests.kept_cache import link_engines
+
+from .counters import counting
 
 __all__ = ["TOLD_S", "WAYS", "Attempt", "Playground", "attempts"]
 

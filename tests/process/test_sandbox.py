@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from counters import counting
 from hostile.cases import MODELS
+from hostile.counters import counting
 from models import built_text, engine_of
 from processes import COMMAND_S
 

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import zenoh
-from tests.counters import counting
 
 from aos_deploy.run_directory import RunDirectory
 from aos_runtime.credentials import credential_of_run
 
+from ..counters import counting
 from .routed import opened
 
 __all__ = ["ROBOT", "STEPS", "Cell", "cell"]

@@ -15,8 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tests.counters import counting
-
+from ..counters import counting
 from .wire import Wire, wire
 
 __all__ = ["Cut", "FarMission", "far_mission", "is_possible"]
