@@ -120,9 +120,6 @@ class _Shelf(ModelShelf):
             raise ModelError("it does not compile")
         return project
 
-    async def _build_thoroughly(self, emitted: object) -> None:
-        await self.world.turn()
-
 
 class _World:
     """A registry, a middleware and a mission, in one loop, that do what they do at random."""
