@@ -15,6 +15,7 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
+from aos_solver.building.thorough_builds import ThoroughBuilds
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.emission.layout import Layout
 from aos_solver.mission.model_shelf import ModelShelf
@@ -121,6 +122,13 @@ class _Shelf(ModelShelf):
         return project
 
 
+class _NoBuilds(ThoroughBuilds):
+    """Thorough builds that begin nothing: there is no text to compile."""
+
+    def begin(self, _: object) -> None:
+        pass
+
+
 class _World:
     """A registry, a middleware and a mission, in one loop, that do what they do at random."""
 
@@ -136,6 +144,7 @@ class _World:
             Path(), lambda remark: None, self._start, lambda revision: revision <= self.mapped
         )
         self.shelf.world = self
+        self.shelf._thorough = _NoBuilds(Path())
 
     async def turn(self) -> None:
         """Lets the others go on, for some turns of the loop."""

@@ -39,7 +39,9 @@ class ThoroughBuilds:
     def end(self) -> None:
         """Has them end. Nobody waits for that before the end: what is served last ends late, too."""
         for task in self.tasks:
-            task.cancel()
+            # A second cancel would break off the wait for the compiler that the first one has killed.
+            if not task.cancelling():
+                task.cancel()
 
     async def _build(self, emitted: EmittedModel) -> None:
         """Builds into the cache. Nobody waits for it: all other work goes first, and a fault is logged."""
