@@ -12,7 +12,7 @@ from aos_solver.building.thorough_builds import ThoroughBuilds
 
 
 def test_builds_that_are_ended_twice_leave_no_process_behind(tmp_path: Path) -> None:
-    for turns in range(0, 40, 2):
+    for turns in range(0, 120, 3):
         asyncio.run(_ended_twice(tmp_path / str(turns), turns))
     gc.collect()  # Python warns here of processes that nobody has waited for, and the test fails.
 
