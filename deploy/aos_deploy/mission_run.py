@@ -43,6 +43,7 @@ from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
+from aos_runtime.steering import start_mission
 
 __all__ = ["MissionRun"]
 
@@ -197,14 +198,7 @@ class MissionRun:
         await self._ask_to_start(supervisor, StartMission())
 
     async def _ask_to_start(self, supervisor: Supervisor, start: StartMission) -> None:
-        await ask_until_answered(
-            supervisor.bus,
-            supervisor.keys.start_mission,
-            start,
-            MissionState,
-            server=supervisor.keys.live("solver"),
-            timeout_s=_BUILD_TIMEOUT_S,
-        )
+        await start_mission(supervisor.bus, supervisor.keys, start)
 
     async def _push_bundles(self, supervisor: Supervisor) -> None:
         if self._taken_up is not None and self._taken_up.has_begun:

@@ -12,7 +12,7 @@ import logging
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import zenoh
 from zenoh.handlers import Callback
@@ -24,6 +24,7 @@ from aos_protocol.messages import Message
 from aos_runtime.access_check import Access
 from aos_runtime.bus_config import LEASE_S, client_config, opened_session
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.closing import Closing
 from aos_runtime.credentials import Credential
 from aos_runtime.inbox import Inbox
 from aos_runtime.older_python import timeout
@@ -31,9 +32,6 @@ from aos_runtime.question import RECEIPT, STRAYS_S, Question
 from aos_runtime.recurring import Recurring
 from aos_runtime.server_watch import ServerWatch
 from aos_runtime.subscription import Subscription, Undeclare
-
-if TYPE_CHECKING:
-    from typing import Self  # not in Python 3.10
 
 __all__ = ["Access", "Bus", "Subscription"]
 
@@ -57,7 +55,7 @@ way whose giver has left."""
 _log = logging.getLogger("aos.bus")
 
 
-class Bus:
+class Bus(Closing):
     """A client's session on the bus. Belongs to the event loop that opened it; close it before that ends."""
 
     def __init__(
@@ -99,12 +97,6 @@ class Bus:
         fault = _cannot_connect(endpoint, credential)
         session = await opened_session(config, connect_timeout_s, _RETRY_S, fault)
         return cls(session, sender, clock or SystemClock(), access)
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
 
     async def close(self) -> None:
         """Cancels running handlers, ends all streams, leaves the bus. Closing twice does nothing."""

@@ -49,7 +49,7 @@ from aos_runtime.bus import Access, Bus
 from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
 from aos_runtime.decision_feed import DecisionFeed
 from aos_runtime.older_python import timeout
-from aos_runtime.steering import STEER_TIMEOUT_S, SteeringQuestions
+from aos_runtime.steering import STEER_TIMEOUT_S, SteeringQuestions, start_mission
 from aos_runtime.subscription import Subscription, merged
 
 __all__ = ["AosClient"]
@@ -64,9 +64,6 @@ _log = logging.getLogger("aos.client")
 SOLVER_AWAY_S = 15.0
 """A solver that is started again is back within this time."""
 
-
-START_TIMEOUT_S = 600.0
-"""A mission may begin with documents that are still to be compiled."""
 
 STUDY_TIMEOUT_S = 600.0
 """A study begins with a replay, and may compile a model."""
@@ -149,14 +146,7 @@ class AosClient(SteeringQuestions):
         AosError with the reason if it cannot begin: SkillError AOS515 while one runs.
         """
         start = StartMission(belief, tuple(given), idle, dict(values or {}), request=uuid.uuid4().hex)
-        return await ask_until_answered(
-            self.bus,
-            self.keys.start_mission,
-            start,
-            MissionState,
-            server=self.keys.live("solver"),
-            timeout_s=START_TIMEOUT_S,
-        )
+        return await start_mission(self.bus, self.keys, start)
 
     async def stop_mission(self, mission: str = "") -> MissionState:
         """Ends the mission that runs as `cancelled`, and returns when it has ended.

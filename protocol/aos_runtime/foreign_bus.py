@@ -19,6 +19,7 @@ from zenoh.handlers import Callback
 
 from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError
 from aos_runtime.bus_config import client_config, opened_session
+from aos_runtime.closing import Closing
 
 __all__ = ["ForeignBus", "Packet", "Undo"]
 
@@ -37,7 +38,7 @@ class Packet(NamedTuple):
     attachment: bytes = b""
 
 
-class ForeignBus:
+class ForeignBus(Closing):
     """A client's session on a router that may be of others. Belongs to the event loop that opened it."""
 
     def __init__(self, session: zenoh.Session, endpoint: str) -> None:
@@ -60,12 +61,6 @@ class ForeignBus:
         )
         config = client_config(endpoint, stamps=True)
         return cls(await opened_session(config, connect_timeout_s, _RETRY_S, fault), endpoint)
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
 
     async def close(self) -> None:
         """Ends all that was declared here and running handlers. Closing twice does nothing."""

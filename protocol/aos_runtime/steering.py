@@ -1,4 +1,4 @@
-"""The questions with which an operator steers the mission that runs."""
+"""The questions with which an operator starts a mission and steers the one that runs."""
 
 from __future__ import annotations
 
@@ -7,15 +7,27 @@ import socket
 import uuid
 from collections.abc import Iterable
 
+import msgspec
+
 from aos_protocol.keys import Keys
-from aos_protocol.messages import MissionState, Steer, SteeringVerb
+from aos_protocol.messages import MissionState, StartMission, Steer, SteeringVerb
 from aos_runtime.asking import ask_until_answered
 from aos_runtime.bus import Bus
 
-__all__ = ["STEER_TIMEOUT_S", "SteeringQuestions"]
+__all__ = ["STEER_TIMEOUT_S", "SteeringQuestions", "start_mission"]
+
+START_TIMEOUT_S = 600.0
+"""A mission starts once its model is compiled, and the engine where set-up has not done that."""
 
 STEER_TIMEOUT_S = 300.0
 """A mission that is stopped ends once what moves has stopped; an action waits for the step that runs."""
+
+
+async def start_mission(bus: Bus, keys: Keys, start: StartMission) -> MissionState:
+    """Has the solver start a mission, once; it may be started again before it has answered."""
+    return await ask_until_answered(
+        bus, keys.start_mission, start, MissionState, server=keys.live("solver"), timeout_s=START_TIMEOUT_S
+    )
 
 
 class SteeringQuestions:
@@ -69,10 +81,14 @@ class SteeringQuestions:
 
         SteeringError AOS517 says why that cannot be done; nothing has changed then.
         """
+        return await self.carry_out(Steer(verb, actions, name, self.by))
+
+    async def carry_out(self, wish: Steer) -> MissionState:
+        """Steers by a whole wish, once, whatever its `request` says; errors are those of `steer`."""
         return await ask_until_answered(
             self.bus,
             self.keys.steer_mission,
-            Steer(verb, actions, name, self.by, request=uuid.uuid4().hex),
+            msgspec.structs.replace(wish, request=uuid.uuid4().hex),
             MissionState,
             server=self.keys.live("solver"),
             timeout_s=STEER_TIMEOUT_S,

@@ -38,15 +38,6 @@ initial_value: 0
 code:
 return __input.data
 """
-FROM_RESULT = """\
-max_duration: 0.3
-response_local_variable: answer
-local_variable: answer
-type: string
-from_ros_service_response: true
-code:
-answer = __input.answer
-"""
 
 
 class Fault(NamedTuple):

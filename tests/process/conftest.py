@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from gateway import Gateway, gateway, played, slow_system
 from supervised_system import TESTS, System
 
 
@@ -13,3 +15,19 @@ def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
     """A system of small services in a folder of its own."""
     monkeypatch.setenv("PYTHONPATH", str(TESTS))
     return System(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+    """A gateway, and a mission that has run to its end."""
+    folder = tmp_path_factory.mktemp("past")
+    run = played(folder, cache_dir)
+    with gateway(folder, cache_dir) as served:
+        yield served, run.name
+
+
+@pytest.fixture
+def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
+    """A gateway, and the directory of a mission that goes on."""
+    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+        yield served, run

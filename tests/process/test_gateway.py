@@ -8,13 +8,12 @@ import os
 import re
 import signal
 import zipfile
-from collections.abc import Iterator
 from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
 
 import pytest
-from gateway import Gateway, gateway, played, slow_system, worn_system
+from gateway import Gateway, gateway, played, worn_system
 from processes import HANG_S
 
 from aos_deploy.export.run_bundle import write_bundle
@@ -29,22 +28,6 @@ def archive(folder: Path, **changed: str) -> bytes:
         for path in sorted(folder.iterdir()):
             file.writestr(path.name, changed.get(path.stem, path.read_text()))
     return packed.getvalue()
-
-
-@pytest.fixture(scope="module")
-def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
-    """A gateway, and a mission that has run to its end."""
-    folder = tmp_path_factory.mktemp("past")
-    run = played(folder, cache_dir)
-    with gateway(folder, cache_dir) as served:
-        yield served, run.name
-
-
-@pytest.fixture
-def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
-    """A gateway, and the directory of a mission that goes on."""
-    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
-        yield served, run
 
 
 def test_a_run_and_its_mission_are_listed(past: tuple[Gateway, str]) -> None:

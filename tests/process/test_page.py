@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from gateway import Gateway, gateway, played, slow_system, worn_system
+from gateway import Gateway, gateway, worn_system
 from long_run import write_long_run
 from page_sources import installed_sources
 from playwright.sync_api import Browser, Page, Route, expect, sync_playwright
@@ -73,27 +73,11 @@ def pictures(cache_dir: Path) -> Path:
     return cache_dir / "page-pictures"
 
 
-@pytest.fixture(scope="module")
-def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
-    """A gateway, and a mission that has run to its end."""
-    folder = tmp_path_factory.mktemp("page")
-    run = played(folder, cache_dir)
-    with gateway(folder, cache_dir) as served:
-        yield served, run.name
-
-
 @pytest.fixture
 def worn(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
     """A gateway, and a mission of a system that stays, which has ended with an alarm."""
     with worn_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
         yield served, f"{run.name}-1"
-
-
-@pytest.fixture
-def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
-    """A gateway, and the directory of a mission that goes on."""
-    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
-        yield served, run
 
 
 def test_slider_and_keys_move_all_views_and_the_address(

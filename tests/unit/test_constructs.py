@@ -15,8 +15,6 @@ from aos_language.load import load_files
 from aos_solver.emission.lower import lower
 
 EXTRINSIC = '"ExtrinsicChangesDynamicModel": []'
-ENDING = '"ExtrinsicChangesDynamicModel": []\n}'
-LAST_RULE = '{"Response": "eLost", "ConditionCodeWithLocalVariables": ""}'
 MISUSES = {
     "v1.x JSON": Rule("go.json", '"PlpMain"', '"«PlpMian"', "AOS102"),
     "paper GSDL JSON": Rule(

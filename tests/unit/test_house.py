@@ -1,8 +1,9 @@
-"""Limits of the house that a test can hold everybody to: the length of functions, and their parameters."""
+"""Limits of the house that a test can hold everybody to: functions, their parameters, what git tracks."""
 
 from __future__ import annotations
 
 import ast
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,12 +13,28 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("protocol", "services", "deploy", "tests", "docs")
 MOST_LINES = 60
 MOST_PARAMETERS = 7
+MOST_TRACKED_BYTES = 8_000_000
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def functions_of(path: Path) -> Iterator[Function]:
-    return (node for node in ast.walk(ast.parse(path.read_bytes())) if isinstance(node, Function))
+    """The functions of a file: statements, so no expression is looked at."""
+    waiting: list[ast.AST] = [ast.parse(path.read_bytes())]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, Function):
+            yield node
+        for part in ("body", "orelse", "finalbody", "handlers", "cases"):
+            inner = getattr(node, part, ())
+            waiting += inner if isinstance(inner, list) else ()
+
+
+def tracked_bytes(folder: Path) -> int:
+    """The size of all files that git tracks in a checkout, as they are there."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=folder, capture_output=True, check=True).stdout
+    paths = [folder / name.decode() for name in listed.split(b"\0") if name]
+    return sum(path.lstat().st_size for path in paths if path.is_file())
 
 
 def lines_of(function: Function) -> int:
@@ -86,3 +103,17 @@ def test_a_function_that_breaks_a_limit_is_noticed(tmp_path: Path) -> None:
     (wide,) = functions_of(path)
     assert (lines_of(wide), len(parameters_of(wide))) == (MOST_LINES + 1, MOST_PARAMETERS + 1)
     assert not is_command(wide, options_in(path))
+
+
+def test_the_files_that_git_tracks_are_small_together() -> None:
+    if not (ROOT / ".git").exists():
+        pytest.skip("needs a checkout of git")
+    assert 0 < tracked_bytes(ROOT) < MOST_TRACKED_BYTES
+
+
+def test_a_tracked_file_counts_and_another_one_does_not(tmp_path: Path) -> None:
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    (tmp_path / "tracked").write_bytes(b"1234")
+    (tmp_path / "other").write_bytes(b"12345678")
+    subprocess.run(["git", "add", "tracked"], cwd=tmp_path, check=True)
+    assert tracked_bytes(tmp_path) == 4

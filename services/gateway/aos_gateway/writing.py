@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import uuid
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -20,8 +19,6 @@ from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import DocumentError, GatewayError
 from aos_protocol.messages import BundleReport, MissionState, PushBundle, Steer, SteeringVerb
-from aos_runtime.asking import ask_until_answered
-from aos_runtime.steering import STEER_TIMEOUT_S
 
 __all__ = [
     "check",
@@ -165,16 +162,8 @@ async def steer(gateway: Gateway, mission: str, body: Steering) -> MissionState:
     """Steer a mission that runs: hold, step, resume, stop, act, script, leave_out, take_back."""
     found = await gateway.shelf.run_of_mission(mission)
     async with found.client(OPERATOR) as client:
-        wish = Steer(
-            body.verb, body.actions, body.name, body.by or client.by, mission, uuid.uuid4().hex, body.reason
-        )
-        return await ask_until_answered(
-            client.bus,
-            client.keys.steer_mission,
-            wish,
-            MissionState,
-            server=client.keys.live("solver"),
-            timeout_s=STEER_TIMEOUT_S,
+        return await client.carry_out(
+            Steer(body.verb, body.actions, body.name, body.by or client.by, mission, reason=body.reason)
         )
 
 

@@ -45,7 +45,6 @@ __all__ = ["HEADER", "Endpoint", "Participant", "Reader", "Writer"]
 HEADER = struct.Struct("<Qq")
 """The beginning of Cyclone's requests and replies: who asks, and the number of the question."""
 
-_ENCAPSULATION = b"\x00\x01\x00\x00"
 _MAX_BLOCKING_S = 1
 _TAKEN_AT_ONCE = 100
 _ALIVE = 16

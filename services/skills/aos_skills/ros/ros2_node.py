@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Awaitable, Callable, Iterable
-from typing import Self
 
 from aos_protocol.errors import SkillError
+from aos_runtime.closing import Closing
 from aos_skills.ros.action_client import ActionClient
 from aos_skills.ros.action_server import ActionServer
 from aos_skills.ros.node import (
@@ -25,18 +25,12 @@ from aos_skills.ros.types import RosTypes
 __all__ = ["Ros2Node", "check_type", "not_served"]
 
 
-class Ros2Node(ABC):
+class Ros2Node(Closing):
     """A `RosNode` over a transport that gives topics, services and who is there; see `RosNode` for each."""
 
     def __init__(self, types: RosTypes) -> None:
         self.types = types
         self._actions = ActionClient(self)
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
 
     # --- by the transport ----------------------------------------------------------------------------
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError, SkillError
+from aos_runtime.closing import Closing
 from aos_skills.ros.action_client import CANCEL_S, node_lost, not_cancelled, not_ended
 from aos_skills.ros.definitions import definitions_in
 from aos_skills.ros.node import (
@@ -33,7 +34,7 @@ DEFAULT_PYTHON = "/usr/bin/python3"
 _log = logging.getLogger("aos.ros1")
 
 
-class Ros1Node:
+class Ros1Node(Closing):
     """Belongs to the event loop that opened it."""
 
     def __init__(self) -> None:
@@ -63,12 +64,6 @@ class Ros1Node:
             python, master, {"node": name, "files": files}, node._on_event
         )
         return node
-
-    async def __aenter__(self) -> Ros1Node:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
 
     async def close(self) -> None:
         for task in self._tasks:
