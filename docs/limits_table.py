@@ -186,7 +186,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "a mission is waited for that is to begin, with documents that are still compiled",
-            "aos_runtime.client.START_TIMEOUT_S", "s", "AOS601",
+            "aos_runtime.steering.START_TIMEOUT_S", "s", "AOS601",
         ),
         Row(
             "a mission is waited for that is stopped, or that is to carry out an action of an operator",

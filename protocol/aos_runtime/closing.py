@@ -1,4 +1,4 @@
-"""What is open until its `async with` block ends."""
+"""A base of classes that are open until their `async with` block ends."""
 
 from __future__ import annotations
 
