@@ -1,4 +1,4 @@
-"""Original mappings, construct by construct: lines of the table of docs/middleware.md."""
+"""Original mappings, construct by construct: as docs/coming-from-aos-1.md tells them."""
 
 from __future__ import annotations
 
