@@ -238,6 +238,10 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "an adapter or a service is started within 60 s",
             "aos_deploy.restarts.STARTS", "times", "the mission ends",
         ),
+        Row(
+            "the same for an adapter that was ready after its last start",
+            "aos_deploy.restarts.STARTS_OF_ADAPTER", "times", "the mission ends",
+        ),
     ),
     "Robots that speak ROS": (
         Row("a server or publisher appears", "aos_skills.ros.node.DISCOVERY_S", "s", "AOS505"),

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from aos_deploy.process_end import end_of
 from aos_deploy.program import Program
 from aos_deploy.remote import is_lost
-from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
+from aos_deploy.restarts import WITHIN_S, Restarts
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import AosError
 from aos_runtime.children import Child
@@ -33,7 +33,7 @@ class RunningProgram:
 
     def __init__(self, program: Program) -> None:
         self.program = program
-        self.restarts = Restarts()
+        self.restarts = Restarts(is_adapter=program.is_adapter)
         self.started_s = 0.0
         self.ready = asyncio.Event()
         self.is_ready = False
@@ -66,8 +66,8 @@ def consequence(
 def fatal_end(running: RunningProgram, status: int, run: RunDirectory) -> AosError:
     """The error that a run ends with because this program has ended."""
     error = end_of(running.program, run, status, was_ready=running.ready.is_set())
-    if running.restarts.count >= STARTS:
-        error.message += f", and was started {STARTS} times within {WITHIN_S:g} s"
+    if running.restarts.count >= running.restarts.most:
+        error.message += f", and was started {running.restarts.most} times within {WITHIN_S:g} s"
     return error
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections import deque
 
-__all__ = ["STARTS", "WITHIN_S", "Restarts"]
+__all__ = ["STARTS", "STARTS_OF_ADAPTER", "WITHIN_S", "Restarts"]
 
 STARTS = 5
 """A process is started so many times within WITHIN_S at most."""
+
+STARTS_OF_ADAPTER = 10
+"""As STARTS, for an adapter that was ready after its last start: three skills that end it in each call are set
+aside before."""
 
 WITHIN_S = 60.0
 
@@ -18,10 +22,11 @@ _LONGEST_S = 5.0
 class Restarts:
     """The starts of one process, by a monotonic clock in seconds."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, is_adapter: bool = False) -> None:
         self.count = 0
+        self._is_adapter = is_adapter
         self._in_vain = 0
-        self._recent: deque[float] = deque(maxlen=STARTS)
+        self._recent: deque[float] = deque(maxlen=STARTS_OF_ADAPTER)
 
     def start(self, now_s: float) -> None:
         """Takes note of a start."""
@@ -33,9 +38,14 @@ class Restarts:
         """Takes note that the process is ready."""
         self._in_vain = 0
 
+    @property
+    def most(self) -> int:
+        """The number of starts within WITHIN_S after which the process is not started again."""
+        return STARTS_OF_ADAPTER if self._is_adapter and not self._in_vain else STARTS
+
     def are_left(self, now_s: float) -> bool:
         """Says whether the process may be started again."""
-        return len(self._recent) < STARTS or now_s - self._recent[0] > WITHIN_S
+        return self._recent_starts(now_s) < self.most
 
     def delay_s(self, now_s: float, *, is_cut: bool = False) -> float:
         """Returns how long the next start waits: 0.2 s after the first, then twice as long each time.
@@ -45,5 +55,8 @@ class Restarts:
         """
         if is_cut and not self._in_vain:
             return 0.0
-        recent = self._in_vain if is_cut else sum(now_s - at_s <= WITHIN_S for at_s in self._recent)
+        recent = self._in_vain if is_cut else self._recent_starts(now_s)
         return min(_FIRST_S * 2.0 ** max(recent - 1, 0), _LONGEST_S)
+
+    def _recent_starts(self, now_s: float) -> int:
+        return sum(now_s - at_s <= WITHIN_S for at_s in self._recent)

@@ -16,6 +16,13 @@ from aos_deploy.run_directory import RunDirectory, Summary
 BIN = Path(sys.executable).parent
 
 ROBOT = """
+import os
+
+
+def ending(call, **fields):
+    os._exit(3)
+
+
 def broken(call, **fields):
     raise RuntimeError("it does not move")
 
@@ -89,3 +96,22 @@ def test_beside_a_broken_camera_the_robot_asks_and_reaches_its_goal(project: Pat
     code, summary = mission(project, cache_dir, look="broken", take="take", ask="ask")
     assert (code, summary.ending) == (0, "goal")
     assert summary.actions == ("look", "look", "look", "ask", "take(side=left_side)")
+
+
+def test_beside_a_camera_that_ends_its_adapter_in_each_call_the_robot_asks(
+    project: Path, cache_dir: Path
+) -> None:
+    look = project / "fetch" / "look.sd"
+    look.write_text(look.read_text().replace("0.85", "0.98"))
+    code, summary = mission(project, cache_dir, look="ending", take="take", ask="ask")
+    assert (code, summary.ending) == (0, "goal")
+    assert summary.actions == ("look", "look", "look", "ask", "take(side=left_side)")
+
+
+def test_two_skills_that_end_their_adapter_in_each_call_end_the_mission_and_not_the_run(
+    project: Path, cache_dir: Path
+) -> None:
+    limit = "mission: {stop_below_value: 0.0}\n"
+    code, summary = mission(project, cache_dir, limit, look="ending", take="ending", ask="ask")
+    assert (code, summary.ending) == (9, "skills_failed")
+    assert "take is set aside for 300 s after 3 failures in a row, the last unknown" in summary.remark

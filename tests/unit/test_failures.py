@@ -134,6 +134,37 @@ def test_a_new_adapter_begins_a_new_row() -> None:
     assert not mission.set_aside
 
 
+def test_an_adapter_that_ends_in_each_call_is_no_new_one() -> None:
+    mission = Mission()
+    for start in (1, 2, 3):
+        mission.announced = {"take": start}
+        mission.take("take", "unknown")
+    mission.announced = {"take": 4}
+    assert mission.set_aside == {"take"}
+    mission.now_s = 300.0
+    assert not mission.set_aside
+
+
+def test_an_adapter_that_has_to_be_ended_after_each_call_is_no_new_one() -> None:
+    mission = Mission()
+    for start in (1, 2, 3):
+        mission.announced = {"take": start}
+        mission.take("take", "timed_out")
+    mission.announced = {"take": 4}
+    assert mission.set_aside == {"take"}
+
+
+def test_somebody_who_starts_an_adapter_again_after_a_row_of_timeouts_ends_the_pause() -> None:
+    mission = Mission()
+    mission.announced = {"take": 1}
+    for _ in range(3):
+        mission.take("take", "timed_out")
+    assert mission.set_aside == {"take"}
+    mission.announced = {"take": 2}
+    assert not mission.set_aside
+    assert not mission.take("take", "timed_out"), "a new row"
+
+
 def test_a_skills_own_numbers_count_before_the_missions() -> None:
     rules = {"take": SkillRule(set_aside_after=1, set_aside_s=5.0), "look": SkillRule(set_aside_after=4)}
     mission = Mission(skills=rules)

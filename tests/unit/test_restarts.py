@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
+from aos_deploy.restarts import STARTS, STARTS_OF_ADAPTER, WITHIN_S, Restarts
 
 
 def test_starts_wait_longer_and_longer_until_a_minute_is_over() -> None:
@@ -16,6 +16,20 @@ def test_starts_wait_longer_and_longer_until_a_minute_is_over() -> None:
     assert waits_s == [0.2, 0.4, 0.8, 1.6, 3.2]
     assert not restarts.are_left(STARTS)
     assert restarts.are_left(WITHIN_S + 1)
+
+
+def test_an_adapter_that_has_served_has_more_starts_than_one_that_never_does() -> None:
+    in_vain, served = Restarts(is_adapter=True), Restarts(is_adapter=True)
+    for now_s in range(STARTS):
+        in_vain.start(now_s)
+        served.start(now_s)
+        served.succeed()
+    assert not in_vain.are_left(STARTS)
+    for now_s in range(STARTS, STARTS_OF_ADAPTER):
+        assert served.are_left(now_s)
+        served.start(now_s)
+        served.succeed()
+    assert not served.are_left(STARTS_OF_ADAPTER)
 
 
 def test_a_connection_that_was_there_is_made_again_at_once_and_one_that_fails_later() -> None:

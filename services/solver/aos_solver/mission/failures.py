@@ -121,7 +121,7 @@ class Failures:
             return ""
         is_told = is_observed and not is_excluded
         weight = SettingAside.weight_of_told(surprise) if is_told else 1.0
-        self._setting_aside.count(skill, weight, announced.get(skill, 0))
+        self._setting_aside.count(skill, weight, announced.get(skill, 0), outcome.status)
         if is_observed:
             self._tries = 0
         if not is_told:

@@ -12,25 +12,41 @@ __all__ = ["SettingAside"]
 _COUNTS_FULLY = math.log(10)
 """The surprise from which on a failure that a rule has told counts as a whole one: one in ten."""
 
+_NOBODY_KNOWS = ("unknown", "timed_out", "cancelled")
+"""The statuses after which an adapter may have ended, or still has to."""
+
 
 class _Row(msgspec.Struct):
-    """Failures in a row of one skill, and how often its adapter had announced itself by then."""
+    """Failures in a row of one skill, and how often its adapter had announced itself by then.
+
+    `restarts` counts the announcements between failures of which nobody knows how they ended: an adapter that
+    has ended in a call, or after one, was started again.
+    """
 
     announced: int
     failures: int = 0
     weight: float = 0.0
+    restarts: int = 0
+    last: str = ""
+
+    @property
+    def is_of_adapter(self) -> bool:
+        """True where the adapter's start is part of the failure, and says nothing new of the skill."""
+        return self.last == "unknown" or (self.last in _NOBODY_KNOWS and self.restarts > 0)
 
 
 class _Pause(msgspec.Struct, frozen=True):
     ends_at_s: float
-    announced: int
+    announced: int | None
+    """None where an announcement does not end it."""
     reason: str
 
 
 class SettingAside:
     """Counts each skill's failures in a row, whatever else ran between, and knows which are set aside.
 
-    An adapter that announces itself anew begins a new row, and ends the pause of its skills.
+    An adapter that announces itself anew begins a new row, and ends the pause of its skills, unless its start
+    is what follows from the failures themselves.
     """
 
     def __init__(self) -> None:
@@ -43,11 +59,13 @@ class SettingAside:
         less."""
         return min(max(surprise, 0.0) / _COUNTS_FULLY, 1.0)
 
-    def count(self, skill: str, weight: float, announced: int) -> None:
-        """One more failure in a row."""
+    def count(self, skill: str, weight: float, announced: int, status: str) -> None:
+        """One more failure in a row, with the status of its outcome."""
         row = self._rows.get(skill)
-        if row is None or row.announced != announced:
+        if row is None or (row.announced != announced and row.last not in _NOBODY_KNOWS):
             row = self._rows[skill] = _Row(announced)
+        row.restarts += row.announced != announced
+        row.announced, row.last = announced, status
         row.failures += 1
         row.weight += weight
 
@@ -62,13 +80,17 @@ class SettingAside:
             return ""
         count = f"{row.failures} failures in a row" if row.failures > 1 else "a failure"
         reason = f"{skill} is set aside for {pause_s:g} s after {count}, the last {last}"
-        self._pauses[skill] = _Pause(now_s + pause_s, row.announced, reason)
+        announced = None if row.is_of_adapter else row.announced
+        self._pauses[skill] = _Pause(now_s + pause_s, announced, reason)
         return reason
 
     def reasons(self, now_s: float, announced: Mapping[str, int]) -> dict[str, str]:
         """The skills that are set aside now, each with the reason."""
         for skill, pause in list(self._pauses.items()):
-            if now_s >= pause.ends_at_s or announced.get(skill, 0) != pause.announced:
+            has_come_anew = pause.announced not in (None, announced.get(skill, 0))
+            if has_come_anew:
+                self._rows.pop(skill, None)
+            if has_come_anew or now_s >= pause.ends_at_s:
                 del self._pauses[skill]
         return {skill: pause.reason for skill, pause in self._pauses.items()}
 
