@@ -10,8 +10,8 @@ STARTS = 5
 """A process is started so many times within WITHIN_S at most."""
 
 STARTS_OF_ADAPTER = 10
-"""As STARTS, for an adapter that was ready after its last start: three skills that end it in each call are set
-aside before."""
+"""An adapter that was ready after its last start is started so many times: three skills that end it in each
+call are set aside before."""
 
 WITHIN_S = 60.0
 
