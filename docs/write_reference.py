@@ -155,10 +155,15 @@ def _roles(roles: tuple[str, ...]) -> str:
 
 
 def message_sections() -> str:
-    """Every message with its fields, under the conversations of the source files."""
+    """Every message with its fields, under the conversations of the source files.
+
+    Of a docstring only the first sentence is here: the whole of it stands once, in the source that is linked.
+    """
     parts: list[str] = []
     for title, module in MESSAGES.items():
-        parts.append(f"### {title.capitalize()}\n")
+        source = Path(inspect.getfile(module)).name
+        link = f"[`{source}`](../protocol/aos_protocol/messages/{source})"
+        parts.append(f"### {title.capitalize()}\n\n{link} says what each field means.\n")
         nodes = ast.parse(inspect.getsource(module)).body
         classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
         parts += [_message(node) for node in classes if node.name != "Message"]
@@ -166,7 +171,8 @@ def message_sections() -> str:
 
 
 def _message(node: ast.ClassDef) -> str:
-    lines = [f"#### {node.name}", "", " ".join((ast.get_docstring(node) or "").split()), ""]
+    told = re.match(r".*?\.(?= |$)", " ".join((ast.get_docstring(node) or "").split()))
+    lines = [f"#### {node.name}", "", told[0] if told else "", ""]
     fields = [ast.unparse(field).replace("'", '"') for field in node.body if isinstance(field, ast.AnnAssign)]
     if fields:
         lines += ["```python", *fields, "```"]

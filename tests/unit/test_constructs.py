@@ -1,6 +1,6 @@
 """Each construct of the languages used wrongly: refused, or warned of, where the mistake is.
 
-docs/languages.md lists the constructs, with the tests that show each of them at work.
+tests/constructs.md lists the constructs, with the tests that show each of them at work.
 """
 
 from __future__ import annotations
@@ -163,8 +163,8 @@ MISUSES = {
 
 
 def page_rows(root: Path) -> dict[str, tuple[str, str]]:
-    """The test and the code of each construct, as docs/languages.md lists them."""
-    page = (root / "docs" / "languages.md").read_text(encoding="utf-8")
+    """The test and the code of each construct, as tests/constructs.md lists them."""
+    page = (root / "tests" / "constructs.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([^|]+) \| `([^`|]+)` \| (AOS\d{3}) \|$", page, re.MULTILINE)
     return {name.replace("`", ""): (test, code) for name, test, code in rows}
 
