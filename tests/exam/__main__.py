@@ -18,11 +18,11 @@ the problem is written there. `regret` tells per family what planners lose again
 the range between random actions and the optimum. `values` holds what first decisions tell against the mean
 of missions: it is right within two standard errors, or 5 % of that range. `documents` compiles bundles in
 which a value goes from one variable to the next by idioms of C++; in `--texts` more it only looks for
-variables that are wrongly left out. `intervals` has POMCP decide, and
-holds the value of its choice and the margin over the runner-up, each with two standard errors, against the
-exact ones. `failures` breaks a skill of a robot that uses it: it always fails, is
-always lost, or says what the model excludes. `budgets` measures what a simulation costs in each planner, on
-bundles. Exit code 1: a claim was false, or a target was missed.
+variables that are wrongly left out. `intervals` has POMCP decide, and holds the value of its choice and the
+margin over the runner-up, each with two standard errors, against the exact ones, and the interval in which
+the choice changes with a moved belief against the exact change. `failures` breaks a skill of a robot that
+uses it: it always fails, is always lost, or says what the model excludes. `budgets` measures what a
+simulation costs in each planner, on bundles. Exit code 1: a claim was false, or a target was missed.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ PARTS: Mapping[str, tuple[str, Measure, int]] = {
     "replay": ("missions of 8 models, replayed", replays.measure, 100),
     "undisturbed": ("missions with and without somebody who asks", asked.measure_undisturbed, 100),
     "flips": ("beliefs at which exact choices change", asked.measure_flips, 40),
-    "intervals": ("the same for choices by POMCP", asked.measure_intervals, 100),
+    "intervals": ("the same for choices by POMCP, and their margins", asked.measure_intervals, 40),
 }
 
 

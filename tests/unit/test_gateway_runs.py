@@ -1,8 +1,36 @@
-"""The names of runs in the gateway."""
+"""The names of runs in the gateway, and questions to a run that ends."""
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+
 from aos_gateway.runs import RemoteRun, RunShelf
+from aos_protocol.errors import GatewayError
+
+
+class EndingRun(RemoteRun):
+    """A run that is over as soon as somebody asks it, and whose bus says nothing of that."""
+
+    @asynccontextmanager
+    async def _silent_client(self) -> AsyncIterator[Any]:
+        self.is_running = False
+        yield None
+
+    def _client(self, user: str) -> Any:
+        return self._silent_client()
+
+
+async def test_nobody_waits_for_the_answer_of_a_run_that_has_ended() -> None:
+    run = EndingRun("tcp/10.0.0.7:7447", "tiger")
+    with pytest.raises(GatewayError, match="is over") as caught:
+        async with run.asking():
+            await asyncio.Event().wait()
+    assert caught.value.code == "AOS905"
 
 
 def test_systems_of_one_robot_at_files_of_one_name_have_names_of_their_own() -> None:

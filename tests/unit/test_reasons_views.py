@@ -54,9 +54,16 @@ def test_a_close_decision_says_how_many_simulations_would_tell() -> None:
 def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart() -> None:
     certain = Flip("holding", "true", 0.5, 0.9999, 1.0, True)
     assert "P(holding=true) is 1, now 0.5" in why_lines(msgspec.structs.replace(WHY, flips=(certain,)))[-2]
-    wide = Flip("holding", "true", 0.5, 0.1, 0.3, True)
-    lines = why_lines(msgspec.structs.replace(WHY, flips=(wide,), is_exact=False))
-    assert "below a value in 0.1-0.3, now 0.5" in lines[-2]
+    for flip, words in (
+        (
+            Flip("holding", "true", 0.5, 0.1, 0.3, True),
+            "changes where P(holding=true) is within 0.1-0.3, now 0.5",
+        ),
+        (Flip("holding", "true", 0.5, 0.1, 1.0), "may change where P(holding=true) is within 0.1-1, now 0.5"),
+        (Flip("holding", "true", 0.5, 0.0, 1.0), "too close to call whatever P(holding=true) is, now 0.5"),
+    ):
+        lines = why_lines(msgspec.structs.replace(WHY, flips=(flip,), is_exact=False))
+        assert lines[-2].endswith(words)
 
 
 def test_what_an_operator_asked_for_may_be_the_worse_action_and_says_who_chose() -> None:

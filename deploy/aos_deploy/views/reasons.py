@@ -86,8 +86,13 @@ def _flips(why: Why) -> str:
         found = "is known to make" if not why.is_exact else "makes"
         return f"  no probability of one value {found} {_better_elsewhere(why)} better"
     flip = why.flips[0]
-    place = f"P({flip.variable}={flip.value}) is {_side(flip)}, now {flip.now:.4g}"
-    return f"  {_better_elsewhere(why)} is better where {place}"
+    name = f"P({flip.variable}={flip.value})"
+    if why.is_exact:
+        return f"  {_better_elsewhere(why)} is better where {name} is {_side(flip)}, now {flip.now:.4g}"
+    if flip.low <= 0 and flip.high >= 1:
+        return f"  too close to call whatever {name} is, now {flip.now:.4g}"
+    changes = "changes" if flip.is_checked else "may change"
+    return f"  the choice {changes} where {name} is within {flip.low:.3g}-{flip.high:.3g}, now {flip.now:.4g}"
 
 
 def _better_elsewhere(why: Why) -> str:
@@ -96,12 +101,10 @@ def _better_elsewhere(why: Why) -> str:
 
 
 def _side(flip: Flip) -> str:
-    """`below 0.412`, or the interval in which the choice changes where that is known less well."""
+    """`below 0.412`, the side on which the choice is another one."""
     rises = (flip.low + flip.high) / 2 > flip.now
     if flip.is_checked and (flip.high >= 1 if rises else flip.low <= 0) and flip.high - flip.low <= 1e-3:
         return "1" if rises else "0"
-    if flip.high - flip.low > 1e-3:
-        return f"{'above' if rises else 'below'} a value in {flip.low:.3g}-{flip.high:.3g}"
     return f"above {flip.high:.4g}" if rises else f"below {flip.low:.4g}"
 
 

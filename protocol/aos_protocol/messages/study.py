@@ -66,7 +66,8 @@ class Flip(Message, frozen=True):
 
     The probability is `now`; all ratios among the states with the value are kept, and among those without it
     (Jeffrey's rule). The choice changes between `low` and `high`. `is_checked`: planning on both sides gave
-    the one action and the other.
+    the one action and the other. Where values are searched, neither action is better for certain between
+    `low` and `high`, and without `is_checked` the choice may not change at all.
     """
 
     variable: str

@@ -59,7 +59,7 @@ async def bundles(gateway: Gateway, run: str) -> Catalogue:
     """The projects of a run's registry, with their skills and revisions."""
     found = gateway.shelf.run(run)
     if not isinstance(found, KeptRun):
-        async with found.client() as client:
+        async with found.asking() as client:
             return await client.bus.ask(
                 client.keys.catalogue, CatalogueQuery(), Catalogue, timeout_s=_ANSWER_S
             )

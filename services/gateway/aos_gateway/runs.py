@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
-from contextlib import AbstractAsyncContextManager
+from collections.abc import AsyncIterator, Iterable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from pathlib import Path
 
 import msgspec
@@ -28,6 +28,8 @@ __all__ = ["KeptRun", "RemoteRun", "Run", "RunEntry", "RunShelf"]
 
 _ANSWER_S = 5.0
 _FRESH_S = 0.8
+_LOOK_S = 0.5
+"""Somebody who waits for an answer hears so soon that the system has ended."""
 
 
 class RunEntry(msgspec.Struct, frozen=True, omit_defaults=True):
@@ -89,10 +91,39 @@ class Run(ABC):
     def client(self, user: str = WATCHER) -> AbstractAsyncContextManager[AosClient]:
         """A client of the system, as its watcher or its operator; GatewayError AOS905 if it does not run."""
         if not self.is_running:
-            raise GatewayError(
-                f"the run {self.name} is over", code="AOS905", hint="Start a system, or look at its records"
-            )
+            raise self._over()
         return self._client(user)
+
+    @asynccontextmanager
+    async def asking(self, user: str = WATCHER) -> AsyncIterator[AosClient]:
+        """A client for a question: GatewayError AOS905 also if the system ends before it answers.
+
+        Its bus does not tell that: nobody answers a question there, and it is asked again until its deadline.
+        """
+        try:
+            async with asyncio.timeout(None) as until_over:
+                looking = asyncio.create_task(self._look(until_over))
+                try:
+                    async with self.client(user) as client:
+                        yield client
+                finally:
+                    looking.cancel()
+        except TimeoutError:
+            if until_over.expired():
+                raise self._over() from None
+            raise
+
+    async def _look(self, until_over: asyncio.Timeout) -> None:
+        is_running = True
+        while is_running:
+            await asyncio.sleep(_LOOK_S)
+            is_running = await asyncio.to_thread(lambda: self.is_running)
+        until_over.reschedule(asyncio.get_running_loop().time())
+
+    def _over(self) -> GatewayError:
+        return GatewayError(
+            f"the run {self.name} is over", code="AOS905", hint="Start a system, or look at its records"
+        )
 
     @abstractmethod
     def _client(self, user: str) -> AbstractAsyncContextManager[AosClient]:

@@ -49,7 +49,7 @@ async def why(gateway: Gateway, mission: str, step: str, query: OfWhy) -> Why:
     asked = WhyQuery(number_of_step(step), query.instead, mission)
     found = await gateway.shelf.run_of_mission(mission)
     if found.is_running:
-        async with found.client() as client:
+        async with found.asking() as client:
             return await client.bus.ask(client.keys.study_why, asked, Why, timeout_s=STUDY_TIMEOUT_S)
     async with gateway.studying:
         return await _studied(found, mission).study(lambda study: study.why(asked))
@@ -60,7 +60,7 @@ async def tree(gateway: Gateway, mission: str, step: str, query: OfTree) -> Deci
     asked = TreeQuery(number_of_step(step), query.depth, query.branches, mission)
     found = await gateway.shelf.run_of_mission(mission)
     if found.is_running:
-        async with found.client() as client:
+        async with found.asking() as client:
             return await client.bus.ask(
                 client.keys.study_tree, asked, DecisionTree, timeout_s=STUDY_TIMEOUT_S
             )
@@ -75,7 +75,7 @@ async def what_if(gateway: Gateway, mission: str, step: str, body: Otherwise) ->
     asked = WhatIfQuery(number_of_step(step), body.forbid, body.without, body.believe, body.change, mission)
     found = await gateway.shelf.run_of_mission(mission)
     if found.is_running:
-        async with found.client() as client:
+        async with found.asking() as client:
             return await client.bus.ask(client.keys.study_whatif, asked, WhatIf, timeout_s=STUDY_TIMEOUT_S)
     async with gateway.studying:
         return await _studied(found, mission).study(lambda study: study.what_if(asked))

@@ -145,7 +145,7 @@ async def start(gateway: Gateway, body: StartSystem) -> StartedRun:
 
 async def start_next(gateway: Gateway, run: str, body: NextMission) -> MissionState:
     """Begin the next mission of a system that stays."""
-    async with gateway.shelf.run(run).client(OPERATOR) as client:
+    async with gateway.shelf.run(run).asking(OPERATOR) as client:
         return await client.start_mission(
             belief=body.belief, given=body.given, idle=body.idle, values=body.values
         )
@@ -154,14 +154,14 @@ async def start_next(gateway: Gateway, run: str, body: NextMission) -> MissionSt
 async def stop(gateway: Gateway, mission: str) -> MissionState:
     """Cancel what moves and end a mission as `cancelled`. Answered when it has ended."""
     found = await gateway.shelf.run_of_mission(mission)
-    async with found.client(OPERATOR) as client:
+    async with found.asking(OPERATOR) as client:
         return await client.stop_mission(mission)
 
 
 async def steer(gateway: Gateway, mission: str, body: Steering) -> MissionState:
     """Steer a mission that runs: hold, step, resume, stop, act, script, leave_out, take_back."""
     found = await gateway.shelf.run_of_mission(mission)
-    async with found.client(OPERATOR) as client:
+    async with found.asking(OPERATOR) as client:
         return await client.carry_out(
             Steer(body.verb, body.actions, body.name, body.by or client.by, mission, reason=body.reason)
         )
@@ -173,7 +173,7 @@ async def push(gateway: Gateway, run: str, query: Named, body: bytes) -> BundleR
     files, remarks = await asyncio.to_thread(files_of_upload, query.name, body)
     if has_errors(remarks) or not files:
         raise _refused(query.name, tuple(remarks))
-    async with found.client(OPERATOR) as client:
+    async with found.asking(OPERATOR) as client:
         report = await client.bus.ask(
             client.keys.push_bundle, PushBundle(files, query.name), BundleReport, timeout_s=_PUSH_S
         )

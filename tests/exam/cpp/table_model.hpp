@@ -88,6 +88,7 @@ struct TableModel {
 
   static void prepare() {}
   static int action_count() { return static_cast<int>(problem_->actions); }
+  static int monitor_count() { return 0; }
   static bool reports_numbers() { return false; }
   static int skill_of(int) { return 0; }
   static int number_count(int) { return 0; }

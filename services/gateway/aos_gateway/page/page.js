@@ -168,7 +168,7 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
             <${vs} node=${r} />
           </details></li>`)}</ul>
         </details>`:a`<${hs} each=${n} />`}
-  </li>`)}</ul>`:a`<p class="muted">over; goal ${T(e.goal_probability)}</p>`}var hs=({each:e})=>a`<span class="action">${e.action}</span> <b>${W(e.q)}</b>${e.stderr>=.005&&a` <span class="muted">± ${e.stderr.toFixed(2)}</span>`}${e.n>0&&a` <span class="muted">${e.n.toLocaleString("en")} simulations</span>`}`;var Qt=new Map,$s=e=>e.margin<0?e.action:e.other,Eo=e=>["planner","operator","script"].includes(e.chosen_by),_s=e=>!!e.terms?.length||!e.remark,No=e=>({operator:", which an operator has asked for",script:", which a script has asked for"})[e.chosen_by]??"";function gs(){let[e,t]=_(""),[n,s]=_(null),[o,i]=_(null),[r,u]=_(0),c=g.value?.step,{name:l}=x.value;if(w(()=>t(""),[l,c]),w(()=>{if(!c)return;let d=`/v1/missions/${encodeURIComponent(l)}/decisions/${c}/why?instead=${encodeURIComponent(e)}`;if(i(null),s(Qt.get(d)??null),Qt.has(d))return;let f=!0,h=setTimeout(()=>R(d).then(m=>{g.value?.status&&_s(m)&&Qt.set(d,m),f&&s(m)},m=>f&&i(m)),150);return()=>{f=!1,clearTimeout(h)}},[l,c,e,r]),!c)return a`<p class="empty">There is no decision yet.</p>`;let p=(ie.value?.decided?.actions??[]).map(d=>d.action).filter(d=>d!==g.value.action);return a`<div class="why" aria-busy=${!n&&!o}>
+  </li>`)}</ul>`:a`<p class="muted">over; goal ${T(e.goal_probability)}</p>`}var hs=({each:e})=>a`<span class="action">${e.action}</span> <b>${W(e.q)}</b>${e.stderr>=.005&&a` <span class="muted">± ${e.stderr.toFixed(2)}</span>`}${e.n>0&&a` <span class="muted">${e.n.toLocaleString("en")} simulations</span>`}`;var Qt=new Map,_s=e=>e.margin<0?e.action:e.other,Eo=e=>["planner","operator","script"].includes(e.chosen_by),$s=e=>!!e.terms?.length||!e.remark,No=e=>({operator:", which an operator has asked for",script:", which a script has asked for"})[e.chosen_by]??"";function gs(){let[e,t]=_(""),[n,s]=_(null),[o,i]=_(null),[r,u]=_(0),c=g.value?.step,{name:l}=x.value;if(w(()=>t(""),[l,c]),w(()=>{if(!c)return;let d=`/v1/missions/${encodeURIComponent(l)}/decisions/${c}/why?instead=${encodeURIComponent(e)}`;if(i(null),s(Qt.get(d)??null),Qt.has(d))return;let f=!0,h=setTimeout(()=>R(d).then(m=>{g.value?.status&&$s(m)&&Qt.set(d,m),f&&s(m)},m=>f&&i(m)),150);return()=>{f=!1,clearTimeout(h)}},[l,c,e,r]),!c)return a`<p class="empty">There is no decision yet.</p>`;let p=(ie.value?.decided?.actions??[]).map(d=>d.action).filter(d=>d!==g.value.action);return a`<div class="why" aria-busy=${!n&&!o}>
     <p class="why-head">Why <span class="action">${g.value.action}</span>${n&&No(n)}
       <label> and not <select value=${e} onChange=${d=>t(d.target.value)}>
         <option value="">the runner-up${n&&!e?`, ${n.other}`:""}</option>
@@ -177,14 +177,14 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
     <${A} problem=${o} />
     ${!n&&!o&&a`<p class="empty">An engine of its own is brought to this step…</p>`}
     ${n&&a`<${Ao} why=${n} />`}
-    ${n&&!_s(n)&&a`<p><button class="link" onClick=${()=>u(r+1)}>Ask again</button></p>`}
+    ${n&&!$s(n)&&a`<p><button class="link" onClick=${()=>u(r+1)}>Ask again</button></p>`}
     ${c&&a`<${ms} key=${`tree ${l} ${c}`} name=${l} step=${c} seen=${g.value.seen} />`}
-    ${c&&a`<${Io} key=${`${l} ${c}`} name=${l} step=${c} />`}
+    ${c&&a`<${Do} key=${`${l} ${c}`} name=${l} step=${c} />`}
   </div>`}var Ao=({why:e})=>a`<div class="columns even">
   <${M} id="margin" title="Where the margin comes from" note=${Ro(e)}><${jo} why=${e} /><//>
   <div class="stack">
-    <${M} id="flips" title="At which belief the choice changes" note=${e.flips?.length?"Coloured: the action that is better now. Grey: the other one. The line is the belief now.":""}><${Fo} why=${e} /><//>
-    <${M} id="leads" title="What each response leads to"><${Po} why=${e} /><//>
+    <${M} id="flips" title="At which belief the choice changes" note=${e.flips?.length?`Coloured: the action that is better now. Grey: the other one.${e.is_exact?"":" Pale: neither for certain."} The line is the belief now.`:""}><${Po} why=${e} /><//>
+    <${M} id="leads" title="What each response leads to"><${Io} why=${e} /><//>
   </div>
 </div>`;function Ro(e){if(e.is_close){let n=e.simulations_to_tell?`about ${Number(e.simulations_to_tell.toPrecision(2)).toLocaleString("en")} simulations would tell`:"no number of simulations is sure to tell";return`Too close to call against ${e.other}: ${n}.`}let t=e.margin_stderr>=.005?` ± ${H(e.margin_stderr)}`:"";return`${W(e.margin)}${t} over ${e.other}, ${e.is_exact?"exactly":`by ${e.planner}`}.`}function jo({why:e}){let[t,n]=z(),s=(e.terms??[]).map(l=>({...l,margin:l.value-l.other})).filter(l=>Math.abs(l.margin)>5e-4),o=(e.rest??0)-(e.other_rest??0);Math.abs(o)>5e-4&&s.push({place:"later steps",margin:o});let i=Math.max(...s.map(l=>Math.abs(l.margin)),1e-9),r=Math.max(80,n-(ve.value<720?70:250)),u=l=>r/2+l/i*(r/2-2),c=I(x.value.name,"documents",x.value.step);return a`<div class="terms" ref=${t}>
     ${!s.length&&a`<p class="empty">${e.remark||"No line of the documents tells them apart."}</p>`}
@@ -197,23 +197,23 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
       <span class="number">${W(l.margin,2)}</span>
     </li>`)}</ul>
     ${e.remark&&s.length>0&&a`<p class="aside">${e.remark}</p>`}
-  </div>`}function Fo({why:e}){let[t,n]=z(),s=Math.max(100,n),o=r=>r*s,i=(e.flips??[]).slice(0,5);return a`<div class="flips" ref=${t}>
-    ${!i.length&&a`<p class="empty">${Eo(e)?`No probability of one value makes ${$s(e)} better, as far as was looked.`:`It was chosen by ${e.chosen_by}, whatever is believed.`}</p>`}
-    ${i.map(r=>{let u=(r.low+r.high)/2>r.now,[c,l]=u?[r.high,1]:[0,r.low],p=u?"above":"below",d=r.high-r.low>.001?`${p} a probability between ${T(r.low)} and ${T(r.high)}`:`${p} ${T((r.low+r.high)/2)}`;return a`<figure class="flip">
-        <figcaption>P(<span class="code">${r.variable} = ${r.value}</span>) is ${T(r.now)}; ${J($s(e))} wins ${d}${r.is_checked?"":", not checked by planning"}</figcaption>
+  </div>`}function Fo(e,t,n){return e.is_exact?`${J(_s(e))} wins ${n?"above":"below"} ${T((t.low+t.high)/2)}`:t.low<=0&&t.high>=1?"too close to call whatever it is":`the choice ${t.is_checked?"changes":"may change"} between ${T(t.low)} and ${T(t.high)}`}function Po({why:e}){let[t,n]=z(),s=Math.max(100,n),o=r=>r*s,i=(e.flips??[]).slice(0,5);return a`<div class="flips" ref=${t}>
+    ${!i.length&&a`<p class="empty">${Eo(e)?`No probability of one value makes ${_s(e)} better, as far as was looked.`:`It was chosen by ${e.chosen_by}, whatever is believed.`}</p>`}
+    ${i.map(r=>{let u=(r.low+r.high)/2>r.now,c=r.is_checked&&(r.now<=r.low||r.now>=r.high),[l,p]=u?[r.high,1]:[0,r.low];return a`<figure class="flip">
+        <figcaption>P(<span class="code">${r.variable} = ${r.value}</span>) is ${T(r.now)}; ${Fo(e,r,u)}</figcaption>
         <svg width=${s} height="22" aria-hidden="true">
           <rect class="this" x="0" y="3" width=${s} height="16" rx="3" />
           <rect class="between" x=${o(r.low)} y="3" width=${Math.max(1,o(r.high)-o(r.low))} height="16" />
-          <rect class="other" x=${o(c)} y="3" width=${Math.max(1,o(l)-o(c))} height="16" rx="3" />
+          ${c&&a`<rect class="other" x=${o(l)} y="3" width=${Math.max(1,o(p)-o(l))} height="16" rx="3" />`}
           <line class="now" x1=${o(r.now)} x2=${o(r.now)} y1="0" y2="22" />
         </svg>
       </figure>`})}
-  </div>`}var Po=({why:e})=>a`<ul class="leads">
+  </div>`}var Io=({why:e})=>a`<ul class="leads">
   ${(e.expected??[]).map(t=>a`<li class=${t.is_seen?"is-seen":""}>
     <p><span class="response">${t.response}</span> <span class="muted">${ee(t.probability)}</span>${t.is_seen&&a` <b>seen</b>`}</p>
     <p class="muted">${t.action?a`goal ${T(t.goal_probability??0)}; next would be <span class="response">${t.action}</span>, worth ${W(t.value)}`:`goal ${T(t.goal_probability??0)}; the mission would be over`}</p>
   </li>`)}
-</ul>`;function Io({name:e,step:t}){let[n,s]=_({forbid:"",without:"",believe:"",change:""}),[o,i]=_(null),[r,u]=_(null),[c,l]=_(!1);if(!q())return null;let p=[["forbid","Without this action now",g.value?.action??""],["without","Without this skill for good",g.value?.skill??""],["believe","With another belief","variable=value:0.5"],["change","With another number in the documents","file:line=number"]];async function d(f){f.preventDefault(),l(!0),u(null);let h={};for(let[m]of p)n[m].trim()&&(h[m]=[n[m].trim()]);try{i(await le(`/v1/missions/${encodeURIComponent(e)}/decisions/${t}/whatif`,h))}catch(m){i(null),u(m)}l(!1)}return a`<${M} id="whatif" title="What if" className="whatif" note="The step is decided anew; the mission is not touched.">
+</ul>`;function Do({name:e,step:t}){let[n,s]=_({forbid:"",without:"",believe:"",change:""}),[o,i]=_(null),[r,u]=_(null),[c,l]=_(!1);if(!q())return null;let p=[["forbid","Without this action now",g.value?.action??""],["without","Without this skill for good",g.value?.skill??""],["believe","With another belief","variable=value:0.5"],["change","With another number in the documents","file:line=number"]];async function d(f){f.preventDefault(),l(!0),u(null);let h={};for(let[m]of p)n[m].trim()&&(h[m]=[n[m].trim()]);try{i(await le(`/v1/missions/${encodeURIComponent(e)}/decisions/${t}/whatif`,h))}catch(m){i(null),u(m)}l(!1)}return a`<${M} id="whatif" title="What if" className="whatif" note="The step is decided anew; the mission is not touched.">
     <form onSubmit=${d}>
       ${p.map(([f,h,m])=>a`<label class="field">${h}<input value=${n[f]} placeholder=${m} onInput=${v=>s({...n,[f]:v.target.value})} /></label>`)}
       <button class="primary" disabled=${c}>${c?"Deciding…":"Decide anew"}</button>
@@ -223,14 +223,14 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
       ${o.remark&&a`<p class="muted">${o.remark}</p>`}`}</div>
     <${A} problem=${r} />
   <//>`}var ys=()=>a`<div class="columns even">
-  <${Do} />
+  <${Uo} />
   <${M} id="expected" title="Expected against seen" note="The ring is how often the model expected a response, the dot how often it came; the bar holds the true frequency with 95 %.">
-    <${Wo} />
-  <//>
-  <${M} id="strip" title="Decision strip" note="What was chosen at which probability, in this mission. The larger a dot, the more often.">
     <${Ho} />
   <//>
-</div>`;function Do(){let e=ft.value;return e.length?a`<${M} id="alarms" title="The model does not hold" className="alarms" note="Where the model is right, the probability that any such alarm ever comes is 1 % at most.">
+  <${M} id="strip" title="Decision strip" note="What was chosen at which probability, in this mission. The larger a dot, the more often.">
+    <${zo} />
+  <//>
+</div>`;function Uo(){let e=ft.value;return e.length?a`<${M} id="alarms" title="The model does not hold" className="alarms" note="Where the model is right, the probability that any such alarm ever comes is 1 % at most.">
     <div class="scroll" tabindex="0" role="region" aria-label="Table of alarms"><table>
       <thead><tr><th>Skill</th><th>Response</th><th class="num">Modelled</th><th class="num">Seen</th><th class="num">Uses</th><th class="num" title="The step at which it began">Since</th></tr></thead>
       <tbody>${e.map(t=>a`<tr onClick=${()=>U(t.since)}>
@@ -239,11 +239,11 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
         <td class="num"><button class="row-step" aria-label=${`Step ${t.since}`}>${t.since}</button></td>
       </tr>`)}</tbody>
     </table></div>
-  <//>`:null}function Uo(){let e=new Map;for(let t of C.value){if(t.status!=="observed")continue;e.has(t.skill)||e.set(t.skill,{uses:0,responses:new Map});let n=e.get(t.skill);n.uses++;let s=new Set([...Object.keys(t.predicted??{}),t.seen]);for(let o of s){let i=n.responses.get(o)??{expected:0,seen:0};i.expected+=t.predicted?.[o]??0,o===t.seen&&i.seen++,n.responses.set(o,i)}}return e}function Lo(e,t){let s=e/t,o=(s+1.96*1.96/(2*t))/(1+1.96*1.96/t),i=1.96*Math.sqrt(s*(1-s)/t+1.96*1.96/(4*t*t))/(1+1.96*1.96/t);return[Math.max(0,o-i),Math.min(1,o+i)]}function Wo(){let[e,t]=z(),n=Uo(),s=Math.max(90,t-(t<480?132:250)),o=i=>8+i*(s-16);return a`<div class="expected" ref=${e}>
+  <//>`:null}function Lo(){let e=new Map;for(let t of C.value){if(t.status!=="observed")continue;e.has(t.skill)||e.set(t.skill,{uses:0,responses:new Map});let n=e.get(t.skill);n.uses++;let s=new Set([...Object.keys(t.predicted??{}),t.seen]);for(let o of s){let i=n.responses.get(o)??{expected:0,seen:0};i.expected+=t.predicted?.[o]??0,o===t.seen&&i.seen++,n.responses.set(o,i)}}return e}function Wo(e,t){let s=e/t,o=(s+1.96*1.96/(2*t))/(1+1.96*1.96/t),i=1.96*Math.sqrt(s*(1-s)/t+1.96*1.96/(4*t*t))/(1+1.96*1.96/t);return[Math.max(0,o-i),Math.min(1,o+i)]}function Ho(){let[e,t]=z(),n=Lo(),s=Math.max(90,t-(t<480?132:250)),o=i=>8+i*(s-16);return a`<div class="expected" ref=${e}>
     ${!n.size&&a`<p class="empty">Nothing has been observed yet.</p>`}
     ${[...n].map(([i,{uses:r,responses:u}])=>a`<div class="skill" key=${i}>
       <h3>${i} <span class="muted">${r} ${r===1?"use":"uses"}</span></h3>
-      <ul>${[...u].sort((c,l)=>l[1].seen-c[1].seen).map(([c,{expected:l,seen:p}])=>{let[d,f]=Lo(p,r),h=l/r,m=h<d||h>f;return a`<li class=${m?"is-off":""} aria-label=${`${c}: expected ${ee(h)}, seen ${ee(p/r)}, ${p} of ${r}${m?", outside of the interval":""}`}>
+      <ul>${[...u].sort((c,l)=>l[1].seen-c[1].seen).map(([c,{expected:l,seen:p}])=>{let[d,f]=Wo(p,r),h=l/r,m=h<d||h>f;return a`<li class=${m?"is-off":""} aria-label=${`${c}: expected ${ee(h)}, seen ${ee(p/r)}, ${p} of ${r}${m?", outside of the interval":""}`}>
           <span class="response-name">${c}</span>
           <svg width=${s} height="18" aria-hidden="true">
             <line class="rail" x1="8" x2=${s-8} y1="9" y2="9" />
@@ -254,7 +254,7 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
           <span class="number">${p}/${r}${m?a` <b title="The model's frequency is outside of the interval">!</b>`:""}</span>
         </li>`})}</ul>
     </div>`)}
-  </div>`}function Ho(){let[e,t]=z(),[n,s]=_(""),i=Xt(G.value).filter(v=>v.isDoubtful&&!v.isNumber).flatMap(v=>v.values.filter($=>$!=="…"&&!($==="false"&&v.values.includes("true"))).map($=>`${v.name} = ${$}`)),r=i.includes(n)?n:i[0];if(!r)return a`<div ref=${e}><p class="empty">No variable is in doubt.</p></div>`;let[u,c]=r.split(" = "),l=new Map;C.value.forEach((v,$)=>{let b=G.value[$]?.[u]?.[c]??0;l.has(v.action)||l.set(v.action,[]),l.get(v.action).push({share:b,step:v})});let p=28,d=t<480,f=Math.max(120,t-(d?120:190)),h=v=>10+v*(f-20),m=[...l].sort((v,$)=>bs(v[1])-bs($[1])).slice(0,14);return a`<div class="strip" ref=${e}>
+  </div>`}function zo(){let[e,t]=z(),[n,s]=_(""),i=Xt(G.value).filter(v=>v.isDoubtful&&!v.isNumber).flatMap(v=>v.values.filter($=>$!=="…"&&!($==="false"&&v.values.includes("true"))).map($=>`${v.name} = ${$}`)),r=i.includes(n)?n:i[0];if(!r)return a`<div ref=${e}><p class="empty">No variable is in doubt.</p></div>`;let[u,c]=r.split(" = "),l=new Map;C.value.forEach((v,$)=>{let b=G.value[$]?.[u]?.[c]??0;l.has(v.action)||l.set(v.action,[]),l.get(v.action).push({share:b,step:v})});let p=28,d=t<480,f=Math.max(120,t-(d?120:190)),h=v=>10+v*(f-20),m=[...l].sort((v,$)=>bs(v[1])-bs($[1])).slice(0,14);return a`<div class="strip" ref=${e}>
     <label class="pick">Probability of <select value=${r} onChange=${v=>s(v.target.value)}>
       ${i.map(v=>a`<option value=${v}>${v}</option>`)}</select></label>
     <div class="strip-rows">
@@ -262,21 +262,21 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
         <span class="value-name" title=${v}>${J(v)}</span>
         <svg width=${f} height=${p} role="img" aria-label=${`${v}: chosen at ${$.slice(0,12).map(b=>T(b.share)).join(", ")}`}>
           <line class="rail" x1="10" x2=${f-10} y1=${p/2} y2=${p/2} />
-          ${zo($).map(({share:b,at:y})=>a`<circle class=${y.includes(g.value)?"is-now":""} cx=${h(b)} cy=${p/2} r=${Math.min(12,3.5+1.5*Math.sqrt(y.length))} onClick=${()=>U(y[0].step)}><title>${`${T(b)}: ${y.length>1?`${y.length} steps`:`step ${y[0].step}`}`}</title></circle>`)}
+          ${qo($).map(({share:b,at:y})=>a`<circle class=${y.includes(g.value)?"is-now":""} cx=${h(b)} cy=${p/2} r=${Math.min(12,3.5+1.5*Math.sqrt(y.length))} onClick=${()=>U(y[0].step)}><title>${`${T(b)}: ${y.length>1?`${y.length} steps`:`step ${y[0].step}`}`}</title></circle>`)}
         </svg>
       </div>`)}
       <div class="strip-row axis" aria-hidden="true"><span></span><span class="axis-ends" style=${{width:`${f}px`}}><i>0</i><i>½</i><i>1</i></span></div>
     </div>
-  </div>`}function zo(e){let t=new Map;for(let{share:n,step:s}of e){let o=Math.round(n*100);t.has(o)||t.set(o,{share:n,at:[]}),t.get(o).at.push(s)}return[...t.values()]}var bs=e=>e.reduce((t,n)=>t+n.share,0)/e.length;var ws=()=>a`<div class="columns">
+  </div>`}function qo(e){let t=new Map;for(let{share:n,step:s}of e){let o=Math.round(n*100);t.has(o)||t.set(o,{share:n,at:[]}),t.get(o).at.push(s)}return[...t.values()]}var bs=e=>e.reduce((t,n)=>t+n.share,0)/e.length;var ws=()=>a`<div class="columns">
   <${M} id="all-steps" title="Steps" className="wide"><${Yt} /><//>
-  <${M} id="activation" title=${g.value?`Activation of step ${g.value.step}`:"Activation"}><${Bo} /><//>
+  <${M} id="activation" title=${g.value?`Activation of step ${g.value.step}`:"Activation"}><${Vo} /><//>
 </div>`,xt=150;function Yt(){let e=fe(null),[t,n]=_(!1),s=g.value?.step,o=C.value,i=o.length>xt&&!t,r=i?Math.max(0,Math.min(o.length-xt,Math.round((K.value-xt/2)/25)*25)):0,u=i?o.slice(r,r+xt):o;return w(()=>{let c=e.current?.querySelector("[aria-selected=true]"),l=e.current?.closest(".scroll");c&&l&&(c.offsetTop<l.scrollTop+30||c.offsetTop+c.offsetHeight>l.scrollTop+l.clientHeight)&&(l.scrollTop=c.offsetTop-l.clientHeight/2)},[s]),a`<div class="scroll" tabindex="0" role="region" aria-label="Table of steps">
     <table class="steps">
       <thead><tr><th>Step</th><th>Action</th><th class="num wide-only">Value</th><th>Seen</th><th class="num wide-only">Expected</th><th class="num">Surprise</th><th class="num wide-only">Goal</th></tr></thead>
-      <tbody ref=${e}>${u.map(c=>a`<${qo} key=${c.step} step=${c} isNow=${c.step===s} />`)}</tbody>
+      <tbody ref=${e}>${u.map(c=>a`<${Bo} key=${c.step} step=${c} isNow=${c.step===s} />`)}</tbody>
     </table>
     ${i&&a`<button class="link" onClick=${()=>n(!0)}>Show all ${o.length} steps</button>`}
-  </div>`}var qo=({step:e,isNow:t})=>a`<tr aria-selected=${t} onClick=${()=>U(e.step)}>
+  </div>`}var Bo=({step:e,isNow:t})=>a`<tr aria-selected=${t} onClick=${()=>U(e.step)}>
   <td><button class="row-step" aria-label=${`Step ${e.step}`}>${e.step}</button></td>
   <td class="action" title=${e.action}>${J(e.action)}</td>
   <td class="num wide-only">${W(e.value)}</td>
@@ -284,7 +284,7 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
   <td class="num wide-only">${e.status?T(e.expected):""}</td>
   <td class="num">${e.status?a`${qe(e)?a`<span class="mark" aria-label="surprising">▲ </span>`:""}${e.impossible?"∞":H(e.surprise)}`:""}</td>
   <td class="num wide-only">${T((e.endings_after??e.endings)?.goal)}</td>
-</tr>`;function Bo(){let e=ie.value,t=g.value;if(!t||!e)return a`<p class="empty">There is no step yet.</p>`;let n=e.observed??e.decided,s=e.observed?.outcome,o=s?(s.ended_ns-s.started_ns)/1e9:null,i=Object.entries(s?.local_variables??{});return a`<div class="activation">
+</tr>`;function Vo(){let e=ie.value,t=g.value;if(!t||!e)return a`<p class="empty">There is no step yet.</p>`;let n=e.observed??e.decided,s=e.observed?.outcome,o=s?(s.ended_ns-s.started_ns)/1e9:null,i=Object.entries(s?.local_variables??{});return a`<div class="activation">
     <p class="big-action">${t.action}</p>
     <dl class="facts">
       <div><dt>Outcome</dt><dd>${s?`${s.status.replace("_"," ")}${s.response?`: ${s.response}`:""}`:"running"}</dd></div>
@@ -303,8 +303,8 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
     <div class="files" role="tablist" aria-label="Files">
       ${e.files.map(h=>a`<button role="tab" aria-selected=${h.name===p} class=${f.includes(h.name)?"is-about":""} onClick=${()=>i(h.name)}>${h.name}</button>`)}
     </div>
-    <${Vo} key=${p} text=${d} marked=${l.filter(h=>h.file===p)} />
-  <//>`}function Vo({text:e,marked:t}){let n=fe(null);return w(()=>{let s=n.current?.querySelector(".is-marked");s&&(n.current.scrollTop=Math.max(0,s.offsetTop-60))},[t.map(s=>s.first).join()]),a`<pre class="source" ref=${n} tabindex="0"><code>${e.split(`
+    <${Go} key=${p} text=${d} marked=${l.filter(h=>h.file===p)} />
+  <//>`}function Go({text:e,marked:t}){let n=fe(null);return w(()=>{let s=n.current?.querySelector(".is-marked");s&&(n.current.scrollTop=Math.max(0,s.offsetTop-60))},[t.map(s=>s.first).join()]),a`<pre class="source" ref=${n} tabindex="0"><code>${e.split(`
 `).map((s,o)=>{let i=t.find(r=>r.first<=o+1&&o+1<=r.last);return a`<span class=${i?"line is-marked":"line"} data-line=${o+1}>${s||" "}\n</span>`})}</code></pre>`}function ks(){let[e,t]=_(null),{name:n}=x.value,s=g.value?.step,o=!!g.value?.status;return w(()=>{if(!Me.value||!s)return;let i=!0,r=l=>i&&t(l),u=`/v1/missions/${encodeURIComponent(n)}/decisions/${s}/picture`,c=setTimeout(()=>Hn(u).then(l=>r({step:s,url:URL.createObjectURL(l)}),l=>r({step:s,problem:l})),150);return()=>{i=!1,clearTimeout(c)}},[n,s,o,Me.value]),w(()=>()=>e?.url&&URL.revokeObjectURL(e.url),[e]),Me.value?a`<${M} id="drawn" title="State" note="The likeliest value of each variable, as the bundle draws it.">
     <${A} problem=${e?.problem} />
     ${e?.url&&a`<figure class="picture"><img src=${e.url} alt=${`The state after step ${e.step}`} /></figure>`}
@@ -332,26 +332,26 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
       <//>
       <${M} id="bundles" title="Documents">
         <ul class="bundles">${i.map($=>a`<li><b>${$.project}</b> revision ${$.revision}<span class="muted">${$.skills.join(", ")}</span></li>`)}</ul>
-        ${e.is_running&&a`<${Go} run=${e.run} />`}
+        ${e.is_running&&a`<${Ko} run=${e.run} />`}
       <//>
     </div>
-  </div>`:null}function Go({run:e}){let[t,n]=_(null),[s,o]=_("");async function i(r){let u=r.target.files[0];if(u){o(`Sending ${u.name}…`),n(null);try{let c=await dt(`/v1/runs/${encodeURIComponent(e)}/bundles`,u),l=[...c.added??[],...c.changed??[]].join(", ");o(`Accepted: revision ${c.revision}${l?`, ${l}`:", nothing new"}.`)}catch(c){o(""),n(c)}r.target.value=""}}return a`<div class="push">
+  </div>`:null}function Ko({run:e}){let[t,n]=_(null),[s,o]=_("");async function i(r){let u=r.target.files[0];if(u){o(`Sending ${u.name}…`),n(null);try{let c=await dt(`/v1/runs/${encodeURIComponent(e)}/bundles`,u),l=[...c.added??[],...c.changed??[]].join(", ");o(`Accepted: revision ${c.revision}${l?`, ${l}`:", nothing new"}.`)}catch(c){o(""),n(c)}r.target.value=""}}return a`<div class="push">
     ${q()?a`<label class="button">Give it documents…<input type="file" class="visually-hidden" onChange=${i} accept=".zip,.tar,.gz,.tgz,.xz,.bz2,.ef,.sd,.am,.lf,.json" /></label>
           <p class="note">A document, or an archive of some. They take over at a decision, and the mission goes on.</p>`:a`<p class="note">Open the address that <code>aos serve</code> prints to change something here.</p>`}
     <p role="status">${s}</p>
     <${A} problem=${t} />
-  </div>`}var Ko={overview:"Overview",why:"Why",steps:"Steps",model:"Model",documents:"Documents",system:"System"},Jo={overview:Qo,why:gs,steps:ws,model:ys,documents:xs,system:Ss};function Ms(){let{name:e,view:t}=x.value;w(()=>(mt(e),Kn),[e]);let n=g.value?.step,s=g.value&&!g.value.status;if(w(()=>{if(!n)return;let i=setTimeout(()=>vt(n),60);return()=>clearTimeout(i)},[e,n,s]),Y.value&&!D.value)return a`<main id="main" class="page"><h1>${e}</h1><${A} problem=${Y.value} /><p><a href="#/">All missions</a></p></main>`;let o=Jo[t];return a`<main id="main" class="page">
-    <${Zo} />
+  </div>`}var Jo={overview:"Overview",why:"Why",steps:"Steps",model:"Model",documents:"Documents",system:"System"},Zo={overview:Yo,why:gs,steps:ws,model:ys,documents:xs,system:Ss};function Ms(){let{name:e,view:t}=x.value;w(()=>(mt(e),Kn),[e]);let n=g.value?.step,s=g.value&&!g.value.status;if(w(()=>{if(!n)return;let i=setTimeout(()=>vt(n),60);return()=>clearTimeout(i)},[e,n,s]),Y.value&&!D.value)return a`<main id="main" class="page"><h1>${e}</h1><${A} problem=${Y.value} /><p><a href="#/">All missions</a></p></main>`;let o=Zo[t];return a`<main id="main" class="page">
+    <${Xo} />
     <${ns} />
     <div class="hero card">
       <${rs} />
       <${is} />
     </div>
     <nav class="views" aria-label="Views">
-      ${Wt.map(i=>a`<a href=${I(e,i,x.value.step)} aria-current=${i===t?"page":null}>${Ko[i]}</a>`)}
+      ${Wt.map(i=>a`<a href=${I(e,i,x.value.step)} aria-current=${i===t?"page":null}>${Jo[i]}</a>`)}
     </nav>
     <${o} />
-  </main>`}function Zo(){let e=D.value,t=E.value,n=t?.phase==="ended",s=g.value&&(_e.value||g.value===We.value?g.value.endings_after??g.value.endings:g.value.endings_after??g.value.endings),o=s?.goal??t?.goal_probability;return a`<header class="head">
+  </main>`}function Xo(){let e=D.value,t=E.value,n=t?.phase==="ended",s=g.value&&(_e.value||g.value===We.value?g.value.endings_after??g.value.endings:g.value.endings_after??g.value.endings),o=s?.goal??t?.goal_probability;return a`<header class="head">
     <div class="head-name">
       <h1>${e?.robot??" "}</h1>
       <p class="muted">${x.value.name}</p>
@@ -362,7 +362,7 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
         ${!_e.value&&a`<span class="past">showing step ${g.value?.step}</span>`}
       </p>
       <p class="remark">${t?.remark??""}</p>
-      <${Xo} />
+      <${Qo} />
     </div>
     <div class="goal" title="How probable the goal is, as the belief has it">
       <span class="goal-number">${T(o)}</span><span class="goal-word">goal</span>
@@ -370,24 +370,24 @@ var Xe,k,an,Qe,de,nn,ln,cn,un,Ct,St,Mt,Ts,Ne={},dn=[],Os=/acit|ex(?:s|g|n|p|$)|r
       ${s?.failure>5e-4&&a`<span class="failure">failure ${T(s.failure)}</span>`}
     </div>
     <${es} />
-  </header>`}function Xo(){let e=[...new Set(ft.value.map(s=>s.skill))];if(!e.length)return null;let{name:t,step:n}=x.value;return a`<p><a class="alarm" href=${I(t,"model",n)}><svg width="11" height="11" viewBox="0 0 10 10" aria-hidden="true"><path d="M5 0 l5 9.5 h-10z" /></svg>The model of ${e.join(", ")} does not hold</a></p>`}function Qo(){return a`<div class="columns overview">
+  </header>`}function Qo(){let e=[...new Set(ft.value.map(s=>s.skill))];if(!e.length)return null;let{name:t,step:n}=x.value;return a`<p><a class="alarm" href=${I(t,"model",n)}><svg width="11" height="11" viewBox="0 0 10 10" aria-hidden="true"><path d="M5 0 l5 9.5 h-10z" /></svg>The model of ${e.join(", ")} does not hold</a></p>`}function Yo(){return a`<div class="columns overview">
     <div class="stack">
-      <${M} id="belief" title="Belief" note=${Yo()}><${ds} /><//>
+      <${M} id="belief" title="Belief" note=${ei()}><${ds} /><//>
       <${ks} />
       <${M} id="all-steps" title="Steps"><${Yt} /><//>
     </div>
     <div class="stack">
       <${M} id="values" title="Values of the actions"><${fs} /><${ts} /><//>
-      ${V.value.length>0&&a`<${M} id="world" title="World"><${ei} /><//>`}
+      ${V.value.length>0&&a`<${M} id="world" title="World"><${ti} /><//>`}
     </div>
-  </div>`}var Yo=()=>G.value.length?`After ${_e.value?"the newest step":`step ${g.value?.step}`}.`:"";function ei(){let e=V.value,t=g.value?.step??0,n=e.filter(s=>s<=t).at(-1)??e[0];return n===void 0?null:a`<figure class="picture"><img src=${`/v1/missions/${encodeURIComponent(x.value.name)}/world/${n}`} alt=${`The world after step ${n}`} />
-    <figcaption class="note">After step ${n}</figcaption></figure>`}var en="aos-theme",Cs=e=>e?document.documentElement.dataset.theme=e:delete document.documentElement.dataset.theme;Cs(localStorage.getItem(en));var ti={live:"Live",lost:"Connection lost, trying again",connecting:"Connecting",over:"Recorded"};function ni(){let{kind:e,name:t}=x.value,n=e==="missions"&&t;return w(()=>{e==="runs"&&t?si(t):n||(He(),ht())},[e,t]),a`
+  </div>`}var ei=()=>G.value.length?`After ${_e.value?"the newest step":`step ${g.value?.step}`}.`:"";function ti(){let e=V.value,t=g.value?.step??0,n=e.filter(s=>s<=t).at(-1)??e[0];return n===void 0?null:a`<figure class="picture"><img src=${`/v1/missions/${encodeURIComponent(x.value.name)}/world/${n}`} alt=${`The world after step ${n}`} />
+    <figcaption class="note">After step ${n}</figcaption></figure>`}var en="aos-theme",Cs=e=>e?document.documentElement.dataset.theme=e:delete document.documentElement.dataset.theme;Cs(localStorage.getItem(en));var ni={live:"Live",lost:"Connection lost, trying again",connecting:"Connecting",over:"Recorded"};function si(){let{kind:e,name:t}=x.value,n=e==="missions"&&t;return w(()=>{e==="runs"&&t?oi(t):n||(He(),ht())},[e,t]),a`
     <a class="skip" href="#main" onClick=${s=>{s.preventDefault(),document.getElementById("main")?.focus()}}>To the content</a>
     <header class="bar">
       <a class="brand" href="#/" aria-label="AOS, all missions"><svg viewBox="0 0 32 32" width="22" height="22" aria-hidden="true"><rect width="32" height="32" rx="8" /><path d="M6 21c5 0 5-10 10-10s5 10 10 10" /><circle cx="16" cy="11" r="3.2" /></svg><span>AOS</span></a>
       ${n&&a`<nav aria-label="Place"><a href="#/">Missions</a></nav>`}
       <span class="room"></span>
-      <span class=${`connection is-${Q.value}`} role="status"><i></i>${n||Q.value==="lost"?ti[Q.value]:""}</span>
-      <${oi} />
+      <span class=${`connection is-${Q.value}`} role="status"><i></i>${n||Q.value==="lost"?ni[Q.value]:""}</span>
+      <${ii} />
     </header>
-    ${n?a`<${Ms} key=${t} />`:a`<${Yn} />`}`}async function si(e){await He();let t=(Se.value??[]).find(n=>n.run===e);ce(I(t?.missions?.at(-1)??e),{replace:!0})}function oi(){let[e,t]=_(localStorage.getItem(en)??""),n=e?e==="dark":matchMedia("(prefers-color-scheme: dark)").matches;function s(){let o=n?"light":"dark";localStorage.setItem(en,o),Cs(o),t(o)}return a`<button class="quiet theme" onClick=${s} aria-label=${n?"Light colours":"Dark colours"} title=${n?"Light colours":"Dark colours"}>${n?"☀":"☾"}</button>`}addEventListener("keydown",e=>{if(!(e.target instanceof Element&&e.target.closest("input, select, textarea, .scroll, .source, [role=tab]")||e.ctrlKey||e.metaKey||e.altKey||!g.value)){if(e.key==="ArrowLeft")U(g.value.step-1);else if(e.key==="ArrowRight")U(g.value.step+1);else if(e.key==="Home")U(C.value[0].step);else if(e.key==="End")U(null);else return;e.preventDefault()}});await qn();Nt(a`<${ni} />`,document.getElementById("page"));
+    ${n?a`<${Ms} key=${t} />`:a`<${Yn} />`}`}async function oi(e){await He();let t=(Se.value??[]).find(n=>n.run===e);ce(I(t?.missions?.at(-1)??e),{replace:!0})}function ii(){let[e,t]=_(localStorage.getItem(en)??""),n=e?e==="dark":matchMedia("(prefers-color-scheme: dark)").matches;function s(){let o=n?"light":"dark";localStorage.setItem(en,o),Cs(o),t(o)}return a`<button class="quiet theme" onClick=${s} aria-label=${n?"Light colours":"Dark colours"} title=${n?"Light colours":"Dark colours"}>${n?"☀":"☾"}</button>`}addEventListener("keydown",e=>{if(!(e.target instanceof Element&&e.target.closest("input, select, textarea, .scroll, .source, [role=tab]")||e.ctrlKey||e.metaKey||e.altKey||!g.value)){if(e.key==="ArrowLeft")U(g.value.step-1);else if(e.key==="ArrowRight")U(g.value.step+1);else if(e.key==="Home")U(C.value[0].step);else if(e.key==="End")U(null);else return;e.preventDefault()}});await qn();Nt(a`<${si} />`,document.getElementById("page"));

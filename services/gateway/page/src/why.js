@@ -67,7 +67,7 @@ export function Why() {
 const Answer = ({ why }) => html`<div class="columns even">
   <${Card} id="margin" title="Where the margin comes from" note=${verdict(why)}><${Terms} why=${why} /><//>
   <div class="stack">
-    <${Card} id="flips" title="At which belief the choice changes" note=${why.flips?.length ? "Coloured: the action that is better now. Grey: the other one. The line is the belief now." : ""}><${Flips} why=${why} /><//>
+    <${Card} id="flips" title="At which belief the choice changes" note=${why.flips?.length ? `Coloured: the action that is better now. Grey: the other one.${why.is_exact ? "" : " Pale: neither for certain."} The line is the belief now.` : ""}><${Flips} why=${why} /><//>
     <${Card} id="leads" title="What each response leads to"><${Leads} why=${why} /><//>
   </div>
 </div>`;
@@ -104,6 +104,12 @@ function Terms({ why }) {
   </div>`;
 }
 
+function changeOf(why, flip, rises) {
+  if (why.is_exact) return `${briefAction(elsewhere(why))} wins ${rises ? "above" : "below"} ${chance((flip.low + flip.high) / 2)}`;
+  if (flip.low <= 0 && flip.high >= 1) return "too close to call whatever it is";
+  return `the choice ${flip.is_checked ? "changes" : "may change"} between ${chance(flip.low)} and ${chance(flip.high)}`;
+}
+
 // A strip for each variable whose probability would change the choice: which action wins at which probability.
 function Flips({ why }) {
   const [ref, size] = useWidth();
@@ -114,15 +120,15 @@ function Flips({ why }) {
     ${!flips.length && html`<p class="empty">${isPlanned(why) ? `No probability of one value makes ${elsewhere(why)} better, as far as was looked.` : `It was chosen by ${why.chosen_by}, whatever is believed.`}</p>`}
     ${flips.map((flip) => {
       const rises = (flip.low + flip.high) / 2 > flip.now;
+      // Where neither action is certain to be better now, or the choice may not change, no other side is known.
+      const hasOtherSide = flip.is_checked && (flip.now <= flip.low || flip.now >= flip.high);
       const [from, to] = rises ? [flip.high, 1] : [0, flip.low];
-      const side = rises ? "above" : "below";
-      const words = flip.high - flip.low > 1e-3 ? `${side} a probability between ${chance(flip.low)} and ${chance(flip.high)}` : `${side} ${chance((flip.low + flip.high) / 2)}`;
       return html`<figure class="flip">
-        <figcaption>P(<span class="code">${flip.variable} = ${flip.value}</span>) is ${chance(flip.now)}; ${briefAction(elsewhere(why))} wins ${words}${flip.is_checked ? "" : ", not checked by planning"}</figcaption>
+        <figcaption>P(<span class="code">${flip.variable} = ${flip.value}</span>) is ${chance(flip.now)}; ${changeOf(why, flip, rises)}</figcaption>
         <svg width=${room} height="22" aria-hidden="true">
           <rect class="this" x="0" y="3" width=${room} height="16" rx="3" />
           <rect class="between" x=${x(flip.low)} y="3" width=${Math.max(1, x(flip.high) - x(flip.low))} height="16" />
-          <rect class="other" x=${x(from)} y="3" width=${Math.max(1, x(to) - x(from))} height="16" rx="3" />
+          ${hasOtherSide && html`<rect class="other" x=${x(from)} y="3" width=${Math.max(1, x(to) - x(from))} height="16" rx="3" />`}
           <line class="now" x1=${x(flip.now)} x2=${x(flip.now)} y1="0" y2="22" />
         </svg>
       </figure>`;

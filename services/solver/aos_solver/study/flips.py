@@ -15,15 +15,16 @@ from aos_protocol.messages import BeliefSummary, Flip
 from aos_solver.child.engine import Engine
 from aos_solver.study.valuing import Margin, Valuing
 
-__all__ = ["doubtful_values", "flip_between", "flips_of", "is_lost"]
+__all__ = ["doubtful_values", "flip_between", "flips_of", "is_lost", "places_beside", "sampled_flip"]
 
 _PRECISION = 2e-4
 _PARTS = 4
 """So many parts of the line are looked at before the nearest change is halved in."""
-_REFINEMENTS = 2
 _MOST_VALUES = 6
 _CERTAIN = 1e-9
 _TIE = 1e-9
+_ERRORS = 2.0
+"""A margin that is further from 0 than so many standard errors is certain."""
 
 MarginAt = Callable[[float], Awaitable[Margin]]
 
@@ -69,16 +70,27 @@ async def flips_of(
 
         async def margin_at(p: float, variable: str = variable, value: str = value) -> Margin:
             await engine.believe(variable, value, p, from_aside=True, cautious=valuing.within.cautious)
-            values = await valuing.values(engine, share=valuing.share, anywhere=True)
-            return Margin.of(values[actions[0]], values[actions[1]])
+            if valuing.is_exact:
+                values = await valuing.values(engine, anywhere=True)
+                return Margin.of(values[actions[0]], values[actions[1]])
+            one, other = [
+                await valuing.alone(engine, action, valuing.share_beside, is_moved=True) for action in actions
+            ]
+            return Margin.of(one, other)
 
         if valuing.is_exact:
             between = await flip_between(margin_at, now)
         else:
-            between = await _sampled_flip(margin_at, now, margin)
+            beside = [(p, await margin_at(p)) for p in places_beside(now)]
+            between = sampled_flip([*beside, (now, margin)], now)
         if between is not None:
             found.append(Flip(variable, value, now, *between))
     return tuple(sorted(found, key=lambda flip: abs((flip.low + flip.high) / 2 - flip.now)))
+
+
+def places_beside(now: float) -> tuple[float, ...]:
+    """The probabilities at which a searched margin is looked at beside that of `now`."""
+    return 0.0, now / 2, (1 + now) / 2, 1.0
 
 
 def is_lost(margin: float) -> bool:
@@ -112,37 +124,45 @@ async def flip_between(margin_at: MarginAt, now: float) -> tuple[float, float, b
     return min(near, far), max(near, far), True
 
 
-async def _sampled_flip(margin_at: MarginAt, now: float, here: Margin) -> tuple[float, float, bool] | None:
-    """The interval, within two standard errors, in which the margin changes its sign nearest to `now`.
+def sampled_flip(places: Sequence[tuple[float, Margin]], now: float) -> tuple[float, float, bool] | None:
+    """The interval nearest to `now` in which the choice may change, as far as margins with errors tell.
 
-    None where it does not for certain: then it may not at all.
+    A margin is certain where it is further from 0 than two standard errors. Between places, both ends of this
+    are taken along straight lines. The last result says whether the choice changes for certain: one action is
+    better on one side, and the other one on the other side. None where one action is better at each place.
     """
-    if here.is_close:
+    places = sorted(places)
+    sides = [
+        [(p, margin.value + sign * _ERRORS * margin.stderr) for p, margin in places] for sign in (-1.0, 1.0)
+    ]
+    ends = sorted({p for p, _ in places} | {crossing for side in sides for crossing in _crossings(side)})
+    parts: list[tuple[float, float, int]] = []  # with 1 where the margin is above 0, -1 below, 0 uncertain
+    for low, high in itertools.pairwise(ends):
+        middle = (low + high) / 2
+        least, most = (_along(side, middle) for side in sides)
+        sign = 1 if least > 0 else -1 if most < 0 else 0
+        if parts and parts[-1][2] == sign:
+            low = parts.pop()[0]
+        parts.append((low, high, sign))
+    open_ = [number for number, (_, _, sign) in enumerate(parts) if sign == 0]
+    if not open_:
         return None
-    sign = 1.0 if here.value >= 0 else -1.0
-    for end in sorted((0.0, 1.0), key=lambda end: abs(end - now)):
-        there = await margin_at(end)
-        if sign * there.value >= 0 or there.is_close:
-            continue
-        points = [(now, here), (end, there)]
-        for _ in range(_REFINEMENTS):
-            middle = _crossing([(p, sign * m.value) for p, m in points])
-            if middle is None or any(middle == p for p, _ in points):
-                break
-            points.append((middle, await margin_at(middle)))
-            points.sort(key=lambda point: abs(point[0] - now))
-        surely = [(p, sign * m.value - 2 * m.stderr) for p, m in points]
-        hardly = [(p, sign * m.value + 2 * m.stderr) for p, m in points]
-        near, far = _crossing(surely), _crossing(hardly)
-        assert near is not None
-        assert far is not None
-        return min(near, far), max(near, far), True
-    return None
+    nearest = min(open_, key=lambda number: max(parts[number][0] - now, now - parts[number][1], 0.0))
+    low, high, _ = parts[nearest]
+    around = [sign for _, _, sign in parts[max(nearest - 1, 0) : nearest + 2]]
+    return low, high, min(around) < 0 < max(around)
 
 
-def _crossing(points: Sequence[tuple[float, float]]) -> float | None:
-    """The place at which values between points change their sign first, by straight lines."""
+def _crossings(points: Sequence[tuple[float, float]]) -> Iterator[float]:
+    """The places at which values between points change their sign, by straight lines."""
     for (left, low), (right, high) in itertools.pairwise(points):
         if (low < 0) != (high < 0):
-            return left + (right - left) * low / (low - high)
-    return None
+            yield left + (right - left) * low / (low - high)
+
+
+def _along(points: Sequence[tuple[float, float]], place: float) -> float:
+    """The value at a place between the first point and the last one, by straight lines."""
+    (left, low), (right, high) = next(
+        pair for pair in itertools.pairwise(points) if pair[0][0] <= place <= pair[1][0]
+    )
+    return low + (high - low) * (place - left) / (right - left)

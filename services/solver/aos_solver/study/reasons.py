@@ -48,7 +48,9 @@ class Reasons:
         other = self._other(instead, values)
         action, others = values[decision.action], values[other]
         if not valuing.is_exact and decision.chosen_by != "policy":
-            others = await valuing.alone(self._engine, other)
+            alone = await valuing.alone(self._engine, decision.action, valuing.share_alone)
+            action = action.beside(alone)
+            others = await valuing.alone(self._engine, other, valuing.share_alone)
         margin = Margin.of(action, others)
         belief = await self._engine.summary()
         async with put_aside(self._engine):

@@ -23,6 +23,14 @@ class Value(msgspec.Struct, frozen=True):
     stderr: float = 0.0
     n: int = 0
 
+    def beside(self, other: Value) -> Value:
+        """The value with an error that counts what another, shorter search of it has found.
+
+        Which ways of going on a search finds is luck, and a longer one finds more. Of neither does its own
+        standard error know.
+        """
+        return Value(self.q, math.hypot(max(self.stderr, other.stderr), self.q - other.q), self.n)
+
 
 class Margin(msgspec.Struct, frozen=True):
     """The difference between the values of two actions, with its standard error."""
@@ -59,9 +67,10 @@ class Valuing:
         self.within = replay.restriction_of(made) if made is not None else Restriction()
         self.is_exact = decision.planner == "exact" and not self.within.without
         self.horizon = decision.horizon
-        self.share, self.share_alone = 1 / 8, 1.0
-        """The share of the decision's budget for each belief beside its own, of seven at most, and that for
-        an action alone: so that all searches of an explanation take twice the budget."""
+        self.share, self.share_alone, self.share_beside = 1 / 8, 1 / 2, 1 / 13
+        """The share of the decision's budget for each belief after a response, of three at most, that for
+        each of two actions alone, and that for each of both at another probability, of four: so that all
+        searches of an explanation take twice the budget."""
         self.spent = sum(made.simulations) + made.known if made is not None else 0
         """The simulations that the values of the decision stand on."""
         self.begun: Mapping[str, Value] | None = None
@@ -78,7 +87,7 @@ class Valuing:
         self.horizon = plan.horizon
         self.spent = plan.simulations + plan.known_simulations
         self.begun = _values_of(plan)
-        self.share, self.share_alone = 1 / 16, 1 / 2  # A whole budget is spent.
+        self.share, self.share_alone, self.share_beside = 1 / 16, 1 / 4, 1 / 26  # A whole budget is spent.
         return plan.planner
 
     async def values(
@@ -96,15 +105,18 @@ class Valuing:
             values = _values_of(plan)
         return values if anywhere else {name: v for name, v in values.items() if name not in self.barred}
 
-    async def alone(self, engine: Engine, action: str) -> Value:
-        """The value of an action in a search that begins with it alone.
+    async def alone(self, engine: Engine, action: str, share: float, *, is_moved: bool = False) -> Value:
+        """The value of an action in a search that begins with it alone, with a share of the budget.
+
+        `is_moved`: the engine believes what somebody supposes.
 
         A search that decides tries what seems worse less often, and so undervalues what comes after it.
         """
         actions = engine.description.actions
         barred = [number for number, each in enumerate(actions) if each.name != action]
-        within = msgspec.structs.replace(self.within, barred=barred)
-        plan = await self._with(self.share_alone).run(engine, self._step, within)
+        cautious = self.within.cautious and not is_moved
+        within = msgspec.structs.replace(self.within, barred=barred, cautious=cautious)
+        plan = await self._with(share).run(engine, self._step, within)
         return _values_of(plan)[action]
 
     def _with(self, share: float) -> Search:
