@@ -18,7 +18,7 @@ from aos_registry.catalogue import Catalogue, Revision
 from aos_runtime.bus import Bus
 
 SEED = 20261121
-KILLS = 20
+KILLS = 12
 PUSHES_BEFORE_KILL = 4
 """The number of pushes that are accepted at most before the moment of the kill is drawn."""
 LATEST_KILL_S = 0.1

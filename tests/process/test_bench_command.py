@@ -79,12 +79,12 @@ def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path, na
 
 async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path) -> None:
     """The baselines take random actions, in millions of steps each."""
-    async with Baselines(await find_compiler()) as baselines:
-        for problem in PROBLEMS:
-            steps = (await baselines.measure(problem, 0.05, seed=1))[0]
-            async with engine_of(await built_bundle(bundles / "bench" / problem, cache_dir)) as engine:
-                walked = await engine.rate(0.5, seed=2)
-            assert walked.mean_reward == pytest.approx(steps.check, rel=0.02), problem
+    baselines = await Baselines.built(await find_compiler(), cache_dir)
+    for problem in PROBLEMS:
+        steps = (await baselines.measure(problem, 0.05, seed=1))[0]
+        async with engine_of(await built_bundle(bundles / "bench" / problem, cache_dir)) as engine:
+            walked = await engine.rate(0.5, seed=2)
+        assert walked.mean_reward == pytest.approx(steps.check, rel=0.02), problem
 
 
 def test_ratios_are_ours_over_theirs() -> None:

@@ -1,16 +1,18 @@
-"""The hand-written baselines of tests/bench: compiled with this machine's compiler, and run."""
+"""The hand-written baselines of tests/bench: compiled once for this machine, and run."""
 
 from __future__ import annotations
 
 import asyncio
+import re
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from typing import Self
 
 import msgspec
 
 from aos_deploy.shipped import shipped
 from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child
+from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler
 
 __all__ = ["NAME", "PROBLEMS", "WITHOUT_KNOWLEDGE", "BaselineFigure", "Baselines"]
@@ -20,6 +22,9 @@ SOURCE = shipped("tests/bench/baseline.cpp")
 WITHOUT_KNOWLEDGE = "simulations, uniform"
 PROBLEMS = ("tiger", "rocksample-7-8", "navigation")
 
+# For this processor and no other: the bound is what the machine can do.
+_FLAGS = ("-std=c++20", "-O3", "-march=native")
+_PROGRAM = "baseline"
 _COMPILATION_S = 120.0
 _RUN_MARGIN_S = 60.0
 
@@ -34,23 +39,25 @@ class BaselineFigure(msgspec.Struct, frozen=True):
 
 
 class Baselines:
-    """The compiled program, in a folder that goes with it. Usable with `async with`."""
+    """The compiled program."""
 
-    def __init__(self, compiler: Compiler) -> None:
-        self._compiler = compiler
-        self._folder = TemporaryDirectory(prefix="aos-bench-")
+    def __init__(self, program: Path) -> None:
+        self._program = program
 
-    async def __aenter__(self) -> Baselines:
-        # For this processor and no other: the bound is what the machine can do.
-        flags = ["-std=c++20", "-O3", "-march=native"]
-        command = [*self._compiler.command, *flags, str(SOURCE), "-o", str(self._program)]
-        status, _, messages = await _output(command, _COMPILATION_S)
-        if status != 0:
-            raise ModelError(f"{SOURCE} does not compile: {messages.decode(errors='replace')}", code="AOS201")
-        return self
+    @classmethod
+    async def built(cls, compiler: Compiler, cache_dir: Path) -> Self:
+        """The program from the cache, or compiled now; ModelError AOS201 if it does not compile."""
+        texts = [path.read_text() for path in sorted(SOURCE.parent.iterdir()) if path.is_file()]
+        name = f"baseline-{digest_of([compiler.version, *_FLAGS, _processor(), *texts])}"
 
-    async def __aexit__(self, *_: object) -> None:
-        self._folder.cleanup()
+        async def make(staging: Path) -> None:
+            command = [*compiler.command, *_FLAGS, str(SOURCE), "-o", str(staging / _PROGRAM)]
+            status, _, messages = await _output(command, _COMPILATION_S)
+            if status != 0:
+                said = messages.decode(errors="replace")
+                raise ModelError(f"{SOURCE} does not compile: {said}", code="AOS201")
+
+        return cls(await BuildCache(cache_dir).fill(name, make) / _PROGRAM)
 
     async def measure(self, problem: str, seconds: float, seed: int) -> list[BaselineFigure]:
         """All figures of one of PROBLEMS, each measured for so long."""
@@ -60,9 +67,15 @@ class Baselines:
             raise ModelError(f"the baseline failed: {messages.decode(errors='replace')}", code="AOS213")
         return [msgspec.json.decode(line, type=BaselineFigure) for line in lines.splitlines()]
 
-    @property
-    def _program(self) -> Path:
-        return Path(self._folder.name) / "baseline"
+
+def _processor() -> str:
+    """The processor with what it can do, as Linux tells; empty where it does not."""
+    try:
+        told = Path("/proc/cpuinfo").read_text()
+    except OSError:
+        return ""
+    first = told.partition("\n\n")[0]
+    return "\n".join(re.findall(r"^(?:model name|flags|Features)\s*:.*$", first, re.MULTILINE))
 
 
 async def _output(command: list[str], deadline_s: float) -> tuple[int, bytes, bytes]:

@@ -90,8 +90,8 @@ class Suite:
         compared = [problem for problem in self._problems if problem.name in baseline.PROBLEMS]
         if compared and {"steps", "simulations"} & set(self._effort.metrics):
             with self._telling(baseline.NAME):
-                async with baseline.Baselines(compiler) as baselines:
-                    await self._measure_baselines(baselines, compared)
+                baselines = await baseline.Baselines.built(compiler, self._cache_dir)
+                await self._measure_baselines(baselines, compared)
         return Report(machine, with_ratios(self._rows), tuple(self._skipped))
 
     async def _measure_ours(self, problem: Problem) -> None:
