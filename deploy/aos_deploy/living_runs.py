@@ -7,7 +7,7 @@ and does not run was killed.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from aos_deploy.program import cache_dir
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import BusError, DeployError
 
-__all__ = ["RUNS", "chosen_run", "living_run", "living_runs", "noted"]
+__all__ = ["RUNS", "chosen_run", "chosen_runs", "living_run", "living_runs", "noted"]
 
 RUNS = Path("runs")
 """Commands look for run directories here unless told otherwise."""
@@ -66,6 +66,18 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     if len(candidates) > 1 and (here or not has_last):
         raise _several(candidates)
     return candidates[0] if len(candidates) == 1 else RunDirectory.latest(runs or RUNS)
+
+
+def chosen_runs(named: Iterable[Path] | None, runs: Path | None) -> list[Path]:
+    """The directories of the runs that a command means, each once; errors as from `chosen_run`.
+
+    `runs/*` names the last run twice, since `runs/latest` points to it.
+    """
+    found: dict[Path, Path] = {}
+    for run in named or (None,):
+        path = chosen_run(run, runs).path
+        found.setdefault(path.resolve(), path)
+    return list(found.values())
 
 
 def living_run(run: Path | None, runs: Path | None) -> RunDirectory:

@@ -259,8 +259,14 @@ class RunDirectory:
         path = self.path / "run.json"
         try:
             return msgspec.json.decode(path.read_bytes(), type=RunRecord)
-        except (OSError, msgspec.MsgspecError) as error:
-            raise DeployError(f"{self.path} is not a run directory: {error}", code="AOS801") from error
+        except OSError as error:
+            raise DeployError(
+                f"{self.path} is not a run directory: {path.name} cannot be read, {error.strerror}",
+                code="AOS801",
+                hint="`aos runs` lists the runs",
+            ) from error
+        except msgspec.MsgspecError as error:
+            raise DeployError(f"{path}: {error}", code="AOS801") from error
 
     def write_summary(self, summary: Summary) -> None:
         """All of it, or nothing and StorageError AOS701."""

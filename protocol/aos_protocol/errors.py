@@ -115,7 +115,7 @@ CODES: dict[str, str] = {
     "AOS401": "abstraction mapping code raised",
     "AOS402": "no response rule matched",
     "AOS403": "abstraction mapping code did not finish",
-    "AOS501": "unknown skill",
+    "AOS501": "there is no such skill, action, variable, step or mission",
     "AOS502": "the adapter refused the call",
     "AOS503": "the skill did not answer in time",
     "AOS504": "the outcome of the activation is unknown",

@@ -20,7 +20,7 @@ from aos_deploy.export.kept_missions import kept_missions
 from aos_deploy.export.layouts import curves_of, foxglove_layout, plotjuggler_layout
 from aos_deploy.export.run_bundle import opened_bundle, write_bundle
 from aos_deploy.history_check.files import violations_of_run
-from aos_deploy.living_runs import chosen_run
+from aos_deploy.living_runs import chosen_run, chosen_runs
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import (
     ActionValue,
@@ -225,7 +225,7 @@ def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path: 
 
 def test_parquet_has_the_same_tables_with_types(run: Path, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet", reason="the extra `parquet` is not installed")
-    export([run, run], "parquet", tmp_path / "tables")
+    export([run, make_run(tmp_path / "other")], "parquet", tmp_path / "tables")
     steps = parquet.read_table(tmp_path / "tables" / "steps.parquet").to_pylist()
     assert [row["step"] for row in steps] == [1, 2, 3, 1, 2, 3]
     assert steps[0]["surprise"] == pytest.approx(0.29)
@@ -282,3 +282,10 @@ def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path: Path
     target.write_text("no archive")
     with pytest.raises(DeployError, match="cannot be opened"):
         opened_bundle(target)
+
+
+def test_a_run_that_is_named_twice_is_taken_once(tmp_path: Path) -> None:
+    runs = [make_run(tmp_path / name) for name in ("a", "b")]
+    (tmp_path / "latest").symlink_to(runs[1])
+    assert chosen_runs([*runs, tmp_path / "latest"], None) == runs
+    assert chosen_runs([tmp_path / "latest", *runs], None) == [tmp_path / "latest", runs[0]]

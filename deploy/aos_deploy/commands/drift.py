@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.living_runs import chosen_run
+from aos_deploy.living_runs import chosen_runs
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, print_json
 
@@ -38,7 +38,7 @@ def drift(
     """
     from aos_deploy.drift_of_runs import drift_of_runs  # It imports the solver.
 
-    chosen = [chosen_run(each, runs).path for each in run] if run else [chosen_run(None, runs).path]
+    chosen = chosen_runs(run, runs)
     models = drift_of_runs(chosen)
     if as_json:
         print_json({"models": [_plain(model) for model in models]})

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from aos_deploy.living_runs import chosen_run
+from aos_deploy.living_runs import chosen_runs
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_protocol.errors import DeployError
@@ -48,7 +48,7 @@ def export(
     `aos check` and `aos serve` open. With --otlp spans go to a collector, such as http://127.0.0.1:4318. A
     run that goes on is exported as far as it is.
     """
-    chosen = [chosen_run(each, runs).path for each in run] if run else [chosen_run(None, runs).path]
+    chosen = chosen_runs(run, runs)
     if otlp is not None:
         _send_spans(chosen, otlp, as_json=as_json)
         return

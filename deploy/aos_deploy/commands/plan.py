@@ -143,8 +143,10 @@ def _suppositions(given: Iterable[str]) -> list[str]:
     for text in given:
         if Path(text).is_file():
             found += [line for line in Path(text).read_text().splitlines() if line.strip()]
-        else:
+        elif "=" in text:
             found.append(text)
+        else:
+            raise typer.BadParameter(f"{text} is neither VAR=VALUE:P nor a file", param_hint="--belief")
     return found
 
 

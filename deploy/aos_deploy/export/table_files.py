@@ -40,7 +40,7 @@ def write_parquet(rows: Iterable[Row], folder: Path) -> dict[str, int]:
         import pyarrow as pa
         import pyarrow.parquet as pq
     except ImportError as error:
-        hint = "Install it: pip install 'aos[parquet]', or take --format csv"
+        hint = "Install it: pip install 'aos-autonomy[parquet]', or take --format csv"
         raise DeployError("Parquet needs pyarrow, which is not installed", hint=hint) from error
     types = {str: pa.string(), int: pa.int64(), float: pa.float64(), bool: pa.bool_()}
     counts = dict.fromkeys(TABLES, 0)

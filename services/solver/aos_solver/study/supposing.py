@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -30,12 +31,14 @@ def supposition_of(text: str) -> Supposition:
     """Reads `variable=value:p`; StudyError AOS530 where it is not of this form."""
     what, colon, number = text.rpartition(":")
     variable, equals, value = what.partition("=")
+    if not (colon and equals and variable.strip()):
+        raise StudyError(f"{text!r} says no belief", hint='Write it as "holding_can=true:0.5"')
     try:
         probability = float(number)
     except ValueError:
-        probability = -1.0
-    if not (colon and equals and variable.strip()) or not 0 <= probability <= 1:
-        raise StudyError(f"{text!r} says no belief", hint='Write it as "holding_can=true:0.5"')
+        probability = math.nan
+    if not 0 <= probability <= 1:
+        raise StudyError(f"{number} is no probability", hint='Write it as "holding_can=true:0.5"')
     return Supposition(variable.strip(), value.strip(), probability)
 
 
