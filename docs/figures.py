@@ -68,8 +68,12 @@ def measured(rows: tuple[Row, ...]) -> str:
 
 
 def performance() -> str:
-    """Returns the output of `PERFORMANCE`, which has a head of its own, below the command and the commit."""
-    return f"`{' '.join(PERFORMANCE)}`, commit {_commit()}.\n{_printed(PERFORMANCE).strip()}"
+    """Returns the output of `PERFORMANCE`, which has a head of its own, below the command and the commit.
+
+    What two threads do says something only while two cores are idle, so it is left out.
+    """
+    lines = [line for line in _printed(PERFORMANCE).strip().splitlines() if "two threads" not in line]
+    return "\n".join([f"`{' '.join(PERFORMANCE)}`, commit {_commit()}.", *lines])
 
 
 FIGURES = {
