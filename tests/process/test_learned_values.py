@@ -61,6 +61,20 @@ if (state.left == 0) {
 }
 """Four of 40 boxes hold a coin, and an opening costs 1: the coins that are left say what a state is worth."""
 
+JAMMING_COINS = {
+    **COINS,
+    "coins.ef": COINS["coins.ef"].replace(
+        "state_variable: int left",
+        "state_variable: bool opened []\ncode:\nstate.opened.assign(40, false);\n\nstate_variable: int left",
+    ),
+    "open.sd": OPEN.replace(
+        "dynamic_model:\n",
+        "precondition:\n__meetPrecondition = !state.opened[box];\nviolate_penalty: -20\n\n"
+        "dynamic_model:\nstate__.opened[box] = true;\n",
+    ),
+}
+"""The same boxes, of which none is to be opened twice."""
+
 BERRIES = {
     "berries.ef": """project: berries
 horizon: 20
@@ -186,3 +200,17 @@ async def test_what_missions_return_is_told_where_values_are_learned(
     assert told.returned < -15
     assert abs(told.value - told.returned) < 6
     assert abs(told.value - told.returned) < 2 * told.error
+
+
+async def test_played_missions_never_take_what_everybody_knows_not_to_be_possible(
+    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A state that is left without others to choose for it takes an action whose precondition holds."""
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    assert "what states are worth is learned" in await _why(JAMMING_COINS, cache_dir)
+    for name, text in JAMMING_COINS.items():
+        (tmp_path / name).write_text(text)
+    told = await told_of_bundle(tmp_path, "pomcp", missions=6, seed=1, seconds=None, simulations=300)
+    assert -20 < told.returned < -5
+    assert abs(told.value - told.returned) < 10
+    assert told.error < 20

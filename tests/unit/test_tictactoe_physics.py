@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import pty
 import random
 import socket
 import subprocess
@@ -180,15 +182,19 @@ def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
     thread.join(30)
     person.close()
     assert cell == 1
-    assert said[0].startswith("\nO ? ?\n? ? ?\n? ? ?\nYour cell (2, 3, 4, 5, 6, 7, 8, 9): ")
-    assert len(said) == 3
+    board, asked = "\nO 2 3\n4 5 6\n7 8 9\n", "Your cell (2, 3, 4, 5, 6, 7, 8, 9): "
+    assert said == [
+        board + asked,
+        f"{board}'10' is no cell that is free.\n{asked}",
+        f"{board}'1' is no cell that is free.\n{asked}",
+    ]
 
 
 @pytest.mark.parametrize(
     ("marks", "skill", "last"),
     [
-        ("OO?XX?XOX", "/draw", "O O O\nX X ?\nX O X\nThe robot has won."),
-        ("OO?XX??OX", "/look", "O O ?\nX X X\n? O X\nYou have won."),
+        ("OO?XX?XOX", "/draw", "O O O\nX X 6\nX O X\nThe robot has won."),
+        ("OO?XX??OX", "/look", "O O 3\nX X X\n7 O X\nYou have won."),
     ],
 )
 def test_play_shows_a_person_the_last_board_and_who_has_won(
@@ -217,3 +223,22 @@ def test_play_shows_a_person_the_last_board_and_who_has_won(
     assert said.rstrip().endswith("The game has ended.")
     assert "Traceback" not in said
     assert playing.returncode == 0
+
+
+def test_a_person_who_ends_the_terminals_input_leaves() -> None:
+    ours, theirs = pty.openpty()
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        listener.settimeout(HANG_S)
+        port = str(listener.getsockname()[1])
+        command = [sys.executable, "-m", "aos_skills.pybullet.worlds.tictactoe.play", "--port", port]
+        playing = subprocess.Popen(command, stdin=theirs, stdout=subprocess.PIPE, text=True)
+        try:
+            world, _ = listener.accept()
+            with world:
+                os.write(ours, b"\x04")
+                said, _ = playing.communicate(timeout=HANG_S)
+        finally:
+            playing.kill()
+            os.close(ours)
+            os.close(theirs)
+    assert (playing.returncode, said.splitlines()[-1]) == (0, "You have left; somebody else may connect.")

@@ -38,20 +38,21 @@ class PersonAtTerminal:
     def __call__(self, board: str) -> int:
         """Returns when a cell was typed. What ends the skill's call, ends the waiting."""
         cells = empty_cells(board)
-        is_asked, typed = False, b""
+        is_asked, typed, refused = False, b"", ""
         while True:
             if self._terminal is None:
-                is_asked, typed = False, b""
+                is_asked, typed, refused = False, b"", ""
                 self._accept()
             if self._terminal is not None and not is_asked:
                 numbers = ", ".join(str(cell + 1) for cell in cells)
-                self._say(f"{_drawn(board)}\nYour cell ({numbers}): ")
+                self._say(f"{_drawn(board)}\n{refused}Your cell ({numbers}): ")
                 is_asked = True
             typed += self._heard()
             if b"\n" in typed:
                 answer = typed.decode(errors="replace").strip()
                 if answer.isdecimal() and int(answer) - 1 in cells:
                     return int(answer) - 1
+                refused = f"{answer!r} is no cell that is free.\n"
                 is_asked, typed = False, b""
             self._scene.wait(LOOK_EVERY_S)
             time.sleep(LOOK_EVERY_S)
@@ -105,5 +106,6 @@ class PersonAtTerminal:
 
 
 def _drawn(board: str) -> str:
-    """The board in three lines."""
-    return "\n" + "\n".join(" ".join(board[start : start + 3]) for start in (0, 3, 6))
+    """The board in three lines; a cell that is free shows its number."""
+    shown = [mark if mark in "XO" else str(cell + 1) for cell, mark in enumerate(board)]
+    return "\n" + "\n".join(" ".join(shown[start : start + 3]) for start in (0, 3, 6))

@@ -22,13 +22,16 @@ def main() -> None:
         sys.exit(f"play: nobody listens on port {options.port}: start aos-up deploy/tictactoe-person.yaml")
     sys.stdout.write("Connected. You draw crosses. Cells are 1 to 9, row by row; wait until you are asked.\n")
     sys.stdout.flush()
-    threading.Thread(target=send_lines, args=(world,), daemon=True).start()
+    has_left = threading.Event()
+    threading.Thread(target=send_lines, args=(world, has_left), daemon=True).start()
     try:
         show(world)
     except KeyboardInterrupt:
+        has_left.set()
+    if has_left.is_set():
         sys.stdout.write("\nYou have left; somebody else may connect.\n")
-        return
-    sys.stdout.write("\nThe game has ended.\n")
+    else:
+        sys.stdout.write("\nThe game has ended.\n")
 
 
 def connected(port: int) -> socket.socket | None:
@@ -56,13 +59,16 @@ def show(world: socket.socket) -> None:
         sys.stdout.flush()
 
 
-def send_lines(world: socket.socket) -> None:
-    """Sends what is typed, line by line."""
-    for line in sys.stdin:
-        try:
+def send_lines(world: socket.socket, has_left: threading.Event) -> None:
+    """Sends what is typed, line by line. Who ends the input of a terminal (Ctrl-D) leaves."""
+    try:
+        for line in sys.stdin:
             world.sendall(line.encode())
-        except OSError:
-            return  # The world has hung up, which `show` says.
+        if sys.stdin.isatty():
+            has_left.set()
+            world.shutdown(socket.SHUT_RDWR)
+    except OSError:
+        return  # The world has hung up, which `show` says.
 
 
 if __name__ == "__main__":
