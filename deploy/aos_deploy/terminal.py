@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -19,6 +21,7 @@ from rich.progress import (
 
 __all__ = ["console", "progress", "waiting"]
 
+LINE_EVERY_S = 20.0
 _PIPED_COLUMNS = 1000
 
 
@@ -44,8 +47,28 @@ def progress(*columns: ProgressColumn) -> Progress:
 def waiting(what: str) -> Iterator[Callable[[str], None]]:
     """Shows what is waited for, and for how long, where the work has no steps to count.
 
-    What is yielded takes how far the work is, as text.
+    What is yielded takes how far the work is, as text. Where standard error is no terminal, it is written
+    there as a line, every LINE_EVERY_S at most.
     """
     with progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()) as shown:
+        if shown.disable:
+            yield _Lines(what).tell
+            return
         task = shown.add_task(what, total=None)
         yield lambda text: shown.update(task, description=f"{what}: {text}")
+
+
+class _Lines:
+    """Tells how far work is in lines, for logs: the first after LINE_EVERY_S."""
+
+    def __init__(self, what: str) -> None:
+        self._what = what
+        self._began_s = self._told_s = time.monotonic()
+
+    def tell(self, text: str) -> None:
+        now_s = time.monotonic()
+        if now_s - self._told_s < LINE_EVERY_S:
+            return
+        self._told_s = now_s
+        sys.stderr.write(f"aos: {self._what} for {now_s - self._began_s:.0f} s: {text}\n")
+        sys.stderr.flush()
