@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Iterator
@@ -54,10 +55,10 @@ def opened(browser: Browser, served: Gateway, width: int = 1440, theme: str = "l
     return page
 
 
-def kept(page: Page, name: str, pictures: Path) -> None:
-    """Keeps a picture of the page, for people to look at."""
-    pictures.mkdir(parents=True, exist_ok=True)
-    page.screenshot(path=pictures / f"{name}.png", full_page=True)
+def kept(page: Page, name: str) -> None:
+    """Keeps a picture of the page for people, where AOS_PAGE_PICTURES names a folder for them."""
+    if folder := os.environ.get("AOS_PAGE_PICTURES"):
+        page.screenshot(path=Path(folder) / f"{name}.png", full_page=True)
 
 
 def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
@@ -66,11 +67,6 @@ def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
     page.evaluate((installed_sources(ROOT, cache_dir) / AXE).read_text())
     found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
     return [(each["id"], [node["target"] for node in each["nodes"]]) for each in found]
-
-
-@pytest.fixture(scope="module")
-def pictures(cache_dir: Path) -> Path:
-    return cache_dir / "page-pictures"
 
 
 @pytest.fixture
@@ -109,7 +105,7 @@ def test_slider_and_keys_move_all_views_and_the_address(
 
 
 def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
-    browser: Browser, living: tuple[Gateway, Path], pictures: Path
+    browser: Browser, living: tuple[Gateway, Path]
 ) -> None:
     served, run = living
     (run.parents[1] / "turns").write_bytes(b".")
@@ -119,7 +115,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     expect(page.locator(".connection")).to_have_text("Live")
     (run.parents[1] / "turns").write_bytes(b".")
     expect(page.locator(".stepper-place")).to_have_text("3 of 3")
-    kept(page, "living", pictures)
+    kept(page, "living")
 
     def answer_late(route: Route) -> None:
         """Keeps the answer, given while the skill runs, until the page shows that the mission holds."""
@@ -169,7 +165,7 @@ def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gatewa
 
 
 def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
-    browser: Browser, worn: tuple[Gateway, str], pictures: Path, cache_dir: Path
+    browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
 ) -> None:
     served, name = worn
     rows = served.ask(f"/v1/missions/{name}/trace").json["steps"]
@@ -182,7 +178,7 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
         cells = page.locator(".alarms tbody tr").first.locator("td")
         told = [f"{alarm['modelled']:.2f}", f"{alarm['seen']:.2f}", str(alarm["uses"]), str(first["step"])]
         expect(cells).to_have_text(["press", alarm["response"], *told])
-        kept(page, f"alarm-{width}-{theme}", pictures)
+        kept(page, f"alarm-{width}-{theme}")
         assert violations(page, cache_dir) == []
         page.keyboard.press("ArrowLeft")
         expect(page.locator(".alarm")).to_have_count(0)
@@ -190,7 +186,7 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
 
 
 def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_shown(
-    browser: Browser, living: tuple[Gateway, Path], pictures: Path
+    browser: Browser, living: tuple[Gateway, Path]
 ) -> None:
     served, run = living
     (run.parents[1] / "turns").write_bytes(b".")
@@ -212,7 +208,7 @@ def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_
             has_taken_over = "adopted" in next(rows)
     expect(page.locator(".timeline-track path.adopted")).to_have_count(1)
     expect(page.locator(".legend")).to_contain_text("new model")
-    kept(page, "hot-plug", pictures)
+    kept(page, "hot-plug")
     page.goto(f"{address}/documents")
     expect(page.locator(".card", has_text="Documents of tiger")).to_contain_text("Revision 2")
     expect(page.locator(".source")).to_contain_text("0.95 : 0.05")
@@ -221,7 +217,7 @@ def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_
 
 
 def test_the_next_mission_is_begun_where_one_has_ended(
-    browser: Browser, worn: tuple[Gateway, str], pictures: Path, cache_dir: Path
+    browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
 ) -> None:
     served, name = worn
     page = opened(browser, served, 390, "dark")
@@ -231,10 +227,10 @@ def test_the_next_mission_is_begun_where_one_has_ended(
     page.get_by_role("button", name="Begin it").click()
     expect(page.locator(".next .problem")).to_contain_text("AOS516")
     assert violations(page, cache_dir) == []
-    kept(page, "next-390-dark", pictures)
+    kept(page, "next-390-dark")
     page.set_viewport_size({"width": 1440, "height": 900})
     page.emulate_media(color_scheme="light")
-    kept(page, "next-1440-light", pictures)
+    kept(page, "next-1440-light")
     assert violations(page, cache_dir) == []
     page.get_by_label("What is known").fill("!state.is_lit")
     page.get_by_label("Belief at the start").select_option("keep")
@@ -246,7 +242,7 @@ def test_the_next_mission_is_begun_where_one_has_ended(
 
 @pytest.mark.parametrize(("width", "theme"), [(390, "dark"), (1440, "light")])
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
-    browser: Browser, past: tuple[Gateway, str], width: int, theme: str, pictures: Path, cache_dir: Path
+    browser: Browser, past: tuple[Gateway, str], width: int, theme: str, cache_dir: Path
 ) -> None:
     served, name = past
     action = served.ask(f"/v1/missions/{name}/trace").json["steps"][1]["action"]
@@ -258,14 +254,14 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
             expect(page.locator(".stepper-place")).to_have_text(re.compile(r"^2 of \d+$"))
         expect(page.locator("main .card").last).to_be_visible()
         expect(page.locator("[aria-busy=true]")).to_have_count(0)
-        kept(page, f"{width}-{theme}{view.replace('/', '-')}", pictures)
+        kept(page, f"{width}-{theme}{view.replace('/', '-')}")
         assert violations(page, cache_dir) == [], view
     page.close()
 
 
 @pytest.mark.parametrize("width", [390, 1440])
 def test_a_number_of_many_values_is_shown_by_its_median_and_range(
-    browser: Browser, tmp_path: Path, width: int, pictures: Path, cache_dir: Path
+    browser: Browser, tmp_path: Path, width: int, cache_dir: Path
 ) -> None:
     depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
     name = write_long_run(tmp_path / "runs", 5, depth)
@@ -275,13 +271,11 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
         expect(
             page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
         ).to_be_visible()
-        kept(page, f"numbers-{width}", pictures)
+        kept(page, f"numbers-{width}")
         assert violations(page, cache_dir) == []
 
 
-def test_a_thousand_steps_are_loaded_with_little(
-    browser: Browser, tmp_path: Path, cache_dir: Path, pictures: Path
-) -> None:
+def test_a_thousand_steps_are_loaded_with_little(browser: Browser, tmp_path: Path, cache_dir: Path) -> None:
     name = write_long_run(tmp_path / "runs", 1000)
     with gateway(tmp_path, cache_dir) as served:
         page = opened(browser, served)
@@ -291,4 +285,4 @@ def test_a_thousand_steps_are_loaded_with_little(
         expect(page.locator("[aria-busy=true]")).to_have_count(0)
         sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
         assert page.evaluate(sizes) <= MOST_BYTES
-        kept(page, "thousand", pictures)
+        kept(page, "thousand")
