@@ -149,7 +149,7 @@ prepare_to_build_pybullet() { # prepare_to_build_pybullet REQUIREMENTS...
 }
 
 install_packages() { # install_packages REQUIREMENTS...
-    say "installing $(cat "$@" | grep -c '^[a-z].*==') packages into $VENV: about 150 MB to load, a minute or two the first time"
+    say "installing $(cat "$@" | grep -c '^[a-z].*==') packages into $VENV: about 150 MB to load, 250 MB for development, a minute or two the first time"
     install "$LOCK/build.txt"
     if is_python "$VENV/bin/python" 'v >= (3, 12)' && ! has_pybullet; then prepare_to_build_pybullet "$@"; fi
     install "$@"
@@ -168,8 +168,9 @@ main() {
             ;;
         --dev)
             done_file=$VENV/aos-dev
-            # The second pins only what the first does not.
-            set -- "$LOCK/runtime.txt" "$LOCK/dev.txt"
+            # The second pins only what the first does not. The third is Clang, which those use who have no g++.
+            # A test compiles models with it.
+            set -- "$LOCK/runtime.txt" "$LOCK/dev.txt" "$LOCK/compiler.txt"
             ;;
         *) fail "unknown option $1" "usage: ./setup.sh [--dev]" ;;
     esac
@@ -177,7 +178,7 @@ main() {
     make_venv
     # The development set holds the other.
     if [ "$(stamp "$@")" = "$(cat "$done_file" 2>/dev/null)" ] ||
-        [ "$(stamp "$LOCK/runtime.txt" "$LOCK/dev.txt")" = "$(cat "$VENV/aos-dev" 2>/dev/null)" ]; then
+        [ "$(stamp "$LOCK/runtime.txt" "$LOCK/dev.txt" "$LOCK/compiler.txt")" = "$(cat "$VENV/aos-dev" 2>/dev/null)" ]; then
         say "the packages are up to date"
     else
         install_packages "$@"

@@ -1,0 +1,62 @@
+"""Clang compiles models and what of the engine stands beside them: who has no g++ gets it from a wheel.
+
+All other tests compile with the first compiler that the machine has, which is g++ nearly everywhere.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from shutil import which
+
+import msgspec
+import pytest
+from exam.programs import run
+from scripted_models import bundle_project, lowered
+
+from aos_deploy.constraints import constrained, constraint_of_option
+from aos_protocol.documents import Project
+from aos_solver.building.build import NUMBERS, SOURCES
+from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.emission.emit import MODEL_FILE
+
+UNOPTIMIZED = ("-O0", "-DAOS_QUICK")
+
+
+@pytest.fixture
+def clang(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Compiler:
+    """The Clang of the wheel that set-up installs for development, or else that of the machine."""
+    name = f"{sys.executable} -m ziglang c++" if find_spec("ziglang") else which("clang++")
+    if name is None:
+        pytest.skip("needs Clang: pip install --require-hashes -r deploy/lock/compiler.txt")
+    for place in ("GLOBAL", "LOCAL"):
+        monkeypatch.setenv(f"ZIG_{place}_CACHE_DIR", str(cache_dir / "zig"))
+    return asyncio.run(find_compiler({"CXX": name}))
+
+
+@pytest.mark.parametrize("bundle", ["armadillo-finer", "tictactoe", "bench/lightdark-normal"])
+def test_clang_compiles_a_model(bundle: str, bundles: Path, clang: Compiler, tmp_path: Path) -> None:
+    compile_model(bundle_project(bundles / bundle), clang, tmp_path)
+
+
+def test_clang_compiles_a_model_with_a_costly_constraint(
+    bundles: Path, clang: Compiler, tmp_path: Path
+) -> None:
+    never = constraint_of_option("0.01: serve && state.arm_outstretched")
+    project = constrained(bundle_project(bundles / "armadillo-finer"), [never])
+    costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
+    compile_model(msgspec.structs.replace(project, constraints=(costly,)), clang, tmp_path)
+
+
+@pytest.mark.parametrize("part", NUMBERS)
+def test_clang_compiles_what_the_engine_has_of_numbers(part: str, clang: Compiler, tmp_path: Path) -> None:
+    run(clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0"), tmp_path)
+
+
+def compile_model(project: Project, compiler: Compiler, folder: Path) -> None:
+    """Compiles the emitted model; RuntimeError with the compiler's messages if that fails."""
+    emitted, _ = lowered(project)
+    (folder / MODEL_FILE).write_text(emitted.cpp)
+    run(compiler.compilation(MODEL_FILE, "model.o", str(SOURCES), *UNOPTIMIZED), folder)
