@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+MOST_WORDS = 320
+
 
 def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root: Path) -> None:
     folder = root / "docs" / "decisions"
@@ -25,3 +27,9 @@ def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root
     }
     assert marked == names
     assert all(new in overview[old] for old, new in names)
+
+
+def test_a_record_is_short(root: Path) -> None:
+    """Some 200 words are enough for a situation, a choice and what follows; git keeps how it came about."""
+    words = {path.name: len(path.read_text().split()) for path in (root / "docs/decisions").glob("0*.md")}
+    assert {name: count for name, count in words.items() if count > MOST_WORDS} == {}
