@@ -12,12 +12,16 @@ from aos_language.convert import without_origins
 from aos_language.load import load_files
 from aos_language.reading.sdl_sections import GRAMMARS
 
-EXAMPLE = re.compile(r"^```(sdl|json|ours) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+EXAMPLE = re.compile(r"^```sdl ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FOLDERS = {"json": "kettle-json", "ours": "kettle-sdl"}
 
 
 def examples(root: Path, dialect: str) -> dict[str, bytes]:
+    """The examples of SDL on the page, or those of the folder that it leads to."""
+    if folder := FOLDERS.get(dialect):
+        return {path.name: path.read_bytes() for path in (root / "docs" / "examples" / folder).iterdir()}
     text = (root / "docs" / "languages.md").read_text(encoding="utf-8")
-    return {name: body.encode() for kind, name, body in EXAMPLE.findall(text) if kind == dialect}
+    return {name: body.encode() for name, body in EXAMPLE.findall(text)}
 
 
 def test_the_sdl_examples_make_a_bundle_without_findings(root: Path) -> None:
