@@ -10,6 +10,7 @@ import numpy as np
 from aos_lab.formats.factors import ANY, EACH, Entry, Table, Variable
 from aos_lab.formats.problem_text import ProblemFindings, Word
 from aos_lab.formats.xml_text import Element
+from aos_language.number_text import is_number
 from aos_solver.offline.explicit_model import Floats
 
 __all__ = ["read_table"]
@@ -85,7 +86,7 @@ def _cells(element: Element, sizes: list[int], table: Table, findings: ProblemFi
     try:
         numbers = np.array([word.text for word in words], dtype=float)
     except ValueError:
-        wrong = next(word for word in words if not _is_number(word.text))
+        wrong = next(word for word in words if not is_number(word.text))
         findings.error("AOS106", f"{wrong.text} is not a number", wrong.line, wrong.column)
         return None
     wanted = int(np.prod(sizes, dtype=int))
@@ -102,14 +103,6 @@ def _cells(element: Element, sizes: list[int], table: Table, findings: ProblemFi
         findings.error("AOS106", f"{wrong.text} is not a finite number", wrong.line, wrong.column)
         return None
     return numbers.reshape(sizes)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 class _Diagram:
@@ -146,7 +139,7 @@ class _Diagram:
                 yield from self._node(element, chosen, depth)
             elif element.tag == "Terminal":
                 words = element.words()
-                if len(words) == 1 and _is_number(words[0].text):
+                if len(words) == 1 and is_number(words[0].text):
                     yield chosen, float(words[0].text)
                 else:
                     self._findings.error("AOS106", "Terminal needs a number", element.line, element.column)

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from aos_language.number_text import is_number
 from aos_protocol.errors import SkillError, StudyError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine
@@ -91,7 +92,7 @@ def changed_files(
     said = []
     for change in changes:
         match = _CHANGE.fullmatch(change.strip())
-        if match is None or not _is_number(match["number"]):
+        if match is None or not is_number(match["number"]):
             raise StudyError(f"{change!r} changes no number", hint='Write it as "pick.sd:17=0.8"')
         name, line = match["file"], int(match["line"])
         if name not in files:
@@ -124,11 +125,3 @@ def _place_of_number(text: str, place: str, column: int | None) -> tuple[int, in
         raise StudyError(f"{place} has no number there: {text.strip()}", hint="Name a line with a number")
     columns = ", ".join(f"{place}:{start + 1}={text[start:end]}" for start, end in found)
     raise StudyError(f"{place} has {len(found)} numbers", hint=f"Name one by its column: {columns}")
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

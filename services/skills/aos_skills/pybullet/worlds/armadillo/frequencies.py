@@ -3,12 +3,12 @@ WORLD.yaml 60`."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
-from collections import Counter
+from functools import partial
 from pathlib import Path
 
+from aos_skills.pybullet.frequencies import counted, pick_options, shares
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.armadillo.navigate import navigate
 from aos_skills.pybullet.worlds.armadillo.pick import can_in_reach, pick
@@ -38,24 +38,20 @@ def outcome_of_pick(world_file: Path, table: str, seed: int) -> str:
 
 def main() -> None:
     """Prints the share of each outcome for each table, and says on stderr how far it is."""
-    parser = argparse.ArgumentParser(prog="frequencies", description=main.__doc__)
-    parser.add_argument("world", type=Path)
-    parser.add_argument("picks", type=int, nargs="?", default=60)
+    parser = pick_options(main.__doc__)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--json", action="store_true", help="one JSON object with the counts")
     options = parser.parse_args()
-    counts: dict[str, Counter[str]] = {table: Counter() for table in PLACES}
-    for table, counter in counts.items():
-        for number in range(options.picks):
-            counter[outcome_of_pick(options.world, table, options.first_seed + number)] += 1
-            sys.stderr.write(f"\r{table} table: {number + 1} of {options.picks} picks")
-        sys.stderr.write("\n")
+    seeds = range(options.first_seed, options.first_seed + options.picks)
+    counts = {
+        table: counted(partial(outcome_of_pick, options.world, table), seeds, f"{table} table: ")
+        for table in PLACES
+    }
     if options.json:
         sys.stdout.write(json.dumps({"picks": options.picks, **counts}) + "\n")
         return
     for table, counter in counts.items():
-        shares = ", ".join(f"{outcome} {counter[outcome] / options.picks:.2f}" for outcome in OUTCOMES)
-        sys.stdout.write(f"{table} table, {options.picks} picks: {shares}\n")
+        sys.stdout.write(f"{table} table, {options.picks} picks: {shares(counter, OUTCOMES)}\n")
 
 
 if __name__ == "__main__":

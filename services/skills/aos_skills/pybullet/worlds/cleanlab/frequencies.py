@@ -3,11 +3,10 @@ FILE.yaml 60`."""
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections import Counter
-from pathlib import Path
+from functools import partial
 
+from aos_skills.pybullet.frequencies import counted, pick_options, shares
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
 from aos_skills.pybullet.worlds.cleanlab.navigate import navigate
@@ -32,17 +31,10 @@ def outcome_of_pick(file: CleanLabFile, seed: int) -> str:
 
 def main() -> None:
     """Prints the share of each outcome, and says on stderr how far it is."""
-    parser = argparse.ArgumentParser(prog="frequencies", description=main.__doc__)
-    parser.add_argument("world", type=Path)
-    parser.add_argument("picks", type=int, nargs="?", default=60)
-    options = parser.parse_args()
+    options = pick_options(main.__doc__).parse_args()
     file: CleanLabFile = load_world_file(options.world).room
-    counts: Counter[str] = Counter()
-    for number in range(options.picks):
-        counts[outcome_of_pick(file, number)] += 1
-        sys.stderr.write(f"\r{number + 1} of {options.picks} picks")
-    shares = ", ".join(f"{outcome} {counts[outcome] / options.picks:.2f}" for outcome in OUTCOMES)
-    sys.stdout.write(f"\n{options.picks} picks: {shares}\n")
+    counts = counted(partial(outcome_of_pick, file), range(options.picks))
+    sys.stdout.write(f"{options.picks} picks: {shares(counts, OUTCOMES)}\n")
 
 
 if __name__ == "__main__":
