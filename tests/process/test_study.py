@@ -170,3 +170,21 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched(
         assert "listen" not in {value.action for value in found.actions}
     finally:
         await study.close()
+
+
+async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps(
+    bundles: Path, cache_dir: Path
+) -> None:
+    files = read_bundle_files(bundles / "bench" / "tiger")[0]
+    tolls = "for (int i = 0; i < 16; i++) __reward -= AOS.Bernoulli(0.25) ? 1 : 0;"
+    files["listen.sd"] = files["listen.sd"].replace(b"__reward = -1;", f"__reward = -1;\n{tolls}".encode())
+    played = await play(files, cache_dir, steps=1, planner="pomcp", simulations=500)
+    study = Study(played, cache_dir)
+    try:
+        why = await study.why(WhyQuery(1))
+        assert "rewards of lines are means of 10,000 steps that were drawn" in why.remark
+        of_listening = [term.value if why.action == "listen" else term.other for term in why.terms]
+        assert any(amount == pytest.approx(-4, abs=0.1) for amount in of_listening), why.terms
+        assert sum(term.value for term in why.terms) + why.rest == pytest.approx(why.value)
+    finally:
+        await study.close()

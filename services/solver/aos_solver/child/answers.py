@@ -198,7 +198,11 @@ class RewardTerm(msgspec.Struct, frozen=True):
 
 
 class RewardTerms(msgspec.Struct, frozen=True):
-    """The parts of an expected return, and all of it as the steps' rewards have it."""
+    """The parts of an expected return, and all of it as the steps' rewards have it.
+
+    Where steps cannot be enumerated, they are means of so many `drawn` ones.
+    """
 
     total: float
     terms: tuple[RewardTerm, ...]
+    drawn: int = 0

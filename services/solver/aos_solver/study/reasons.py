@@ -174,6 +174,8 @@ class Reasons:
         except AosError as error:
             self._remarks.append(f"the rewards are not told apart: {error.message}")
             return (), value, other_value
+        if one.drawn:
+            self._remarks.append(f"rewards of lines are means of {one.drawn:,} steps that were drawn")
         terms = _joined(traced, one, two)
         rests = [v - sum(t.amount for t in found.terms) for v, found in ((value, one), (other_value, two))]
         return terms, rests[0], rests[1]

@@ -1,12 +1,14 @@
 // The value of an action by the statements of documents that give its rewards.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
 #include "aos/base/reward_ledger.hpp"
 #include "aos/model/step.hpp"
 
@@ -16,8 +18,8 @@ namespace aos {
 template <class Model>
 class RewardTerms {
  public:
-  // Adds the expected rewards of a step, so many times. Throws NotEnumerable.
-  void add(const typename Model::State& state, int action, double times) {
+  // Adds the expected rewards of a step, so many times, and returns how many paths it has. Throws NotEnumerable.
+  int add(const typename Model::State& state, int action, double times, int max_paths = path_budget) {
     RewardLedger ledger;
     reward_ledger = &ledger;
     const Using done;
@@ -29,17 +31,28 @@ class RewardTerms {
       step = Model::step(next, action, path);
     };
     draws_.report_to(&ignored_numbers);
-    draws_.for_nearly_each_path(run, [&](Enumerator& path) {
-      const double weight = times * path.probability();
-      for (const RewardTerm& term : ledger.terms()) {
-        terms_[{term.place, term.skill == nullptr ? "" : term.skill}] += weight * term.amount;
-      }
-      total_ += weight * step.reward;
-    });
+    int paths = 0;
+    const auto visit = [&](Enumerator& path) {
+      ++paths;
+      count(ledger, step, times * path.probability());
+    };
+    draws_.for_nearly_each_path(run, visit, max_paths);
+    return paths;
   }
 
+  // Adds the rewards of a step that is drawn, so many times.
+  void add_drawn(typename Model::State state, int action, double times, Sampler& random) {
+    RewardLedger ledger;
+    reward_ledger = &ledger;
+    const Using done;
+    const Step step = Model::step(state, action, random);
+    count(ledger, step, times);
+    ++drawn_;
+  }
+
+  // `drawn` tells how many steps were drawn; 0 where the rewards are expected ones.
   void write(JsonWriter& json) const {
-    json.begin_object().member("total", total_).key("terms").begin_array();
+    json.begin_object().member("total", total_).member("drawn", drawn_).key("terms").begin_array();
     for (const auto& [source, amount] : terms_) {
       json.begin_object().member("place", source.first).member("skill", source.second);
       json.member("amount", amount).end_object();
@@ -52,9 +65,17 @@ class RewardTerms {
     ~Using() { reward_ledger = nullptr; }
   };
 
+  void count(const RewardLedger& ledger, const Step& step, double times) {
+    for (const RewardTerm& term : ledger.terms()) {
+      terms_[{term.place, term.skill == nullptr ? "" : term.skill}] += times * term.amount;
+    }
+    total_ += times * step.reward;
+  }
+
   Enumerator draws_;
   std::map<std::pair<std::uint32_t, std::string>, double> terms_;
   double total_ = 0;
+  int drawn_ = 0;
 };
 
 }  // namespace aos

@@ -1,17 +1,23 @@
 // The commands of a study: exact values and their terms at one supposed belief after the other.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 
+#include "aos/base/enumerator.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/belief/gathering.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/reward_terms.hpp"
 #include "aos/child/wording.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/step.hpp"
 #include "aos/planning/exact_root.hpp"
 #include "aos/planning/state_space.hpp"
 
@@ -41,13 +47,8 @@ class StudyCommands {
   void reward_terms(JsonWriter& json, const Command& command) {
     const int action = action_of<Model>(command);
     const Belief<Model>& belief = beliefs_.belief_for(command);
+    if (command.flag("is_first")) return first_terms(json, belief, action);
     RewardTerms<Model> terms;
-    if (command.flag("is_first")) {
-      for (const auto& [state, weight] : belief.particles()) {
-        if (Model::ending(state) == Ending::running) terms.add(state, action, weight);
-      }
-      return terms.write(json);
-    }
     const int horizon = horizon_of(command);
     auto evaluation = evaluation_for(command, belief, horizon);
     evaluation.action_values(exact_root(*space_, belief), horizon);
@@ -59,6 +60,33 @@ class StudyCommands {
   }
 
  private:
+  static constexpr int most_paths = 50'000;
+  static constexpr std::size_t drawn_steps = 10'000;
+
+  // Writes the expected rewards of a step; where these cannot be enumerated, the means of steps that are drawn, with the same
+  // luck for each action.
+  static void first_terms(JsonWriter& json, const Belief<Model>& belief, int action) {
+    try {
+      RewardTerms<Model> terms;
+      int left = most_paths;
+      for (const auto& [state, weight] : belief.particles()) {
+        if (Model::ending(state) != Ending::running) continue;
+        if (left <= 0) throw NotEnumerable{"the belief has too many states"};
+        left -= terms.add(state, action, weight, std::min(left, path_budget));
+      }
+      return terms.write(json);
+    } catch (const NotEnumerable&) {
+      blame::at(0);
+    }
+    const ForgottenTexts forgotten;
+    RewardTerms<Model> drawn;
+    Sampler random{1};
+    draw_evenly<Model>(belief.particles(), drawn_steps, random, [&](const typename Model::State& state) {
+      if (Model::ending(state) == Ending::running) drawn.add_drawn(state, action, 1.0 / drawn_steps, random);
+    });
+    drawn.write(json);
+  }
+
   static int horizon_of(const Command& command) {
     const int horizon = command.number<int>("horizon");
     return horizon > 0 ? horizon : Model::horizon;
