@@ -7,6 +7,7 @@ the `ziglang` wheel also makes its C++ library, which takes a minute or two.
 from __future__ import annotations
 
 import asyncio
+import os
 import subprocess
 import sys
 import tempfile
@@ -19,6 +20,8 @@ from aos_solver.building.compiler import Compiler, find_compiler
 
 PROGRAM = "#include <vector>\nint main() { return std::vector<int>(3).size() == 3 ? 0 : 1; }\n"
 LIMIT_S = 900
+MEMORY_OF_TWO_BYTES = 4 << 30
+"""The compiler takes 1.2 GB for an engine."""
 
 
 def main() -> int:
@@ -40,9 +43,14 @@ def main() -> int:
 
 
 async def build_engines(compiler: Compiler) -> None:
-    """The engine of most models, and the one that takes all others."""
-    await build_engine(cache_dir(), compiler=compiler)
-    await build_engine(cache_dir(), compiler=compiler, state_bytes=ANY_SIZE)
+    """The engine of most models and the one that takes all others, side by side where there is memory."""
+    usual = build_engine(cache_dir(), compiler=compiler)
+    other = build_engine(cache_dir(), compiler=compiler, state_bytes=ANY_SIZE)
+    if os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") >= MEMORY_OF_TWO_BYTES:
+        await asyncio.gather(usual, other)
+    else:
+        await usual
+        await other
 
 
 def _complaint_about(compiler: Compiler) -> str:

@@ -17,7 +17,7 @@ from processes import COMMAND_S
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
-from aos_solver.building.build import SOURCES, SUPPORT, build_engine
+from aos_solver.building.build import SOURCES, SUPPORT
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import find_compiler
 from aos_solver.emission.emit import EmittedModel, emit
@@ -35,7 +35,6 @@ __all__ = [
 
 _DRIVER = Path(__file__).parent / "cpp" / "scripted"
 _OPTIONS = ("-O0", "-DAOS_QUICK")
-"""Those of the engine's precompiled headers for code that is not optimised."""
 _EXECUTABLE = "scripted"
 _TABLE = re.compile(r"constinit const aos::ModelTable .*\s+aos::table_of<(.*)>\(\);")
 _SCRIPTED_TABLE = r"""#include "scripted.hpp"
@@ -136,15 +135,16 @@ def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
 async def _compiled(emitted: EmittedModel, cache_dir: Path) -> Path:
     compiler = await find_compiler()
     cache = BuildCache(cache_dir)
-    engine = await build_engine(cache_dir, compiler=compiler)
     decides = [*_OPTIONS, *what_decides(compiler, _DRIVER)]
 
     async def make_driver(staging: Path) -> None:
         run(compiler.compilation(str(_DRIVER / "scripted.cpp"), "driver.o", str(SOURCES), *_OPTIONS), staging)
+        (staging / SUPPORT).parent.mkdir(parents=True)
+        run(compiler.precompilation(SUPPORT, str(SOURCES), ".", *_OPTIONS), staging)
 
     async def make(staging: Path) -> None:
         (staging / "scripted.cpp").write_text(_TABLE.sub(_SCRIPTED_TABLE, emitted.cpp))
-        options = [*_OPTIONS, *compiler.precompiled(SUPPORT, str(engine / "unoptimized")), f"-I{_DRIVER}"]
+        options = [*_OPTIONS, *compiler.precompiled(SUPPORT, str(driver)), f"-I{_DRIVER}"]
         run(compiler.compilation("scripted.cpp", "scripted.o", str(SOURCES), *options), staging)
         run(compiler.linking(["scripted.o", str(driver / "driver.o")], _EXECUTABLE), staging)
 

@@ -221,7 +221,7 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
     engine = await build_engine(cache_dir)
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
     objects = []
-    for more in ([], compiler.precompiled(build_module.SUPPORT, str(engine / "quick"))):
+    for more in ([], compiler.precompiled(build_module.SUPPORT, str(engine))):
         options = [*build_module._OPTIONS["quick"], *more, "-H"]
         command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *options)
         done = await asyncio.to_thread(

@@ -60,13 +60,12 @@ _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
     "unoptimized": ("-O0", "-DAOS_QUICK"),
 }
 
-_HURRIED: tuple[BuildKind, ...] = ("quick", "unoptimized")
 MODEL_CPU_S = 2.0
-ENGINE_SHARE = 1 / 16
+ENGINE_SHARE = 1 / 12
 LINES_PER_CPU_S = 150
 """A quick build may take `MODEL_CPU_S` of processor time, or `ENGINE_SHARE` of the engine's where that is
 more, and a second more for `LINES_PER_CPU_S` lines. A model of 200 lines takes half a second, of 700 lines up
-to 3 s, the engine 30 s."""
+to 3 s, the engine 25 s."""
 
 _ENGINE_DEADLINES = 5
 """The engine has so many times a model's deadline: our own sources are known to end, and only a busy machine
@@ -180,12 +179,12 @@ async def build_engine(
         on_progress(f"compiling the engine with {compiler.version}, once for all models")
         if compiler.family == "zig":
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
-        commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}", "engine")]
+        options = [f"-DAOS_STATE_BYTES={state_bytes}", *compiler.large_source]
+        commands = [_part(compiler, _ENGINE_OBJECT, "engine", *options)]
         if state_bytes == STATE_BYTES[0]:
-            commands += [_part(compiler, number_object(part), _NUMBERS_OPTION, part) for part in NUMBERS]
-            for kind in _HURRIED:
-                (staging / kind / SUPPORT).parent.mkdir(parents=True)
-                commands.append(compiler.precompilation(SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
+            commands += [_part(compiler, number_object(part), part, _NUMBERS_OPTION) for part in NUMBERS]
+            (staging / SUPPORT).parent.mkdir(parents=True)
+            commands.append(compiler.precompilation(SUPPORT, str(SOURCES), ".", *_OPTIONS["quick"]))
         deadline_s = _ENGINE_DEADLINES * compiler.deadline_s
         started_s = time.monotonic()
         ours: Given = {"reads": [SOURCES], "is_ours": True}
@@ -215,15 +214,16 @@ def number_object(part: str) -> str:
     return f"{Path(part).name}.o"
 
 
-def _part(compiler: Compiler, made: str, option: str, source: str) -> list[str]:
+def _part(compiler: Compiler, made: str, source: str, *options: str) -> list[str]:
     """The command that compiles a part of the engine."""
-    return compiler.compilation(str(SOURCES / f"{source}.cpp"), made, str(SOURCES), option)
+    return compiler.compilation(str(SOURCES / f"{source}.cpp"), made, str(SOURCES), *options)
 
 
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
     # Clang looks for what was precompiled by the path of the sources.
     place = [] if compiler.family == "gcc" else [str(SOURCES)]
-    return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), _NUMBERS_OPTION, *place])}"
+    options = [_NUMBERS_OPTION, *compiler.large_source]
+    return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), *options, *place])}"
 
 
 class _Build(msgspec.Struct, frozen=True):
@@ -259,7 +259,7 @@ class _Build(msgspec.Struct, frozen=True):
     @property
     def _cpu_s(self) -> int | None:
         """The limit for a model that somebody waits for. Long models and slow machines have more."""
-        if self.kind not in _HURRIED:
+        if self.kind != "quick":
             return None
         engine_s = _engine_seconds(self._ready_engine(STATE_BYTES[0]))
         return int(max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self.emitted.cpp.count("\n") / LINES_PER_CPU_S)
@@ -278,13 +278,11 @@ class _Build(msgspec.Struct, frozen=True):
 
     @property
     def _precompiled(self) -> list[str]:
-        """The options for what hurried builds include, if that is compiled already."""
-        if self.kind not in _HURRIED:
+        """The options for what quick builds include, if that is compiled already."""
+        if self.kind != "quick":
             return []
         return [
-            option
-            for entry in self._ready_entry
-            for option in self.compiler.precompiled(SUPPORT, str(entry / self.kind))
+            option for entry in self._ready_entry for option in self.compiler.precompiled(SUPPORT, str(entry))
         ]
 
     @property
@@ -305,7 +303,7 @@ class _Build(msgspec.Struct, frozen=True):
 
     def _ready_size(self, state_bytes: int) -> int:
         """`state_bytes`, or `ANY_SIZE` where a quick build would have to compile that engine first."""
-        is_waiting = self.kind in _HURRIED and self._ready_engine(state_bytes) is None
+        is_waiting = self.kind == "quick" and self._ready_engine(state_bytes) is None
         return ANY_SIZE if is_waiting and self._ready_engine(ANY_SIZE) is not None else state_bytes
 
     async def _link(self, staging: Path, engine: list[Path]) -> None:

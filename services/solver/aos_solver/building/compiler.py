@@ -69,6 +69,15 @@ class Compiler(msgspec.Struct, frozen=True):
             own += ["-ferror-limit=40", "-fno-delete-null-pointer-checks"]
         return [*self.command, *common, *own, *more, "-I", include]
 
+    @property
+    def large_source(self) -> tuple[str, ...]:
+        """The options for the engine, most of which runs seldom: the second level takes a quarter longer.
+
+        Its searches by POMCP ask for that level themselves (tree_search.hpp). Clang does not know how to.
+        """
+        more = ("-finline-small-functions", "-findirect-inlining", "-fstrict-aliasing")
+        return ("-O1", *more) if self.family == "gcc" else ()
+
     def precompilation(self, header: str, include: str, directory: str, *more: str) -> list[str]:
         """The command that reads a header for all files that include it first.
 

@@ -25,6 +25,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/planning/belief_tree_constants.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/exploration.hpp"
@@ -36,12 +37,7 @@
 
 namespace aos {
 
-inline constexpr double beliefs_of_one_visit = 4;     // after an action
-inline constexpr double belief_widening = 0.3;        // the exponent of the visits
-inline constexpr std::size_t max_belief_tree_bytes = std::size_t{256} << 20;
-inline constexpr std::uint64_t max_prepared_runs = 1'000'000;  // steps of the model before a search
 inline constexpr std::size_t spreading = 7919;  // a prime, by which states are taken in an order that is spread out
-inline constexpr double max_unknown_share = 0.5;      // of what is observed
 
 template <class Model>
 class BeliefTree final : public TreePlanner<Model> {

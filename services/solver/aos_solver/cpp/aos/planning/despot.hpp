@@ -27,20 +27,13 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/despot_constants.hpp"
 #include "aos/planning/mdp_values.hpp"
 #include "aos/planning/scenarios.hpp"
 #include "aos/planning/state_values.hpp"
 #include "aos/planning/tree_planner.hpp"
 
 namespace aos {
-
-inline constexpr std::size_t max_scenarios = 500;
-inline constexpr std::size_t min_scenarios = 30;
-inline constexpr double share_of_first_look = 0.2;  // of the budget, for all actions at the root
-inline constexpr double gap_share = 0.95;           // of its part of the root's gap, which a node may keep
-inline constexpr double penalty_in_deviations = 1;
-inline constexpr std::size_t max_scenario_bytes = std::size_t{512} << 20;
-inline constexpr std::size_t max_node_bytes = std::size_t{128} << 20;
 
 template <class Model>
 class Despot final : public TreePlanner<Model> {

@@ -23,11 +23,11 @@ namespace aos {
 // returns with the history's spread. The history's spread is filled up with the root's in the same way.
 class ExplorationBonus {
  public:
-  ExplorationBonus(const HistoryNode& history, double root_spread)
+  [[gnu::always_inline]] ExplorationBonus(const HistoryNode& history, double root_spread)
       : root_n_(std::sqrt(static_cast<double>(history.n) + 1)),
         prior_(prior_visits * (history.squares + prior_visits * root_spread) / (history.n + prior_visits)) {}
 
-  double of(const ActionNode& action) const {
+  [[gnu::always_inline]] double of(const ActionNode& action) const {
     const double n = std::max<double>(action.n, 1);
     if (!switches::own_spread) return std::sqrt(prior_ / prior_visits * action.share * root_n_ / n);
     const double squares = (action.squares + prior_) * action.share;

@@ -18,6 +18,7 @@
 #include "aos/base/described_distribution.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
+#include "aos/planning/belief_tree_constants.hpp"
 
 namespace aos {
 
@@ -120,7 +121,6 @@ class ObservationTables {
 
  private:
   using Key = std::vector<std::uint64_t>;
-  static constexpr double highest_log_ratio = 60;
 
   // Probabilities of symbols. Symbols are numbered as they are met.
   struct Piece {

@@ -15,6 +15,7 @@
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/despot_constants.hpp"
 #include "aos/planning/mdp_values.hpp"
 #include "aos/planning/step_cost.hpp"
 
@@ -26,10 +27,6 @@ struct Scenario {
   std::uint32_t number;
   std::uint32_t seen;  // the number of the state in the table of values, if there is one
 };
-
-inline constexpr int rollouts_per_scenario = 3;
-inline constexpr std::size_t smallest_group = 10;
-inline constexpr std::size_t max_evaluated = 50;  // of the scenarios with the same history
 
 // A scenario after a step, and the observation that the step gave.
 template <class Model>

@@ -83,7 +83,7 @@ class SearchTree {
   }
 
   // The history after an action and an observation, or `no_node`.
-  std::uint32_t find_child(std::uint32_t action, Observation observation) const {
+  [[gnu::always_inline]] std::uint32_t find_child(std::uint32_t action, Observation observation) const {
     const ActionNode& parent = actions_[action];
     if (parent.children > max_listed_children) {
       return index_.find(hash_of(action, observation), [&](std::uint32_t child) {

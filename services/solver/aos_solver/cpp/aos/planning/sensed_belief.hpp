@@ -9,15 +9,13 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/planning/belief_tree_constants.hpp"
 #include "aos/planning/sensing_tables.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
 
 using SmallBelief = std::vector<std::pair<std::uint32_t, float>>;  // distinct states with weights that sum to 1
-
-inline constexpr std::size_t tree_states = 100;       // of a belief in a tree
-inline constexpr std::size_t tree_root_states = 500;  // of the root, drawn anew for each belief after it
 
 // Keeps some states of a belief, each with a probability that makes up for the others: systematic resampling.
 inline void thin_out(SmallBelief& belief, std::size_t most, Sampler& random) {

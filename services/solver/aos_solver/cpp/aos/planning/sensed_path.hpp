@@ -20,10 +20,9 @@
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
+#include "aos/planning/belief_tree_constants.hpp"
 
 namespace aos {
-
-inline constexpr std::size_t sensing_runs = 64;  // of an outcome
 
 // A draw of run `run` lies in a stratum of its own among `sensing_runs` equal ones. Which one is drawn with a seed of
 // the draw's name, so that all outcomes have the same luck.

@@ -12,6 +12,7 @@
 #include "aos/base/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/belief_tree_constants.hpp"
 #include "aos/planning/sensed_path.hpp"
 #include "aos/planning/state_space.hpp"
 
@@ -100,9 +101,6 @@ class SensingRuns {
   std::uint64_t count() const { return count_; }
 
  private:
-  static constexpr std::size_t tested_runs = 4;
-  static constexpr std::size_t max_tested_draws = 64;
-
   struct Path {
     std::uint32_t next;
     double probability;

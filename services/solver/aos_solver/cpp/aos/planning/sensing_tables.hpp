@@ -19,6 +19,7 @@
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
+#include "aos/planning/belief_tree_constants.hpp"
 #include "aos/planning/observation_tables.hpp"
 #include "aos/planning/sensed_path.hpp"
 #include "aos/planning/sensing_runs.hpp"
@@ -73,8 +74,6 @@ class SensingTables {
  private:
   using Report = SensedPath::Report;
   static constexpr std::uint32_t no_table = 0xffffffffu;
-  static constexpr std::size_t compared_runs = 8;  // which tell tables apart
-  static constexpr std::size_t max_tables = 500'000;
 
   void tabulate(std::size_t row) {
     const int action = static_cast<int>(row % space_.actions());
@@ -83,7 +82,7 @@ class SensingTables {
     const auto& rows = space_.rows().outcomes;
     std::uint64_t version = 0;
     do {  // again where a table has changed how texts are parted
-      if (tables_.size() > max_tables) forget_tables();
+      if (tables_.size() > max_sensing_tables) forget_tables();
       version = version_;
       for (std::size_t outcome = rows.first[row]; outcome < rows.first[row + 1] && version == version_; ++outcome) {
         runs_.lead_to(rows.elements[outcome].next);

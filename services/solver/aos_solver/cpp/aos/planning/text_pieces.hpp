@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "aos/planning/belief_tree_constants.hpp"
+
 namespace aos {
 
 class TextPieces {
@@ -78,8 +80,6 @@ class TextPieces {
   std::uint32_t number_of(const std::string& text) {
     return numbers_.try_emplace(text, static_cast<std::uint32_t>(numbers_.size())).first->second;
   }
-
-  static constexpr double many_values = 16;
 
   std::unordered_map<std::string, double> widths_;  // 0: each value is a symbol of its own
   std::unordered_map<std::string, std::uint32_t> numbers_;
