@@ -16,6 +16,7 @@ from tests.exam.summary import times_text
 
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
+from .cleaning import cleaning, cleaning_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
 from .rules import RULES
@@ -23,9 +24,9 @@ from .upkeep import greenhouse, greenhouse_rule
 
 _STEPS = 120  # at most, in a mission
 
-_BUNDLES = PROBLEMS | APART | {"greenhouse": greenhouse}
-_SIZES = SIZES | APART_SIZES | {"greenhouse": 5}
-_RULES = RULES | APART_RULES | {"greenhouse": greenhouse_rule}
+_BUNDLES = PROBLEMS | APART | {"greenhouse": greenhouse, "cleaning": cleaning}
+_SIZES = SIZES | APART_SIZES | {"greenhouse": 5, "cleaning": 7}
+_RULES = RULES | APART_RULES | {"greenhouse": greenhouse_rule, "cleaning": cleaning_rule}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:

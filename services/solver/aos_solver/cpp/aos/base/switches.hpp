@@ -10,7 +10,7 @@
 #endif
 
 // Which planner decides:
-//   lists (of states), exact, near_states, belief_tree, options
+//   lists (of states), exact, near_states, belief_tree, options, savings
 // SARSOP:
 //   endless, certainty_equivalent, repeated_trials, lower_trials, simple_policies
 // POMCP's values of states, and its prior:
@@ -19,7 +19,7 @@
 //   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
-  of(lists) of(exact) of(near_states) of(belief_tree) of(options)                                              \
+  of(lists) of(exact) of(near_states) of(belief_tree) of(options) of(savings)                                  \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state)  \
   of(step_table) of(expected_rewards)                                                                           \

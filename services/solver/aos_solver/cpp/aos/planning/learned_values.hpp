@@ -20,18 +20,16 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
-#include "aos/model/values.hpp"
 #include "aos/planning/cell_tables.hpp"
 #include "aos/planning/random_walk.hpp"
+#include "aos/planning/state_cells.hpp"
 #include "aos/planning/state_values.hpp"
 
 namespace aos {
@@ -62,10 +60,7 @@ class LearnedValues final : public StateValues<Model> {
   // The value of a state; 0 without decisions to go. Otherwise it does not depend on `left`.
   double value(const State& state, int left) const override {
     if (left <= 0) return 0;
-    thread_local std::vector<std::uint16_t> row;
-    row.resize(variables_.size());
-    for (const std::uint32_t variable : used_) row[variable] = variables_[variable].cell(Model::bytes_of(state));
-    return std::clamp(tables_.value(row.data()), lowest_, highest_);
+    return std::clamp(tables_.value(cells_.row(state, used_)), lowest_, highest_);
   }
 
   // By one step of each action, all under the same luck.
@@ -108,7 +103,7 @@ class LearnedValues final : public StateValues<Model> {
 
   void forget() {
     examples_.clear();
-    variables_.clear();
+    cells_.forget();
     used_.clear();
     tables_ = CellTables{};
     lowest_ = highest_ = 0;
@@ -179,29 +174,18 @@ class LearnedValues final : public StateValues<Model> {
   }
   static int compared() { return std::min(Model::action_count(), max_compared); }
 
-  // Finds the variables that differ among the examples.
   bool find_variables() {
-    std::vector<double> numbers;
-    const State& any = examples_.front();
-    NamedLeaves leaves{[&](const std::string&, const Leaf& leaf) {
-      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(any);
-      if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
-      CellVariable variable{leaf, static_cast<std::size_t>(offset)};
-      numbers.clear();
-      for (const State& example : examples_) numbers.push_back(variable.number(Model::bytes_of(example)));
-      if (variable.divide(numbers)) variables_.push_back(variable);
-    }};
-    Model::visit_values(any, leaves);
-    tables_ = CellTables{variables_};
-    return !variables_.empty();
+    if (!cells_.find(examples_)) return false;
+    tables_ = CellTables{cells_.variables()};
+    return true;
   }
 
   void simulate_all_actions(Sampler& random) {
-    const std::size_t room = max_cells / (variables_.size() * (action_count() + 1));
+    const std::size_t room = max_cells / (cells_.size() * (action_count() + 1));
     if (examples_.size() > room) examples_.resize(std::max<std::size_t>(room, 2));
     rows_.clear();
     successors_.clear();
-    for (const State& example : examples_) add_row(example);
+    for (const State& example : examples_) cells_.add_row(example, rows_);
     auto next_row = static_cast<std::int32_t>(examples_.size());
     for (const State& example : examples_) {
       const Sampler luck{random.bits()};
@@ -211,12 +195,9 @@ class LearnedValues final : public StateValues<Model> {
         const Step step = Model::step(state, action, draws);
         const bool goes_on = Model::ending(state) == Ending::running;
         successors_.push_back({static_cast<float>(step.reward), goes_on ? next_row++ : -1});
-        if (goes_on) add_row(state);
+        if (goes_on) cells_.add_row(state, rows_);
       }
     }
-  }
-  void add_row(const State& state) {
-    for (const CellVariable& variable : variables_) rows_.push_back(variable.cell(Model::bytes_of(state)));
   }
 
   // --- values ----------------------------------------------------------------------------------------
@@ -230,7 +211,7 @@ class LearnedValues final : public StateValues<Model> {
       for (std::size_t a = 0; a < action_count(); ++a) {
         const Successor& next = successors_[i * action_count() + a];
         std::array<double, 2> later{};
-        if (next.row >= 0) later = tables_.values(&rows_[static_cast<std::size_t>(next.row) * variables_.size()]);
+        if (next.row >= 0) later = tables_.values(&rows_[static_cast<std::size_t>(next.row) * cells_.size()]);
         const double worth = next.reward + Model::discount * std::clamp(later[own], lowest_, highest_);
         if (worth <= most) continue;
         most = worth;
@@ -314,7 +295,7 @@ class LearnedValues final : public StateValues<Model> {
   bool has_tried_ = false;
   bool is_usable_ = false;
   int horizon_ = 0;
-  std::vector<CellVariable> variables_;
+  StateCells<Model> cells_;
   std::vector<std::uint32_t> used_;
   CellTables tables_;
   double lowest_ = 0;

@@ -55,6 +55,7 @@ class OptionPolicy {
     library_.drop_unused(gains_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
+    if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
     const double found = library_.extend(belief_, left, random);
     gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, left, random);
     steps_ = of_options * affordable_ - left;
@@ -82,6 +83,10 @@ class OptionPolicy {
   }
 
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  // Whether a way to a reward was found, in this mission, from any state.
+  bool knows_ways() const { return !library_.options().empty(); }
+  // Whether rewards come by themselves, so that a way to one tells nothing.
+  bool earns_anyway() const { return changes_.earns_anyway(); }
   // What decided, for a plan's `why`.
   const char* reason() const { return reason_; }
 

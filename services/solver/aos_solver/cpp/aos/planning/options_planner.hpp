@@ -1,6 +1,7 @@
 // Options as a planner: where states cannot be listed and ways to rewards are found (option_policy.hpp).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -28,12 +29,23 @@ class OptionsPlanner final : public Planner<Model> {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
     const bool is_asked = is_by_name || (!is_listed && switches::options && !Model::has_rollout_policy && !pomcp_.has_wide_values(belief, horizon));
     if (!is_asked) return false;
+    if (put_off_ > 0) {
+      --put_off_;
+      choosing.why += "; no way to a reward was found a few decisions before";
+      return false;
+    }
     const auto start = thread_time();
     const std::string obstacle = policy_.prepare(belief, budget, horizon, Sampler{Sampler{random}.bits()});
     choosing.searching += thread_time() - start;
     if (!obstacle.empty()) choosing.why += "; " + obstacle;
+    // Where no way at all is known, the next look is put off, each time for longer.
+    vain_ = policy_.knows_ways() && !policy_.earns_anyway() ? 0 : std::min(vain_ + 1, most_vain);
+    put_off_ = (1 << vain_) - 1;
     return obstacle.empty();
   }
+
+  // Whether the last look has found no way that tells what to do, from any state.
+  bool finds_nothing() const { return vain_ > 0; }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
     const std::uint64_t simulations = policy_.search(question.belief, question.horizon, random, question.barred);
@@ -43,11 +55,18 @@ class OptionsPlanner final : public Planner<Model> {
 
   Estimates estimates(const Belief<Model>& /*belief*/) const override { return policy_.estimates(); }
   Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
-  void start_over() override { policy_.start_over(); }
+  void start_over() override {
+    policy_.start_over();
+    vain_ = put_off_ = 0;
+  }
 
  private:
+  static constexpr int most_vain = 4;  // 15 decisions are put off then, as those of simple policies are
+
   Pomcp<Model>& pomcp_;
   OptionPolicy<Model> policy_;
+  int vain_ = 0;     // looks in a row that found no way
+  int put_off_ = 0;  // decisions without a look
 };
 
 }  // namespace aos

@@ -26,17 +26,18 @@
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp.hpp"
 #include "aos/planning/sarsop_planner.hpp"
+#include "aos/planning/savings_planner.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
 
-// What can be asked for; `options` only by tests.
-enum class PlannerKind { automatic, pomcp, despot, sarsop, options };
-inline constexpr const char* planner_names[] = {"auto", "pomcp", "despot", "sarsop", "options"};
+// What can be asked for; `options` and `savings` only by tests.
+enum class PlannerKind { automatic, pomcp, despot, sarsop, options, savings };
+inline constexpr const char* planner_names[] = {"auto", "pomcp", "despot", "sarsop", "options", "savings"};
 
 // The planner of this name, if there is one that can be asked for.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
-  const auto* const last = planner_names + static_cast<std::size_t>(PlannerKind::options);
+  const auto* const last = planner_names + static_cast<std::size_t>(PlannerKind::savings);
   const auto* const found = std::find(planner_names, last, name);
   return found == last ? std::nullopt : std::optional{static_cast<PlannerKind>(found - planner_names)};
 }
@@ -131,11 +132,12 @@ class Planners {
   SarsopPlanner<Model> sarsop_{space_};
   BeliefTree<Model> belief_tree_{space_, values_, missions_};
   OptionsPlanner<Model> options_{space_, pomcp_};
+  SavingsPlanner<Model> savings_{space_, options_, missions_};
   Despot<Model> despot_{space_, values_, missions_};
-  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &pomcp_, &despot_};
+  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &pomcp_, &despot_};
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const List order_[std::size(planner_names)] = {
-      {&exact_, &sarsop_, &belief_tree_, &options_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}};
+      {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};
   Planner<Model>* used_ = &pomcp_;
   int horizon_ = 1;       // of the last search
   BarredActions barred_;  // in the last search
