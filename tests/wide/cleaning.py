@@ -1,4 +1,4 @@
-"""A robot that keeps rooms clean, with a battery and a bin, and is paid for nothing: its documents, and a rule by hand."""
+"""A robot with a battery and a bin that keeps rooms clean and is paid for nothing: documents and a rule."""
 
 import random
 
@@ -57,7 +57,7 @@ if (state.battery == 0 && state.at > 0) __reward -= 1;
 
 
 def cleaning(rooms: int = 7) -> Bundle:
-    """Rooms along a corridor become dirty unseen; a robot goes from one to the next, looks, cleans, empties its bin and charges."""
+    """Rooms along a corridor become dirty unseen; a robot goes, looks, cleans, and charges at its dock."""
     writer = BundleWriter(f"cleaning{rooms}", _environment(rooms))
     go = f"""__reward = -0.05;
 if (state_.battery == 0) {{
@@ -98,7 +98,7 @@ if (state_.at == 0) {
 
 
 def cleaning_rule(rooms: int, rng: random.Random) -> float:
-    """Go from room to room, clean once in each without a look, and come home with a full bin or for the battery."""
+    """Go from room to room, clean each once without a look, and come home with a full bin or to charge."""
     dirt = [rng.choices((0, 1, 2), (0.5, 0.3, 0.2))[0] for _ in range(rooms)]
     odds = [_BUSY if rng.random() < 0.4 else _QUIET for _ in range(rooms)]
     at, battery, filled, target = 0, _BATTERY, 0, 1
