@@ -60,6 +60,13 @@ class RestValues {
     return !used_.empty();
   }
 
+  // What an action returns that is taken for ever.
+  double returned(int action, const State& start, const StepLuck& luck) const {
+    return returned_by(start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
+      Sampler random = luck.of(step);
+      return Model::step(state, taken, random);
+    });
+  }
   // The action of the rest.
   int action() const { return action_; }
   // What a state is worth; 0 where the mission is over.
@@ -104,12 +111,6 @@ class RestValues {
       sum += discount * luck(state, action, static_cast<std::size_t>(i)).reward;
     }
     return sum;
-  }
-  double returned(int action, const State& start, const StepLuck& luck) const {
-    return returned_by(start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
-      Sampler random = luck.of(step);
-      return Model::step(state, taken, random);
-    });
   }
   double returned_at_random(const State& start, Sampler& random) {
     walk_.start();

@@ -29,23 +29,30 @@ class SavingIndex final : public StateValues<Model> {
   using State = typename Model::State;
 
   // Learns what states are worth after a way, finds ways, and plays missions by their index that see the state. Returns
-  // what these return on average; minus infinity where there are no ways.
+  // what these return on average; minus infinity where that is not beyond doubt more than rests return.
   double learn(BasePolicy base, const LeafCells<Model>& cells, const Belief<Model>& belief, int horizon, Sampler random) {
     ways_.clear();
     incomes_.clear();
     decided_.clear();
     if (!values_.learn(base, belief, horizon, random)) return -std::numeric_limits<double>::infinity();
+    constexpr double beyond_doubt = 2;  // standard errors
     double sum = 0;
-    int count = 0;
+    double more = 0;
+    double squares = 0;
+    double count = 0;
     for (int mission = 0; mission < missions; ++mission) {
-      State state = belief.sample(random);
-      if (Model::ending(state) != Ending::running) continue;
-      const double returned = played(state, mission < practised ? &cells : nullptr, horizon, random);
+      const State start = belief.sample(random);
+      if (Model::ending(start) != Ending::running) continue;
+      const double returned = played(start, mission < practised ? &cells : nullptr, horizon, random);
       if (mission < practised) continue;
+      const double beyond = returned - values_.returned(values_.action(), start, StepLuck{random});
       sum += returned;
+      more += beyond;
+      squares += beyond * beyond;
       ++count;
     }
-    return ways_.empty() || count == 0 ? -std::numeric_limits<double>::infinity() : sum / count;
+    const double error = std::sqrt(std::max(squares / count - more * more / (count * count), 0.0) / (count - 1));
+    return count > 1 && more / count > beyond_doubt * error ? sum / count : -std::numeric_limits<double>::infinity();
   }
 
   // Looks for ways from a state. `steps` is counted down.
@@ -65,9 +72,10 @@ class SavingIndex final : public StateValues<Model> {
     for (std::size_t k = 0; k < states.size(); ++k) {
       const StepLuck luck{random};
       const Rest<Model> rest{values_, states[k], SavingSearch<Model>::longest, luck};
+      steps -= steps_of_rest(SavingSearch<Model>::longest);
       for (std::size_t i = 0; i < ways_.size(); ++i) {
         incomes_[i] += weights[k] * income<Model>(saved(values_, rest, ways_[i], states[k], luck), ways_[i].size());
-        steps -= static_cast<double>(ways_[i].size());
+        steps -= steps_of_way(ways_[i].size());
       }
     }
   }
@@ -145,12 +153,12 @@ class SavingIndex final : public StateValues<Model> {
     std::size_t longest = 0;
     for (const Option* way : ways) longest = std::max(longest, way->size());
     const Rest<Model> rest{values_, state, longest, luck};
-    steps -= static_cast<double>(longest);
+    steps -= steps_of_rest(longest);
     int best = values_.action();
     double most = 0;
     for (const Option* way : ways) {
       const double income = aos::income<Model>(saved(values_, rest, *way, state, luck), way->size());
-      steps -= static_cast<double>(way->size());
+      steps -= steps_of_way(way->size());
       if (income <= most) continue;
       most = income;
       best = way->front();

@@ -28,8 +28,8 @@ class SavingLookahead {
 
   // How many steps of the model an action takes.
   static double steps_of(const std::vector<Option>& ways, std::size_t states) {
-    double sum = 1;
-    for (const Option& way : ways) sum += static_cast<double>(way.size());
+    double sum = steps_of_way(1);
+    for (const Option& way : ways) sum += steps_of_way(way.size());
     return sum * static_cast<double>(states);
   }
 

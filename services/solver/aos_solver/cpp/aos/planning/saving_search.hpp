@@ -58,6 +58,10 @@ double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Opt
   return earned + discount * values.value(state) - rest.returned(way.size());
 }
 
+// How many steps of the model take as long as a rest, or a way, whose states are valued: a value takes about as long as a step.
+inline double steps_of_rest(std::size_t steps) { return 2.0 * static_cast<double>(steps + 1); }
+inline double steps_of_way(std::size_t steps) { return static_cast<double>(steps + 1); }
+
 template <class Model>
 class SavingSearch {
  public:
@@ -125,7 +129,7 @@ class SavingSearch {
         cells_.write(after_[a], &cells_after_[a * cells_.size()]);
       }
       limit -= static_cast<double>(actions);
-      steps -= static_cast<double>(actions);
+      steps -= static_cast<double>(actions) * steps_of_way(1);
       find_own_changes(actions);
       const double resting = worths_[static_cast<std::size_t>(values_.action())].all();
       for (std::size_t a = 0; a < actions; ++a) {
@@ -151,7 +155,7 @@ class SavingSearch {
         const StepLuck luck{random};
         sum += saved(values_, Rest<Model>{values_, start, way.size(), luck}, way, start, luck);
       }
-      steps -= 2.0 * tries * static_cast<double>(way.size());
+      steps -= tries * (steps_of_way(way.size()) + steps_of_rest(way.size()));
       if (sum > 0) ways.push_back(std::move(way));
     }
     return ways;
