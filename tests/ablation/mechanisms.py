@@ -82,6 +82,8 @@ class BundleRoute(NamedTuple):
 
 _WITHOUT_OPTIONS = ("learned_values", "prior", "prior_draw", "asked_leaves")
 
+_SAVINGS = ("savings", "saving_lookahead")
+
 BUNDLES = (
     BundleRoute("diagnosis200", 2000, 40, ("simple_policies", "repeated_trials", "lower_trials")),
     BundleRoute(
@@ -105,6 +107,9 @@ BUNDLES = (
     BundleRoute("kitchen12", 1000, 70, _WITHOUT_OPTIONS, ("options",)),
     BundleRoute("maint10", 1000, 60, ("wide_values", "first_state", "expected_rewards")),
     BundleRoute("maint10", 1000, 60, ("learned_values", "prior"), ("wide_values", "options")),
+    BundleRoute("maint10", 1000, 60, _SAVINGS, ("wide_values",)),
+    BundleRoute("greenhouse", 4000, 60, _SAVINGS),
+    BundleRoute("cleaning", 4000, 60, _SAVINGS),
     BundleRoute("parcels", 1000, 60, ("options", "learned_values")),
     BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),

@@ -16,17 +16,16 @@ from tests.exam.summary import times_text
 
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
-from .cleaning import cleaning, cleaning_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
 from .rules import RULES
-from .upkeep import greenhouse, greenhouse_rule
+from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
 
-_BUNDLES = PROBLEMS | APART | {"greenhouse": greenhouse, "cleaning": cleaning}
-_SIZES = SIZES | APART_SIZES | {"greenhouse": 5, "cleaning": 7}
-_RULES = RULES | APART_RULES | {"greenhouse": greenhouse_rule, "cleaning": cleaning_rule}
+_BUNDLES = PROBLEMS | APART | UPKEEP
+_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES
+_RULES = RULES | APART_RULES | UPKEEP_RULES
 
 
 def write(folder: Path, problem: str, size: int) -> Path:

@@ -1,10 +1,12 @@
-"""A problem that rewards nothing: what is neglected costs. The documents, and a rule by hand."""
+"""Problems that reward nothing: what is neglected costs. The documents, and rules by hand."""
 
 import random
+from collections.abc import Callable
 
+from .cleaning import cleaning, cleaning_rule
 from .writing import Bundle, BundleWriter
 
-__all__ = ["greenhouse", "greenhouse_rule"]
+__all__ = ["UPKEEP", "UPKEEP_RULES", "UPKEEP_SIZES", "greenhouse", "greenhouse_rule"]
 
 _TANK = 6  # fillings that the robot carries
 
@@ -96,3 +98,8 @@ def greenhouse_rule(bays: int, rng: random.Random) -> float:
         earned += discount * (reward - moisture.count(0))
         discount *= 0.97
     return earned
+
+
+UPKEEP: dict[str, Callable[[int], Bundle]] = {"greenhouse": greenhouse, "cleaning": cleaning}
+UPKEEP_SIZES = {"greenhouse": 5, "cleaning": 7}
+UPKEEP_RULES = {"greenhouse": greenhouse_rule, "cleaning": cleaning_rule}

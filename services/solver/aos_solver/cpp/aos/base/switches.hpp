@@ -11,6 +11,8 @@
 
 // Which planner decides:
 //   lists (of states), exact, near_states, belief_tree, options, savings
+// What saves most:
+//   saving_lookahead
 // SARSOP:
 //   endless, certainty_equivalent, repeated_trials, lower_trials, simple_policies
 // POMCP's values of states, and its prior:
@@ -20,6 +22,7 @@
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
   of(lists) of(exact) of(near_states) of(belief_tree) of(options) of(savings)                                  \
+  of(saving_lookahead)                                                                                         \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state)  \
   of(step_table) of(expected_rewards)                                                                           \

@@ -80,22 +80,6 @@ class SavingIndex final : public StateValues<Model> {
     }
   }
 
-  // The return of a mission that takes a way, and then goes by the index of the ways that have decided most often; it sees
-  // the state. `steps` is counted down.
-  double returned(const Option& first, State state, int horizon, const StepLuck& luck, double& steps) const {
-    double sum = 0;
-    double discount = 1;
-    std::vector<const Option*> ways;
-    for (std::size_t i = 0; i < std::min(decided_.size(), followed); ++i) ways.push_back(&decided_[i].first);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(horizon) && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
-      Sampler random = luck.of(i);
-      const int action = i < first.size() ? first[i] : best_of(ways, state, random, steps);
-      sum += discount * Model::step(state, action, random).reward;
-      --steps;
-    }
-    return sum;
-  }
-
   // Keeps the ways with the highest incomes that were measured, where they are many.
   void drop_worst() {
     if (ways_.size() <= kept_ways) return;
@@ -131,7 +115,7 @@ class SavingIndex final : public StateValues<Model> {
   static constexpr int missions = 20;   // that are played
   static constexpr int practised = 4;  // of these, in which ways are looked for
   static constexpr int between_looks = 6;  // steps of these
-  static constexpr std::size_t followed = 12;  // ways that have decided most often
+  static constexpr std::size_t followed = 32;  // ways that have decided most often
   static constexpr std::size_t most_ways = 128;
   static constexpr std::size_t kept_ways = 64;
 
@@ -146,24 +130,6 @@ class SavingIndex final : public StateValues<Model> {
       sum += discount * Model::step(state, best_action(), random).reward;
     }
     return sum;
-  }
-  // The first action of the best way in a state, or the rest.
-  int best_of(const std::vector<const Option*>& ways, const State& state, Sampler random, double& steps) const {
-    const StepLuck luck{random};
-    std::size_t longest = 0;
-    for (const Option* way : ways) longest = std::max(longest, way->size());
-    const Rest<Model> rest{values_, state, longest, luck};
-    steps -= steps_of_rest(longest);
-    int best = values_.action();
-    double most = 0;
-    for (const Option* way : ways) {
-      const double income = aos::income<Model>(saved(values_, rest, *way, state, luck), way->size());
-      steps -= steps_of_way(way->size());
-      if (income <= most) continue;
-      most = income;
-      best = way->front();
-    }
-    return best;
   }
   int best_action() {
     const auto best = std::ranges::max_element(incomes_);

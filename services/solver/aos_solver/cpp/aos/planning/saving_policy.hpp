@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
@@ -26,7 +27,6 @@
 #include "aos/planning/sampled_belief.hpp"
 #include "aos/planning/saving_index.hpp"
 #include "aos/planning/saving_lookahead.hpp"
-#include "aos/planning/saving_rollouts.hpp"
 
 namespace aos {
 
@@ -53,7 +53,7 @@ class SavingPolicy {
   }
 
   // Draws states, and finds and values ways. It may take so many steps of the model.
-  void prepare(const Belief<Model>& belief, double affordable, int horizon, const BarredActions& barred, Sampler random) {
+  void prepare(const Belief<Model>& belief, double affordable, const BarredActions& barred, Sampler random) {
     double steps = affordable;
     const auto states = std::clamp<double>(of_states * affordable / Model::action_count(), 16, 32);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
@@ -67,8 +67,7 @@ class SavingPolicy {
       steps += left;
     }
     index_->measure(belief_.states(), belief_.weights(), steps, random);
-    look_ahead(barred, (1 - of_search - of_lookahead) * affordable, steps, random);
-    roll_out(barred, horizon, steps, random);
+    look_ahead(barred, steps, random);
     taken_ = affordable - steps;
   }
 
@@ -98,49 +97,29 @@ class SavingPolicy {
   };
 
   static constexpr double of_states = 0.05;
-  static constexpr double of_search = 0.15;     // of the steps
-  static constexpr double of_lookahead = 0.25;  // of the steps; the others are of rollouts
+  static constexpr double of_search = 0.3;  // of the steps; the others look ahead
   static constexpr std::size_t searched = 2;      // states
   static constexpr std::size_t fewest_tried = 4;  // actions
-  static constexpr std::size_t rolled_out = 4;    // ways
 
   // Finds the incomes of actions, those that begin the best ways first, then those that tell most.
-  void look_ahead(const BarredActions& barred, double least, double& steps, Sampler& random) {
+  void look_ahead(const BarredActions& barred, double& steps, Sampler& random) {
     found_.clear();
+    if (!switches::saving_lookahead) {
+      for (std::size_t i = 0; i < index_->ways().size(); ++i) {
+        const int first = index_->ways()[i].front();
+        if (!barred.contains(static_cast<std::size_t>(first))) found_.push_back({first, index_->income_of(i)});
+      }
+      return;
+    }
     SavingLookahead<Model> lookahead{index_->values(), index_->ways()};
     lookahead.begin(belief_, random);
     const double of_action = SavingLookahead<Model>::steps_of(index_->ways(), belief_.size());
     for (const int action : ordered_actions(steps, random)) {
       if (barred.contains(static_cast<std::size_t>(action))) continue;
-      if (steps <= least && found_.size() >= fewest_tried) break;
+      if (steps <= 0 && found_.size() >= fewest_tried) break;
       found_.push_back({action, lookahead.income_of(action)});
       steps -= of_action;
     }
-  }
-
-  // What returns more than what the look-ahead takes, beyond doubt, decides.
-  void roll_out(const BarredActions& barred, int horizon, double& steps, Sampler& random) {
-    if (found_.empty()) return;
-    const auto chosen = std::ranges::max_element(found_, {}, &Found::income);
-    std::vector<Option> candidates{{chosen->action}};
-    for (const Option& way : best_ways(barred)) candidates.push_back(way);
-    const BetterWay better = way_beyond_doubt(*index_, belief_, candidates, horizon, steps, random);
-    if (better.gain > 0) found_.push_back({candidates[better.way].front(), chosen->income + better.gain});
-  }
-
-  // The ways with the highest incomes, one of each first action.
-  std::vector<Option> best_ways(const BarredActions& barred) const {
-    std::vector<std::size_t> order(index_->ways().size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater<>{}, [&](std::size_t i) { return index_->income_of(i); });
-    std::vector<Option> best;
-    for (const std::size_t i : order) {
-      const int first = index_->ways()[i].front();
-      if (best.size() == rolled_out) break;
-      if (barred.contains(static_cast<std::size_t>(first)) || std::ranges::any_of(best, [&](const Option& other) { return other.front() == first; })) continue;
-      best.push_back(index_->ways()[i]);
-    }
-    return best;
   }
 
   // The actions by the income of the best way that begins with each; those that begin none by what they tell.

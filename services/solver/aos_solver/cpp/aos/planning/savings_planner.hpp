@@ -36,7 +36,7 @@ class SavingsPlanner final : public Planner<Model> {
     Sampler own{Sampler{random}.bits()};
     if (!policy_.learn(belief, horizon, own)) return false;
     const auto start = thread_time();
-    policy_.prepare(belief, affordable_steps(budget, horizon), horizon, barred, own);
+    policy_.prepare(belief, affordable_steps(budget, horizon), barred, own);
     choosing.searching += thread_time() - start;
     return true;
   }
