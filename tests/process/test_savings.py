@@ -36,9 +36,8 @@ async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_a
     async with engine_of(await built_text(cleaning(7), cache_dir)) as engine:
         search = Search(simulations=_SIMULATIONS, seed=1)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
-    assert sum(action == "clean" for action in run.actions) >= 12
-    assert "charge" in run.actions
-    assert sum(action == "empty_bin" for action in run.actions) >= 2
+    assert sum(action == "clean" for action in run.actions) >= 8
+    assert {"charge", "empty_bin"} <= set(run.actions)
 
 
 async def test_an_action_that_is_barred_saves_nothing(cache_dir: Path) -> None:
