@@ -50,7 +50,7 @@ async def test_an_action_that_is_barred_saves_nothing(cache_dir: Path) -> None:
 
 
 async def test_a_value_is_what_missions_return(cache_dir: Path) -> None:
-    """The first decision tells what played missions return, and missions that plan return about as much."""
+    """The first decision tells a value within three errors of what missions return, or within 12."""
     returns = []
     async with engine_of(await built_text(greenhouse(5), cache_dir)) as engine:
         plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")

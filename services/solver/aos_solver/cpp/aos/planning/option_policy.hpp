@@ -42,6 +42,7 @@ template <class Model>
 class OptionPolicy {
  public:
   using State = typename Model::State;
+  static constexpr double of_options = 0.4;  // of the affordable steps: to find options and what they earn
 
   // Draws states and finds options. Returns why this policy cannot decide; empty if it can.
   std::string prepare(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
@@ -98,7 +99,6 @@ class OptionPolicy {
 
  private:
   static constexpr double least_steps = 100'000;
-  static constexpr double of_options = 0.4;  // of the affordable steps
   static constexpr double of_states = 0.05;
   static constexpr double enough_found = 0.5;   // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret

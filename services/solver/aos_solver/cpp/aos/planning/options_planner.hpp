@@ -28,12 +28,14 @@ class OptionsPlanner final : public Planner<Model> {
   bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
     const bool is_asked = is_by_name || (!is_listed && switches::options && !Model::has_rollout_policy && !pomcp_.has_wide_values(belief, horizon));
+    has_looked_ = false;
     if (!is_asked) return false;
     if (put_off_ > 0) {
       --put_off_;
       choosing.why += "; no way to a reward was found a few decisions before";
       return false;
     }
+    has_looked_ = true;
     const auto start = thread_time();
     const std::string obstacle = policy_.prepare(belief, budget, horizon, Sampler{Sampler{random}.bits()});
     choosing.searching += thread_time() - start;
@@ -46,6 +48,8 @@ class OptionsPlanner final : public Planner<Model> {
 
   // Whether the last look has found no way that tells what to do, from any state.
   bool finds_nothing() const { return vain_ > 0; }
+  // Whether the last decision has looked for ways.
+  bool has_looked() const { return has_looked_; }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
     const std::uint64_t simulations = policy_.search(question.belief, question.horizon, random, question.barred);
@@ -67,6 +71,7 @@ class OptionsPlanner final : public Planner<Model> {
   OptionPolicy<Model> policy_;
   int vain_ = 0;     // looks in a row that found no way
   int put_off_ = 0;  // decisions without a look
+  bool has_looked_ = false;
 };
 
 }  // namespace aos

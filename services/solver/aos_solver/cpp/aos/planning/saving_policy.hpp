@@ -48,6 +48,7 @@ class SavingPolicy {
       if (returned <= most) continue;
       most = returned;
       index_ = &index;
+      seen_ = returned - mean_value(belief, index, random);
     }
     return index_ != nullptr;
   }
@@ -85,6 +86,8 @@ class SavingPolicy {
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
   // What the belief of the last decision is worth to a robot that does not plan.
   double resting() const { return resting_; }
+  // How much more missions return that see the state.
+  double seen() const { return seen_; }
   // What a state is worth to such a robot, and what its actions save then.
   const StateValues<Model>& worths() const { return *index_; }
 
@@ -98,8 +101,15 @@ class SavingPolicy {
 
   static constexpr double of_states = 0.05;
   static constexpr double of_search = 0.3;  // of the steps; the others look ahead
+  static constexpr int drawn = 64;  // states that tell what a belief is worth
   static constexpr std::size_t searched = 2;      // states
   static constexpr std::size_t fewest_tried = 4;  // actions
+
+  static double mean_value(const Belief<Model>& belief, const SavingIndex<Model>& index, Sampler& random) {
+    double sum = 0;
+    draw_evenly<Model>(belief.particles(), drawn, random, [&](const State& state) { sum += index.values().value(state) / drawn; });
+    return sum;
+  }
 
   // Finds the incomes of actions, those that begin the best ways first, then those that tell most.
   void look_ahead(const BarredActions& barred, double& steps, Sampler& random) {
@@ -170,6 +180,7 @@ class SavingPolicy {
   SavingIndex<Model> by_rest_;
   SavingIndex<Model> by_chance_;
   SavingIndex<Model>* index_ = nullptr;  // the better one; null if there are no ways
+  double seen_ = 0;
   // Of the last decision:
   SampledBelief<Model> belief_;
   double taken_ = 0;  // steps of the model

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -36,7 +37,9 @@ class SavingsPlanner final : public Planner<Model> {
     Sampler own{Sampler{random}.bits()};
     if (!policy_.learn(belief, horizon, own)) return false;
     const auto start = thread_time();
-    policy_.prepare(belief, affordable_steps(budget, horizon), barred, own);
+    // A look for options has taken its share of the budget.
+    const double share = options_.has_looked() ? 1 - OptionPolicy<Model>::of_options : 1;
+    policy_.prepare(belief, share * affordable_steps(budget, horizon), barred, own);
     choosing.searching += thread_time() - start;
     return true;
   }
@@ -53,14 +56,16 @@ class SavingsPlanner final : public Planner<Model> {
   }
 
   Estimates estimates(const Belief<Model>& /*belief*/) const override { return policy_.estimates(); }
-  // What played missions return is told.
+  // What is told lies halfway between what played missions return and what missions return that see the state. Half of that
+  // distance is part of its error.
   Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const override {
     if (!missions_.is_known()) return estimates;
     const double running = belief.probability_of(Ending::running);
-    const double moved = policy_.resting() - running * missions_.loss() - estimates[static_cast<std::size_t>(choice)].q;
+    const double open = running * std::max(policy_.seen() + missions_.loss(), 0.0) / 2;
+    const double moved = policy_.resting() - running * missions_.loss() + open - estimates[static_cast<std::size_t>(choice)].q;
     for (ActionEstimate& estimate : estimates) {
       estimate.q += moved;
-      estimate.standard_error = running * missions_.loss_error();
+      estimate.standard_error = std::hypot(running * missions_.loss_error(), open);
     }
     return estimates;
   }
