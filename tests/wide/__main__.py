@@ -16,6 +16,7 @@ from tests.exam.summary import times_text
 
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
+from .inspection import inspection, inspection_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
 from .rules import RULES
@@ -23,9 +24,9 @@ from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
 
-_BUNDLES = PROBLEMS | APART | UPKEEP
-_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES
-_RULES = RULES | APART_RULES | UPKEEP_RULES
+_BUNDLES = PROBLEMS | APART | UPKEEP | {"inspection": inspection}
+_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES | {"inspection": 16}
+_RULES = RULES | APART_RULES | UPKEEP_RULES | {"inspection": inspection_rule}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:

@@ -23,6 +23,8 @@ class OptionLibrary {
 
   const std::vector<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
+  // Whether the action alone is an option: it earns something at once in some state.
+  bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }
 
   // Begins a mission.
   void prepare(const Belief<Model>& belief, Sampler& random) {

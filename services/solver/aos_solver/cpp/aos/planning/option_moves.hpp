@@ -28,11 +28,10 @@ class OptionMoves {
               const OptionValues<Model>& values)
       : belief_(belief), regret_(regret), tests_(tests), values_(values) {}
 
-  // Adds each move, once or several times in a row, where they are few, the latter while there are steps.
-  void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) {
-    if (tests_.moves().size() > few) return;
+  // Adds each of the moves, once or several times in a row, the latter while there are steps.
+  void add_to(std::vector<OptionCandidate>& candidates, const std::vector<int>& moves, double& steps, Sampler& random) {
     for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats; repeats *= 2) {
-      for (const int move : tests_.moves()) {
+      for (const int move : moves) {
         if (repeats == 1 || steps > 0) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
       }
     }

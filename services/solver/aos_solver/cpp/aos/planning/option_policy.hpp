@@ -70,9 +70,10 @@ class OptionPolicy {
   std::uint64_t search(const Belief<Model>& belief, int horizon, Sampler& random, const BarredActions& barred) {
     const ForgottenTexts forgotten;
     candidates_.clear();
+    choose_moves(barred);
     regret_.begin();
     double left = affordable_ - steps_;
-    values_.begin(belief_, horizon, asked_gains(), left, random);
+    values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
     const double blind = regret_.value_seen() - regret_.now();
@@ -121,11 +122,16 @@ class OptionPolicy {
     return only_changes ? "nothing is observed but by what changes the state" : "";
   }
 
-  // How often a decision asks for the gain of a move, each of them tried once.
-  std::size_t asked_gains() const {
-    std::size_t moves = 0;
-    for (int action = 0; action < Model::action_count(); ++action) moves += changes_.is_move(action) ? 1 : 0;
-    return tried_options + (moves > OptionMoves<Model>::few ? 0 : moves);
+  // The moves that are tried. Where all are many, those that earn nothing at once are, if they are few; then they only serve
+  // to observe, and are tried with what can be observed after them.
+  void choose_moves(const BarredActions& barred) {
+    tried_moves_.clear();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      if (changes_.is_move(action) && !barred.contains(static_cast<std::size_t>(action))) tried_moves_.push_back(action);
+    }
+    are_for_views_ = tried_moves_.size() > OptionMoves<Model>::few;
+    if (are_for_views_) std::erase_if(tried_moves_, [this](int move) { return library_.earns_at_once(move); });
+    if (tried_moves_.size() > OptionMoves<Model>::few) tried_moves_.clear();
   }
 
   // The options with the highest income by the belief.
@@ -155,7 +161,10 @@ class OptionPolicy {
   void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
     tests_.observe_all(barred, left, random);
     tests_.add_to(candidates_, left, random);
-    moves_.add_to(candidates_, left, random);
+    moves_.add_to(candidates_, tried_moves_, left, random);
+    for (const int move : tried_moves_) {
+      if (are_for_views_ && left > 0) moves_.add_view(candidates_, move, barred, left, random);
+    }
     for (const std::size_t option : likely) {
       if (left > 0 && library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
     }
@@ -196,6 +205,8 @@ class OptionPolicy {
   OptionTests<Model> tests_{belief_, regret_, changes_};
   OptionValues<Model> values_{library_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
+  std::vector<int> tried_moves_;
+  bool are_for_views_ = false;
   std::vector<OptionCandidate> candidates_;
   std::vector<ActionEstimate> estimates_;
   const char* reason_ = "";
