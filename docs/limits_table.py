@@ -97,14 +97,20 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
     ),
     "Planning": (
-        Row("states that searches number", "planning/state_space.hpp:states", "", "POMCP without them"),
-        Row("states whose values POMCP computes", "planning/wide_values.hpp:states", "", "learned values"),
-        Row("outcomes of these states", "planning/state_space.hpp:outcomes", "", "POMCP without them"),
+        Row(
+            "states that searches number",
+            "planning/listed/state_space.hpp:states", "", "POMCP without them",
+        ),
+        Row(
+            "states whose values POMCP computes",
+            "planning/values/wide_values.hpp:states", "", "learned values",
+        ),
+        Row("outcomes of these states", "planning/listed/state_space.hpp:outcomes", "", "POMCP without them"),
         Row("states of an exact belief", "belief/belief.hpp:max_weighted_states", "", "particles"),
         Row("particles of a sampled belief", "belief/history.hpp:particle_count", "", "drawn anew"),
         Row(
             "memory of the search trees",
-            "planning/pomcp_constants.hpp:max_search_bytes", "bytes", "trees grow no more",
+            "planning/pomcp/pomcp_constants.hpp:max_search_bytes", "bytes", "trees grow no more",
         ),
         Row("threads of a search", "planning/budget.hpp:max_search_threads", "", "refused", "`threads`"),
         Row("states of `aos solve`", "aos_solver.offline.enumeration.MAX_STATES", "", "AOS220", "`--states`"),

@@ -1,5 +1,5 @@
 // Responses that are too many to list: sensing_tables.hpp, text_pieces.hpp, belief_tree.hpp.
-#include "aos/planning/belief_tree.hpp"
+#include "aos/planning/belief_tree/belief_tree.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -10,8 +10,8 @@
 #include "aos/base/described_distribution.hpp"
 #include "aos/base/distributions.hpp"
 #include "aos/model/transition.hpp"
-#include "aos/planning/sensing_tables.hpp"
-#include "aos/planning/text_pieces.hpp"
+#include "aos/planning/belief_tree/sensing_tables.hpp"
+#include "aos/planning/belief_tree/text_pieces.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 

@@ -1,5 +1,5 @@
 // Functions of the state as sums of small tables: cell_tables.hpp.
-#include "aos/planning/cell_tables.hpp"
+#include "aos/planning/values/cell_tables.hpp"
 
 #include <cstddef>
 #include <cstdint>

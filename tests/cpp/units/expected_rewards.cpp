@@ -1,7 +1,7 @@
 // Expected rewards and which values are reliable: expected_rewards.hpp and exploration.hpp.
-#include "aos/planning/expected_rewards.hpp"
+#include "aos/planning/values/expected_rewards.hpp"
 
-#include "aos/planning/exploration.hpp"
+#include "aos/planning/pomcp/exploration.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 

@@ -1,5 +1,5 @@
 // Values of states that are learned from simulations: learned_values.hpp.
-#include "aos/planning/learned_values.hpp"
+#include "aos/planning/values/learned_values.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Numbers told by the cells of a grid: number_reports.hpp, number_grid.hpp, number_cells.hpp, and search over them.
-#include "aos/planning/number_cells.hpp"
+#include "aos/planning/listed/number_cells.hpp"
 
 #include <cmath>
 #include <numeric>

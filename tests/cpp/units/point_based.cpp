@@ -4,7 +4,7 @@
 #include "aos/base/alias.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/state_space.hpp"
 #include "check.hpp"
 #include "point_based/online.hpp"
 #include "point_based/regions.hpp"

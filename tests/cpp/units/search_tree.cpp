@@ -1,5 +1,5 @@
 // The memory of a search tree: search_tree.hpp.
-#include "aos/planning/search_tree.hpp"
+#include "aos/planning/pomcp/search_tree.hpp"
 
 #include "check.hpp"
 

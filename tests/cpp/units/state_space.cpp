@@ -1,10 +1,10 @@
 // The model as numbers and what is worked out from it: state_space.hpp, step_table.hpp, exact.hpp.
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/state_space.hpp"
 
 #include <map>
 
-#include "aos/planning/exact_root.hpp"
-#include "aos/planning/step_table.hpp"
+#include "aos/planning/listed/exact_root.hpp"
+#include "aos/planning/listed/step_table.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 

@@ -1,10 +1,10 @@
 // Numbers for states and the values of many of them: state_numbers.hpp, wide_values.hpp.
-#include "aos/planning/wide_values.hpp"
+#include "aos/planning/values/wide_values.hpp"
 
 #include <cmath>
 
-#include "aos/planning/mdp_values.hpp"
-#include "aos/planning/state_numbers.hpp"
+#include "aos/planning/listed/state_numbers.hpp"
+#include "aos/planning/values/mdp_values.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 

@@ -15,7 +15,7 @@
 
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/planning/exact_root.hpp"
+#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 #include "bisimulation.hpp"
 #include "flat.hpp"

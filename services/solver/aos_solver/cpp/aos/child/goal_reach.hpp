@@ -11,8 +11,8 @@
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/model/blame.hpp"
-#include "aos/planning/random_walk.hpp"
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/state_space.hpp"
+#include "aos/planning/values/random_walk.hpp"
 
 namespace aos {
 

@@ -12,7 +12,7 @@
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/left_out.hpp"
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/state_space.hpp"
 #include "point_based/flat_file.hpp"
 
 namespace aos {

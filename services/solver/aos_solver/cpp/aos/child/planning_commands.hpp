@@ -24,7 +24,7 @@
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/exact_root.hpp"
+#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 
 namespace aos {

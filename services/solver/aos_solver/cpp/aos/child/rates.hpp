@@ -11,10 +11,10 @@
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/command.hpp"
-#include "aos/planning/mdp_values.hpp"
-#include "aos/planning/simulated_state.hpp"
-#include "aos/planning/state_space.hpp"
-#include "aos/planning/step_table.hpp"
+#include "aos/planning/listed/state_space.hpp"
+#include "aos/planning/listed/step_table.hpp"
+#include "aos/planning/values/mdp_values.hpp"
+#include "aos/planning/values/simulated_state.hpp"
 
 namespace aos {
 

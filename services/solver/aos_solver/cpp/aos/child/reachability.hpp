@@ -9,7 +9,7 @@
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/state_space.hpp"
 
 namespace aos {
 

@@ -18,8 +18,8 @@
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/exact_root.hpp"
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/exact_root.hpp"
+#include "aos/planning/listed/state_space.hpp"
 
 namespace aos {
 

@@ -14,7 +14,7 @@
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/observation_numbers.hpp"
+#include "aos/planning/listed/observation_numbers.hpp"
 
 namespace aos {
 

@@ -14,7 +14,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/state_space.hpp"
+#include "aos/planning/listed/state_space.hpp"
 
 namespace aos {
 

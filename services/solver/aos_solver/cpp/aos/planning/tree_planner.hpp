@@ -10,10 +10,10 @@
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/action_values.hpp"
-#include "aos/planning/group_missions.hpp"
-#include "aos/planning/mdp_values.hpp"
 #include "aos/planning/planner.hpp"
-#include "aos/planning/state_values.hpp"
+#include "aos/planning/values/group_missions.hpp"
+#include "aos/planning/values/mdp_values.hpp"
+#include "aos/planning/values/state_values.hpp"
 
 namespace aos {
 

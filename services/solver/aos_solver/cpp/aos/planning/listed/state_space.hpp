@@ -1,0 +1,338 @@
+// The model as numbers: the states that can be reached, and all outcomes of each action in each of them.
+//
+// The planner owns one space and lends it. The documents' code enumerates each pair of a state and an action
+// once. Limits are in numbers and work, not in time, so that decisions repeat.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/base/mixed.hpp"
+#include "aos/base/progress.hpp"
+#include "aos/base/switches.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/listed/number_reports.hpp"
+#include "aos/planning/listed/observation_numbers.hpp"
+#include "aos/planning/listed/state_numbers.hpp"
+#include "point_based/flat_model.hpp"
+
+namespace aos {
+
+struct SpaceLimits {
+  std::size_t states = 400'000;
+  std::size_t bytes = std::size_t{100} << 20;  // of states
+  std::size_t outcomes = 12'000'000;
+  std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds
+};
+// Of later tries, which hold up a mission: together with what planners prepare then they take 0.1 to 0.3 seconds.
+inline constexpr SpaceLimits later_limits{.states = 16'000, .outcomes = 500'000, .work = 1'500'000};
+
+inline constexpr std::uint32_t states_between_looks = 256;  // at the progress
+
+using point_based::Numbering;
+
+// Outcomes that end the mission are left out of the rows: ended states have no number and are worth nothing.
+template <class Model>
+class StateSpace {
+ public:
+  using State = typename Model::State;
+
+  explicit StateSpace(SpaceLimits limits = {}) : limits_(limits) {
+    rows_.actions = static_cast<std::size_t>(Model::action_count());
+    rows_.discount = Model::discount;
+    rows_.outcomes.first.push_back(0);
+    rows_.likelihoods.first.push_back(0);
+  }
+
+  // Lists what can be reached from a belief. Observations are left out if there are too many. Returns whether
+  // everything is listed; otherwise `obstacle` tells why not.
+  bool reach(const Belief<Model>& belief) {
+    if (!switches::lists) {
+      give_up("lists are switched off", belief);
+      return false;
+    }
+    if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
+    try {
+      add_states_of(belief);
+      while (!is_closed()) list_rows_before(numbers_.size());
+      return true;
+    } catch (const NotEnumerable& limit) {
+      if (draws_.meets_sensing() && !skips_sensing_) {
+        leave_out_observations(limit.reason);
+        return reach(belief);
+      }
+      give_up(limit.reason, belief);
+    } catch (const ModelFault& fault) {
+      give_up("model code fails in a state that can be reached: " + fault.text, belief);
+    }
+    return false;
+  }
+
+  // Lists what `decisions` decisions can lead to from a belief. Throws NotEnumerable, or what model code throws.
+  void reach_within(const Belief<Model>& belief, int decisions) {
+    add_states_of(belief);
+    for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(numbers_.size());
+  }
+
+  // Lists from a belief alone what `decisions` decisions can lead to, or as many of them as the limits allow, which are
+  // `least` or more. The states behind the last of them have no outcomes and earn nothing. Returns how many decisions are
+  // listed. Throws NotEnumerable, or what model code throws.
+  int reach_near(const Belief<Model>& belief, int least, int decisions) {
+    for (;;) {
+      restart();
+      int listed = 0;
+      try {
+        add_states_of(belief);
+        for (; listed < decisions && !is_closed(); ++listed) list_rows_before(numbers_.size());
+        const bool is_whole = is_closed();
+        end_list();
+        return is_whole ? std::numeric_limits<int>::max() : listed;
+      } catch (const NotEnumerable&) {
+        if (listed < least || listed == decisions) throw;
+        decisions = listed;
+      }
+    }
+  }
+  void limit(SpaceLimits limits) { limits_ = limits; }
+
+  // Begins another mission: its tries come when those of the first one came.
+  void start_over() { given_up_with_ = first_given_up_with_; }
+
+  const std::string& obstacle() const { return obstacle_; }
+  // Code that keeps numbers of states compares numberings before it uses these again.
+  Numbering numbering() const { return {restarts_, size()}; }
+  std::size_t size() const { return numbers_.size(); }
+  std::size_t actions() const { return rows_.actions; }
+  State operator[](std::uint32_t number) const { return numbers_[number]; }
+  // The number of a state; `no_state` if it has ended or cannot be reached.
+  std::uint32_t find(const State& state) const {
+    return Model::ending(state) == Ending::running ? numbers_.find(state) : no_state;
+  }
+  // Whether every state has its rows.
+  bool is_closed() const { return listed_ == numbers_.size(); }
+  // Rewards and outcomes by state and action, without starts.
+  const point_based::FlatModel& rows() const { return rows_; }
+  const ObservationNumbers<Model>& observations() const { return observations_; }
+  // Whether the observations of the rows are those of the robot. In a model that reports numbers they are reports.
+  bool lists_observations() const { return !Model::reports_numbers() && !skips_sensing_; }
+  // Whether the rows have no observations, and why.
+  bool leaves_out_observations() const { return skips_sensing_; }
+  const std::string& observations_obstacle() const { return observations_obstacle_; }
+  // How far bounds of the value of `horizon` decisions have to be widened, since the belief is not quite the exact one and
+  // rows leave out improbable rounds of loops. No decision is taken to earn more than the largest expected reward. A
+  // drawn belief has no bound, so its bounds are those of its particles.
+  double slack(const Belief<Model>& belief, int horizon) const {
+    const double wrong = belief.is_drawn() ? 0 : belief.error_bound();
+    if (wrong <= 0 && most_left_out_ <= 0) return 0;
+    double largest = 0;
+    for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
+    double decisions = 0;
+    for (int left = 0; left < horizon; ++left) decisions = 1 + Model::discount * decisions;
+    return (2 * wrong + horizon * most_left_out_) * largest * decisions;
+  }
+  const NumberReports& reports() const { return reports_; }
+  bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
+
+  // The running part of a belief, by ascending numbers. The weights are not normalised.
+  std::vector<std::pair<std::uint32_t, double>> weights_of(const Belief<Model>& belief) const {
+    std::vector<std::pair<std::uint32_t, double>> weights;
+    for (const auto& [state, weight] : belief.particles()) {
+      if (Model::ending(state) == Ending::running) weights.emplace_back(numbers_.find(state), weight);
+    }
+    std::sort(weights.begin(), weights.end());
+    std::size_t kept = 0;
+    for (const auto& [number, weight] : weights) {
+      if (kept > 0 && weights[kept - 1].first == number) {
+        weights[kept - 1].second += weight;
+      } else {
+        weights[kept++] = {number, weight};
+      }
+    }
+    weights.resize(kept);
+    return weights;
+  }
+
+ private:
+  using SensingKey = std::vector<std::uint64_t>;  // of observations with their probabilities
+  // A path through an action after which the mission goes on.
+  struct Path {
+    std::uint32_t next;
+    std::uint32_t observation;
+    double probability;
+  };
+
+  void restart() {
+    blame::at(0);
+    const std::uint64_t restarts = restarts_ + 1;
+    const std::size_t first_given_up_with = first_given_up_with_;
+    *this = StateSpace{limits_};
+    restarts_ = restarts;
+    first_given_up_with_ = first_given_up_with;
+  }
+  // A belief of half as many states may lead to few enough.
+  bool is_worth_another_try(const Belief<Model>& belief) const {
+    return 2 * belief.particles().size() <= given_up_with_;
+  }
+  void leave_out_observations(std::string why) {
+    restart();
+    skips_sensing_ = true;
+    observations_obstacle_ = std::move(why);
+    draws_.skip_sensing(true);
+  }
+  void give_up(std::string why, const Belief<Model>& belief) {
+    restart();
+    obstacle_ = std::move(why);
+    given_up_with_ = belief.particles().size();
+    if (first_given_up_with_ == 0) first_given_up_with_ = given_up_with_;
+    limits_.states = std::min(limits_.states, later_limits.states);
+    limits_.outcomes = std::min(limits_.outcomes, later_limits.outcomes);
+    limits_.work = std::min(limits_.work, later_limits.work);
+  }
+
+  // Adds the states of a belief. If a sampled belief has most of its states only once, there are more.
+  void add_states_of(const Belief<Model>& belief) {
+    obstacle_.clear();
+    work_ = 0;
+    const std::size_t before = numbers_.size();
+    for (const auto& [state, weight] : belief.particles()) {
+      note_ending(state);
+      if (Model::ending(state) == Ending::running) add(state);
+    }
+    if (belief.is_drawn() && before == 0 && 2 * numbers_.size() > belief.particles().size()) {
+      throw NotEnumerable{"nearly all states of the belief differ"};
+    }
+  }
+
+  std::uint32_t add(const State& state) {
+    const std::uint32_t number = numbers_.add(state);
+    if (numbers_.size() > limits_.states || numbers_.bytes() > limits_.bytes) {
+      throw NotEnumerable{"there are too many states to list"};
+    }
+    return number;
+  }
+  void note_ending(const State& state) { reached_[static_cast<std::size_t>(Model::ending(state))] = true; }
+
+  void list_rows_before(std::size_t end) {
+    if (reports_numbers_) draws_.report_to(&reports_);
+    for (; listed_ < end; ++listed_) {
+      if (listed_ % states_between_looks == 0) progress::tell("listing states", listed_, numbers_.size());
+      for (std::size_t action = 0; action < rows_.actions; ++action) add_row(listed_, static_cast<int>(action));
+    }
+    rows_.states = listed_;
+    rows_.observations = skips_sensing_ ? 1 : reports_numbers_ ? reports_.reports().size() : observations_.size();
+  }
+
+  void end_list() {
+    for (; listed_ < numbers_.size(); ++listed_) {
+      rows_.rewards.resize(rows_.rewards.size() + rows_.actions);
+      rows_.outcomes.first.resize(rows_.outcomes.first.size() + rows_.actions, rows_.outcomes.elements.size());
+    }
+    rows_.states = listed_;
+  }
+
+  void add_row(std::uint32_t number, int action) {
+    double reward = 0;
+    paths_.clear();
+    const auto run = [&](Enumerator& path) {
+      work_ += work_of_step(path, Model::state_bytes());
+      if (work_ > limits_.work) throw NotEnumerable{"there are too many outcomes to list"};
+      next_ = numbers_[number];
+      step_ = Model::step(next_, action, path);
+    };
+    const double left_out = draws_.for_nearly_each_path(run, [&](Enumerator& path) {
+      reward += path.probability() * step_.reward;
+      note_ending(next_);
+      if (Model::ending(next_) != Ending::running) return;
+      paths_.push_back({add(next_), observation_of(action, step_), path.probability()});
+    });
+    most_left_out_ = std::max(most_left_out_, left_out);
+    rows_.rewards.push_back(reward);
+    add_outcomes();
+    rows_.outcomes.first.push_back(rows_.outcomes.elements.size());
+    if (rows_.outcomes.elements.size() > limits_.outcomes || rows_.likelihoods.elements.size() > limits_.outcomes) {
+      throw NotEnumerable{"there are too many outcomes to list"};
+    }
+  }
+
+  std::uint32_t observation_of(int action, const Step& step) {
+    if (skips_sensing_) return 0;
+    const int skill = Model::skill_of(action);
+    const std::uint32_t number = observations_.add(skill, step.observation);
+    return reports_numbers_ ? reports_.add(skill, number) : number;
+  }
+
+  void add_outcomes() {
+    std::sort(paths_.begin(), paths_.end(), [](const Path& left, const Path& right) {
+      return std::tie(left.next, left.observation) < std::tie(right.next, right.observation);
+    });
+    for (std::size_t first = 0; first < paths_.size();) {
+      std::size_t last = first;
+      double probability = 0;
+      for (; last < paths_.size() && paths_[last].next == paths_[first].next; ++last) probability += paths_[last].probability;
+      rows_.outcomes.elements.push_back({paths_[first].next, sensing_of(first, last, probability), probability});
+      first = last;
+    }
+  }
+
+  // The sensing of paths with the same next state. Most sensings have been met before.
+  std::uint32_t sensing_of(std::size_t first, std::size_t last, double total) {
+    constexpr double unit = 0x1p51;  // differences below 1 / unit come from rounding
+    likelihoods_.clear();
+    key_.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      if (likelihoods_.empty() || likelihoods_.back().observation != paths_[i].observation) {
+        likelihoods_.push_back({paths_[i].observation, 0});
+      }
+      likelihoods_.back().probability += paths_[i].probability / total;
+    }
+    for (const auto& [observation, probability] : likelihoods_) {
+      key_.push_back(observation);
+      key_.push_back(static_cast<std::uint64_t>(std::llround(unit * probability)));
+    }
+    const auto [entry, is_new] = sensings_.try_emplace(key_, static_cast<std::uint32_t>(sensings_.size()));
+    if (is_new) {
+      rows_.likelihoods.elements.insert(rows_.likelihoods.elements.end(), likelihoods_.begin(), likelihoods_.end());
+      rows_.likelihoods.first.push_back(rows_.likelihoods.elements.size());
+    }
+    return entry->second;
+  }
+
+  SpaceLimits limits_;
+  StateNumbers<Model> numbers_;
+  ObservationNumbers<Model> observations_;
+  bool reports_numbers_ = Model::reports_numbers();
+  NumberReports reports_;
+  point_based::FlatModel rows_;
+  std::uint32_t listed_ = 0;  // how many states have their rows
+  std::uint64_t restarts_ = 0;
+  bool reached_[ending_count]{};
+  std::size_t work_ = 0;
+  double most_left_out_ = 0;  // of the probability of a row
+  bool skips_sensing_ = false;
+  std::string observations_obstacle_;
+  std::string obstacle_;
+  std::size_t given_up_with_ = 0;        // how many states the belief had
+  std::size_t first_given_up_with_ = 0;  // in the first try
+
+  Enumerator draws_;
+  State next_;  // to which the last run led
+  Step step_;
+  std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;
+  std::vector<Path> paths_;
+  std::vector<point_based::Likelihood> likelihoods_;
+  SensingKey key_;
+};
+
+}  // namespace aos

@@ -1,0 +1,105 @@
+// What a state is worth if it is seen: known options are followed, one after the other, up to the horizon. Where none of
+// them earns anything, a search looks for another one.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/option_library.hpp"
+#include "aos/planning/options/option_search.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionFollowing {
+ public:
+  using State = typename Model::State;
+
+  explicit OptionFollowing(const OptionLibrary<Model>& library) : library_(library) {}
+
+  // Begins a decision: what searches have found since the last one is forgotten.
+  void begin() { found_.clear(); }
+
+  // What is returned within so many steps of a mission. It takes about `most_steps` of the model; `steps` is counted down.
+  double value(State state, std::size_t horizon, double most_steps, double& steps, Sampler& random) const {
+    double value = 0;
+    double discount = 1;
+    double left = most_steps;
+    while (Model::ending(state) == Ending::running && left > 0) {
+      Followed best = best_known(state, horizon, left, random);
+      if (best.option.empty()) best = best_searched(state, horizon, left, random);
+      if (best.option.empty()) break;
+      value += discount * best.earned;
+      discount *= std::pow(Model::discount, best.option.size());
+      horizon -= best.option.size();
+      state = std::move(best.after);
+    }
+    steps -= most_steps - left;
+    return value;
+  }
+
+ private:
+  static constexpr std::size_t tried_again = 3;  // options that earned most at the first try
+  static constexpr int tries = 4;                // of each of them
+  static constexpr std::size_t most_found = 64;
+
+  struct Followed {
+    Option option{};
+    double earned = 0;  // on average
+    State after{};      // of the last try
+  };
+
+  Followed best_known(const State& state, std::size_t horizon, double& left, Sampler& random) const {
+    first_.clear();
+    for (const std::vector<Option>* options : {&library_.options(), &std::as_const(found_)}) {
+      for (const Option& option : *options) {
+        if (option.size() > horizon) continue;
+        State next = state;
+        const double earned = taken_option<Model>(option, next, random).earned;
+        left -= static_cast<double>(option.size());
+        if (earned > 0) first_.emplace_back(income<Model>(earned, option.size()), &option);
+      }
+    }
+    const auto count = static_cast<std::ptrdiff_t>(std::min(tried_again, first_.size()));
+    std::partial_sort(first_.begin(), first_.begin() + count, first_.end(), [](const auto& one, const auto& other) { return one.first > other.first; });
+    Followed best;
+    double most = 0;
+    for (auto entry = first_.begin(); entry != first_.begin() + count; ++entry) {
+      Followed again = tried(*entry->second, state, left, random);
+      const double now = income<Model>(again.earned, again.option.size());
+      if (now <= most) continue;
+      most = now;
+      best = std::move(again);
+    }
+    return best;
+  }
+
+  Followed best_searched(const State& state, std::size_t horizon, double& left, Sampler& random) const {
+    OptionSearch<Model> search{library_.cells()};
+    const std::vector<Option> ways = search.from(state, left, random);
+    if (ways.empty() || ways.front().size() > horizon) return {};
+    if (found_.size() < most_found) found_.push_back(ways.front());
+    return tried(ways.front(), state, left, random);
+  }
+
+  static Followed tried(const Option& option, const State& state, double& left, Sampler& random) {
+    Followed followed{option, 0, state};
+    for (int i = 0; i < tries; ++i) {
+      followed.after = state;
+      followed.earned += taken_option<Model>(option, followed.after, random).earned / tries;
+    }
+    left -= tries * static_cast<double>(option.size());
+    return followed;
+  }
+
+  const OptionLibrary<Model>& library_;
+  mutable std::vector<std::pair<double, const Option*>> first_;
+  mutable std::vector<Option> found_;
+};
+
+}  // namespace aos

@@ -1,0 +1,196 @@
+// What options earn from each of some states, and what a robot earns that takes the best of them for given weights of the
+// states.
+//
+// Options whose changes do not touch each other follow one another, those with the highest income first. Where an option
+// may end the mission, what follows counts as far as the mission goes on, since its end is always known. Nothing else
+// that is observed on the way counts.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/own_changes.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/values/leaf_cells.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionGains {
+ public:
+  using State = typename Model::State;
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  // Takes each option from each state. What changes by itself touches nothing.
+  void measure(const std::vector<Option>& options, const std::vector<State>& states, const LeafCells<Model>& cells,
+               const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+    options_ = &options;
+    states_ = states.size();
+    earned_.assign(options.size() * states_, 0);
+    goes_on_.assign(options.size() * states_, 0);
+    changed_.assign(options.size(), std::vector<bool>(cells.size()));
+    ends_.assign(options.size(), false);
+    used_.assign(options.size(), false);
+    discounts_.clear();
+    before_.resize(cells.size());
+    after_.resize(cells.size());
+    for (std::size_t o = 0; o < options.size(); ++o) {
+      discounts_.push_back(std::pow(Model::discount, options[o].size()));
+      for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
+      steps -= tries * static_cast<double>(options[o].size() * states_);
+    }
+    for (auto& changed : changed_) {
+      for (std::size_t i = 0; i < cells.size(); ++i) changed[i] = changed[i] && !changes.is_worlds(i);
+    }
+    touches_.assign(options.size() * options.size(), false);
+    for (std::size_t o = 0; o < options.size(); ++o) {
+      for (std::size_t other = 0; other < options.size(); ++other) touches_[o * options.size() + other] = touch(o, other);
+    }
+  }
+
+  std::size_t size() const { return discounts_.size(); }
+  double discount(std::size_t option) const { return discounts_[option]; }
+  double earned(std::size_t option, const StateWeights& weights) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < states_; ++k) sum += weights[k] * earned_[option * states_ + k];
+    return sum;
+  }
+  // Whether the option was among the best ones of a call since the last measurement.
+  bool is_used(std::size_t option) const { return used_[option]; }
+
+  // What the best options earn. What cannot follow the option `before` is left out.
+  double best(const StateWeights& weights, std::size_t before = none) const {
+    support_.clear();
+    for (std::size_t k = 0; k < states_; ++k) {
+      if (weights[k] > negligible) support_.push_back({k, weights[k]});
+    }
+    return best_of_support(before);
+  }
+  // The same where the state is seen.
+  double best_in(std::size_t state, std::size_t before = none) const {
+    support_.assign(1, {state, 1.0});
+    return best_of_support(before);
+  }
+  // The weights of the states after an option, as far as the mission goes on.
+  StateWeights after(std::size_t option, StateWeights weights) const {
+    for (std::size_t k = 0; k < states_; ++k) weights[k] *= goes_on_[option * states_ + k];
+    return weights;
+  }
+
+ private:
+  static constexpr int tries = 2;     // of each option from each state
+  static constexpr int max_ends = 4;  // options one after the other that may end the mission
+  static constexpr double negligible = 1e-6;
+
+  struct Weighted {
+    std::size_t state;
+    double weight;
+  };
+  struct Candidate {
+    std::size_t option;
+    double income;
+    double earned;
+  };
+
+  void take(std::size_t option, std::size_t k, const State& start, const LeafCells<Model>& cells, Sampler& random) {
+    cells.write(start, before_.data());
+    for (int i = 0; i < tries; ++i) {
+      State state = start;
+      const OptionOutcome outcome = taken_option<Model>((*options_)[option], state, random);
+      earned_[option * states_ + k] += outcome.earned / tries;
+      goes_on_[option * states_ + k] += outcome.goes_on / tries;
+      if (outcome.goes_on == 0) ends_[option] = true;
+      cells.write(state, after_.data());
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (before_[i] != after_[i]) changed_[option][i] = true;
+      }
+    }
+  }
+
+  double best_of_support(std::size_t before) const {
+    candidates_.clear();
+    for (std::size_t o = 0; o < size(); ++o) {
+      if (before != none && cannot_follow(o, before)) continue;
+      const double earned = earned_by(o);
+      if (earned > 0) candidates_.push_back({o, income<Model>(earned, (*options_)[o].size()), earned});
+    }
+    std::ranges::stable_sort(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
+    double sum = 0;
+    double discount = 1;
+    chosen_.clear();
+    for (const Candidate& candidate : candidates_) {
+      if (ends_[candidate.option]) continue;
+      if (std::ranges::any_of(chosen_, [&](std::size_t o) { return touches(o, candidate.option); })) continue;
+      chosen_.push_back(candidate.option);
+      used_[candidate.option] = true;
+      sum += discount * candidate.earned;
+      discount *= discounts_[candidate.option];
+    }
+    return sum + discount * best_end();
+  }
+
+  // What is earned by options that may end the mission, one after the other while it goes on.
+  double best_end() const {
+    double sum = 0;
+    double discount = 1;
+    for (int i = 0; i < max_ends; ++i) {
+      std::size_t best = none;
+      double most = 0;
+      for (const Candidate& candidate : candidates_) {
+        if (!ends_[candidate.option]) continue;
+        const double earned = i == 0 ? candidate.earned : earned_by(candidate.option);
+        if (earned <= most) continue;
+        most = earned;
+        best = candidate.option;
+      }
+      if (best == none) break;
+      used_[best] = true;
+      sum += discount * most;
+      discount *= discounts_[best];
+      for (Weighted& weighted : support_) weighted.weight *= goes_on_[best * states_ + weighted.state];
+    }
+    return sum;
+  }
+
+  double earned_by(std::size_t option) const {
+    const double* const earned = &earned_[option * states_];
+    double sum = 0;
+    for (const auto& [state, weight] : support_) sum += weight * earned[state];
+    return sum;
+  }
+
+  bool touches(std::size_t option, std::size_t other) const { return touches_[option * size() + other]; }
+  bool touch(std::size_t option, std::size_t other) const {
+    for (std::size_t i = 0; i < changed_[option].size(); ++i) {
+      if (changed_[option][i] && changed_[other][i]) return true;
+    }
+    return option == other;
+  }
+  // An option that fails to end the mission leaves the others as they were.
+  bool cannot_follow(std::size_t option, std::size_t before) const {
+    return option == before || (!ends_[before] && touches(option, before));
+  }
+
+  const std::vector<Option>* options_ = nullptr;
+  std::size_t states_ = 0;
+  std::vector<double> earned_;   // [option * states + state]
+  std::vector<double> goes_on_;  // [option * states + state]
+  std::vector<double> discounts_;
+  std::vector<bool> ends_;
+  std::vector<std::vector<bool>> changed_;  // [option][variable]
+  std::vector<bool> touches_;               // [option * options + option]
+  std::vector<std::uint64_t> before_;
+  std::vector<std::uint64_t> after_;
+  mutable std::vector<bool> used_;
+  mutable std::vector<Weighted> support_;
+  mutable std::vector<Candidate> candidates_;
+  mutable std::vector<std::size_t> chosen_;
+};
+
+}  // namespace aos

@@ -1,0 +1,112 @@
+// The options that are known. They are found by searches from states of the belief, and kept from decision to decision.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/option_gains.hpp"
+#include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/values/leaf_cells.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionLibrary {
+ public:
+  using State = typename Model::State;
+
+  const std::vector<Option>& options() const { return options_; }
+  const LeafCells<Model>& cells() const { return cells_; }
+  // Whether the action alone is an option: it earns something at once in some state.
+  bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }
+
+  // Begins a mission.
+  void prepare(const Belief<Model>& belief, Sampler& random) {
+    options_.clear();
+    cells_.prepare(belief, random);
+  }
+
+  // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
+  // with an option. `steps` is counted down.
+  double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
+    OptionSearch<Model> search{cells_};
+    double found = 0;
+    std::vector<State> rests;
+    for (std::size_t k = 0; k < belief.size(); ++k) {
+      State state = belief.states()[k];
+      bool has_way = follow(state, steps, random);
+      if (!has_way && steps > 0 && add(search.from(state, steps, random))) has_way = follow(state, steps, random);
+      if (!has_way) continue;
+      found += belief.weights()[k];
+      if (Model::ending(state) == Ending::running) rests.push_back(state);
+    }
+    const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
+    for (std::size_t i = 0; i < rests.size(); i += stride) {
+      State& rest = rests[i];
+      while (steps > 0 && Model::ending(rest) == Ending::running && add(search.narrow(rest, steps, random))) {
+        if (!follow(rest, steps, random)) break;
+      }
+    }
+    return found;
+  }
+
+  // Drops what was never among the best since the gains were measured, where options are many.
+  void drop_unused(const OptionGains<Model>& gains) {
+    if (options_.size() <= many_options) return;
+    std::vector<Option> used;
+    for (std::size_t o = 0; o < gains.size(); ++o) {
+      if (gains.is_used(o)) used.push_back(std::move(options_[o]));
+    }
+    options_.clear();
+    add(used);
+  }
+
+ private:
+  static constexpr std::size_t max_options = 256;
+  static constexpr std::size_t many_options = 64;
+  static constexpr std::size_t searched_rests = 8;  // states where the known options end
+  static constexpr std::size_t longest = 40;        // options in a row
+
+  // Adds options, and what is left of each after its first actions. Returns whether there were any.
+  bool add(const std::vector<Option>& found) {
+    for (const Option& option : found) {
+      for (auto first = option.begin(); first != option.end() && options_.size() < max_options; ++first) {
+        Option rest(first, option.end());
+        if (std::ranges::find(options_, rest) == options_.end()) options_.push_back(std::move(rest));
+      }
+    }
+    return !found.empty();
+  }
+
+  // Takes options that earn something, the best first, until none is left. Returns whether there was one.
+  bool follow(State& state, double& steps, Sampler& random) const {
+    bool has_found = false;
+    for (std::size_t i = 0; i < longest && Model::ending(state) == Ending::running && steps > 0; ++i) {
+      const Option* best = nullptr;
+      double most = 0;
+      for (const Option& option : options_) {
+        State next = state;
+        const double earned = income<Model>(taken_option<Model>(option, next, random).earned, option.size());
+        steps -= static_cast<double>(option.size());
+        if (earned <= most) continue;
+        most = earned;
+        best = &option;
+      }
+      if (best == nullptr) break;
+      has_found = true;
+      taken_option<Model>(*best, state, random);
+    }
+    return has_found;
+  }
+
+  LeafCells<Model> cells_;
+  std::vector<Option> options_;
+};
+
+}  // namespace aos

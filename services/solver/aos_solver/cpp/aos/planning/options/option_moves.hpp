@@ -1,0 +1,104 @@
+// What can be observed elsewhere: moves, with what is observed on the way or where they lead.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/options/option_regret.hpp"
+#include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/option_tests.hpp"
+#include "aos/planning/options/option_values.hpp"
+#include "aos/planning/options/repeated_observation.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/options/step_reports.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionMoves {
+ public:
+  using State = typename Model::State;
+  static constexpr std::size_t few = 16;  // each is tried several times in a row
+
+  OptionMoves(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OptionTests<Model>& tests,
+              const OptionValues<Model>& values)
+      : belief_(belief), regret_(regret), tests_(tests), values_(values) {}
+
+  // Adds each of the moves, once or several times in a row, the latter while there are steps.
+  void add_to(std::vector<OptionCandidate>& candidates, const std::vector<int>& moves, double& steps, Sampler& random) {
+    for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats; repeats *= 2) {
+      for (const int move : moves) {
+        if (repeats == 1 || steps > 0) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
+      }
+    }
+  }
+
+  // Adds a move with what can best be observed after it, and not before.
+  void add_view(std::vector<OptionCandidate>& candidates, int move, const BarredActions& barred, double& steps, Sampler& random) {
+    std::vector<State> now = belief_.states();
+    std::vector<StepReports> reports(now.size());
+    for (State& state : now) step_.take(state, move, reports.front(), steps, random);
+    int best = -1;
+    double most = OptionTests<Model>::least_information;
+    for (int action = 0; action < Model::action_count(); ++action) {
+      if (barred.contains(static_cast<std::size_t>(action)) || tests_.is_move(action)) continue;
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        State state = now[k];
+        step_.take(state, action, reports[k], steps, random);
+      }
+      steps -= OptionTests<Model>::steps_of_weighing(now.size());
+      const double told = information(belief_.weights(), reports, OptionRegret<Model>::observations, random);
+      const double gained = told - tests_.information_of(action);
+      if (gained <= most) continue;
+      most = gained;
+      best = action;
+    }
+    if (best >= 0) add_way(candidates, {move, best}, steps, random);
+  }
+
+ private:
+  // Adds actions in a row, where at least half of the missions go on after them.
+  void add_way(std::vector<OptionCandidate>& candidates, const Option& way, double& steps, Sampler& random) {
+    std::vector<State> now = belief_.states();
+    std::vector<std::vector<StepReports>> reports(way.size(), std::vector<StepReports>(now.size()));
+    const auto goes_on = [&](std::size_t k) { return Model::ending(now[k]) == Ending::running; };
+    double earned = 0;
+    double discount = 1;
+    for (std::size_t step = 0; step < way.size(); ++step, discount *= Model::discount) {
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        if (goes_on(k)) earned += discount * belief_.weights()[k] * step_.take(now[k], way[step], reports[step][k], steps, random);
+      }
+    }
+    double share = 0;
+    for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
+    if (share < 0.5) return;
+    const RepeatedObservation last{share < 1 - 1e-9 || !tell_nothing(reports) ? std::vector<StepReports>{} : reports.back()};
+    if (!last.is_listed(1)) steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
+    const double left = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
+      for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
+      if (weights[k] <= 0) return;
+      for (const auto& of_step : reports) observe(of_step, of_step[k].drawn(random), weights);
+    });
+    // What is at stake grows as the mission comes closer to what it can earn.
+    const double seen = share * (regret_.value_seen() + values_.gain_of(now, way.size(), steps, random));
+    const double stake = regret_.value_seen() > 0 ? std::max(seen / regret_.value_seen(), 0.0) : 1;
+    candidates.push_back({way.front(), earned + discount * (seen - stake * left), discount, "what can be observed elsewhere"});
+  }
+
+  // Whether nothing is observed on the way but at its last step.
+  static bool tell_nothing(const std::vector<std::vector<StepReports>>& reports) {
+    return std::all_of(reports.begin(), reports.end() - 1, [](const auto& of_step) { return RepeatedObservation{of_step}.tells_nothing(); });
+  }
+
+  const SampledBelief<Model>& belief_;
+  const OptionRegret<Model>& regret_;
+  const OptionTests<Model>& tests_;
+  const OptionValues<Model>& values_;
+  ReportedStep<Model> step_;
+};
+
+}  // namespace aos

@@ -1,0 +1,215 @@
+// Decides where the states cannot be listed: which option to take, or what to find out before.
+//
+// A few states of the belief stand for it. Options are ways to what can be earned from one of them (option_search.hpp).
+// What the best options earn by the weights of the states is what the robot earns if it observes nothing more. Where the
+// state is seen they earn more, and the difference is the regret of not knowing it. So an observation is worth the regret
+// that it takes away. The robot does what has the highest sum of what is earned on the way and what the seen states are worth
+// after it, less the regret that is left. It may
+//
+//   take an option;
+//   observe, once or several times in a row (blinkered value of information: Hay, Russell, Tolpin and Shimony, 2012);
+//   move, and observe on the way or where it leads.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/options/option_gains.hpp"
+#include "aos/planning/options/option_library.hpp"
+#include "aos/planning/options/option_moves.hpp"
+#include "aos/planning/options/option_regret.hpp"
+#include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/option_tests.hpp"
+#include "aos/planning/options/option_values.hpp"
+#include "aos/planning/options/own_changes.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/step_cost.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionPolicy {
+ public:
+  using State = typename Model::State;
+  static constexpr double of_options = 0.4;  // of the affordable steps: to find options and what they earn
+
+  // Draws states and finds options. Returns why this policy cannot decide; empty if it can.
+  std::string prepare(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
+    if (belief.probability_of(Ending::running) <= 0) return "the mission is over";
+    if (!obstacle_.empty()) return obstacle_;
+    const ForgottenTexts forgotten;
+    if (!is_prepared_) library_.prepare(belief, random);
+    affordable_ = affordable_steps(budget, horizon);
+    const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, 64);
+    belief_.draw(belief, static_cast<std::size_t>(states), random);
+    library_.drop_unused(gains_);
+    double left = of_options * affordable_;
+    changes_.measure(belief_.states(), library_.cells(), left, random);
+    if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
+    const double found = library_.extend(belief_, left, random);
+    gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, left, random);
+    steps_ = of_options * affordable_ - left;
+    std::string obstacle = found < enough_found ? "no way to a reward is found from most states" : "";
+    if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
+    is_prepared_ = is_prepared_ || obstacle.empty();
+    return obstacle;
+  }
+
+  // Decides for the belief of `prepare`. Returns the work as simulations.
+  std::uint64_t search(const Belief<Model>& belief, int horizon, Sampler& random, const BarredActions& barred) {
+    const ForgottenTexts forgotten;
+    candidates_.clear();
+    choose_moves(barred);
+    regret_.begin();
+    double left = affordable_ - steps_;
+    values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
+    const std::vector<std::size_t> likely = likely_options(barred);
+    if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
+    const double blind = regret_.value_seen() - regret_.now();
+    double gained = 0;
+    for (const OptionCandidate& candidate : candidates_) gained = std::max(gained, candidate.value - candidate.discount * blind);
+    for (const std::size_t option : likely) add_option(option, gained);
+    settle(belief.probability_of(Ending::running));
+    return 1 + static_cast<std::uint64_t>((affordable_ - left) / horizon);
+  }
+
+  const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  // Whether a way to a reward was found, in this mission, from any state.
+  bool knows_ways() const { return !library_.options().empty(); }
+  // Whether rewards come by themselves, so that a way to one tells nothing.
+  bool earns_anyway() const { return changes_.earns_anyway(); }
+  // What decided, for a plan's `why`.
+  const char* reason() const { return reason_; }
+
+  void start_over() {
+    is_prepared_ = false;
+    obstacle_.clear();
+    gains_ = {};
+  }
+
+ private:
+  static constexpr double least_steps = 100'000;
+  static constexpr double of_states = 0.05;
+  static constexpr double enough_found = 0.5;   // of the belief
+  static constexpr double matters = 1e-6;       // of the value, as a regret
+  static constexpr std::size_t tried_options = 8;
+
+  // How many steps of the model fit the budget.
+  double affordable_steps(Budget budget, int horizon) {
+    constexpr double operations_of_second = 1e9;
+    if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least_steps);
+    if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
+    return std::max(budget.seconds * operations_of_second / static_cast<double>(step_cost_), least_steps);
+  }
+
+  // What keeps the policy from deciding in this model.
+  std::string obstacle_of_model(Sampler& random) {
+    double left = 0;
+    tests_.observe_all({}, left, random);
+    steps_ -= left;
+    const bool only_changes = tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
+    return only_changes ? "nothing is observed but by what changes the state" : "";
+  }
+
+  // The moves that are tried. Where all are many, those that earn nothing at once are, if they are few; then they only serve
+  // to observe, and are tried with what can be observed after them.
+  void choose_moves(const BarredActions& barred) {
+    tried_moves_.clear();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      if (changes_.is_move(action) && !barred.contains(static_cast<std::size_t>(action))) tried_moves_.push_back(action);
+    }
+    are_for_views_ = tried_moves_.size() > OptionMoves<Model>::few;
+    if (are_for_views_) std::erase_if(tried_moves_, [this](int move) { return library_.earns_at_once(move); });
+    if (tried_moves_.size() > OptionMoves<Model>::few) tried_moves_.clear();
+  }
+
+  // The options with the highest income by the belief.
+  std::vector<std::size_t> likely_options(const BarredActions& barred) const {
+    std::vector<std::pair<double, std::size_t>> incomes;
+    for (std::size_t o = 0; o < gains_.size(); ++o) {
+      const Option& option = library_.options()[o];
+      if (barred.contains(static_cast<std::size_t>(option.front()))) continue;
+      incomes.emplace_back(income<Model>(gains_.earned(o, belief_.weights()), option.size()), o);
+    }
+    std::ranges::stable_sort(incomes, std::greater<>{}, [](const auto& entry) { return entry.first; });
+    std::vector<std::size_t> options;
+    for (std::size_t i = 0; i < std::min(tried_options, incomes.size()); ++i) options.push_back(incomes[i].second);
+    return options;
+  }
+
+  // What can be gained by observing now can be gained after the option, too, while the mission goes on. So of both comes first
+  // what brings more.
+  void add_option(std::size_t option, double gained) {
+    const StateWeights after = gains_.after(option, belief_.weights());
+    const double goes_on = std::accumulate(after.begin(), after.end(), 0.0);
+    const double later = gains_.best(after, option) + goes_on * gained;
+    const double value = gains_.earned(option, belief_.weights()) + gains_.discount(option) * later;
+    candidates_.push_back({library_.options()[option].front(), value, gains_.discount(option), "what can be earned"});
+  }
+
+  void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
+    tests_.observe_all(barred, left, random);
+    tests_.add_to(candidates_, left, random);
+    moves_.add_to(candidates_, tried_moves_, left, random);
+    for (const int move : tried_moves_) {
+      if (are_for_views_ && left > 0) moves_.add_view(candidates_, move, barred, left, random);
+    }
+    for (const std::size_t option : likely) {
+      if (left > 0 && library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
+    }
+  }
+
+  // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
+  // they are seen. Half of that distance is what may be wrong about it.
+  void settle(double running) {
+    estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
+    const OptionCandidate* best = nullptr;
+    for (const OptionCandidate& candidate : candidates_) {
+      if (best == nullptr || candidate.value > best->value) best = &candidate;
+    }
+    const double open = best != nullptr ? std::max(regret_.value_seen() - best->value, 0.0) / 2 : 0;
+    const double beyond = values_.beyond([this](std::size_t k) { return regret_.value_seen(k); });
+    const double error = std::hypot(open, beyond / 2, regret_.error());
+    for (const OptionCandidate& candidate : candidates_) {
+      ActionEstimate& estimate = estimates_[static_cast<std::size_t>(candidate.action)];
+      const double value = running * (candidate.value + open + beyond);
+      if (estimate.n == 0 || value > estimate.q) estimate.q = value;
+      estimate.n = static_cast<std::uint32_t>(belief_.size());
+      estimate.standard_error = running * error;
+    }
+    reason_ = best != nullptr ? best->reason : "nothing";
+  }
+
+  bool is_prepared_ = false;
+  std::string obstacle_;
+  OptionLibrary<Model> library_;
+  OptionGains<Model> gains_;
+  double affordable_ = 0;  // steps of the model
+  double steps_ = 0;       // that `prepare` took
+  Operations step_cost_ = 0;  // 0: not known yet
+  // Of the last decision:
+  SampledBelief<Model> belief_;
+  OptionRegret<Model> regret_{belief_, gains_};
+  OwnChanges<Model> changes_;
+  OptionTests<Model> tests_{belief_, regret_, changes_};
+  OptionValues<Model> values_{library_};
+  OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
+  std::vector<int> tried_moves_;
+  bool are_for_views_ = false;
+  std::vector<OptionCandidate> candidates_;
+  std::vector<ActionEstimate> estimates_;
+  const char* reason_ = "";
+};
+
+}  // namespace aos

@@ -1,0 +1,94 @@
+// What is at stake in a belief of a few states: what the best options earn where each state is seen, and how much of it is
+// lost where it is not, which is the regret of not knowing it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/planning/options/option_gains.hpp"
+#include "aos/planning/options/repeated_observation.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+
+namespace aos {
+
+// An action, what it promises, and why.
+struct OptionCandidate {
+  int action;
+  double value;
+  double discount;  // of what comes after it
+  const char* reason;
+};
+
+template <class Model>
+class OptionRegret {
+ public:
+  static constexpr int observations = 16;  // drawn where not all are gone through
+
+  OptionRegret(const SampledBelief<Model>& belief, const OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
+
+  // Takes the belief and the gains as they are now.
+  void begin() {
+    seen_.clear();
+    for (std::size_t k = 0; k < belief_.size(); ++k) seen_.push_back(gains_.best_in(k));
+    value_seen_ = mean(belief_.weights());
+    regret_ = after(belief_.weights());
+  }
+  double value_seen(std::size_t state) const { return seen_[state]; }
+  double value_seen() const { return value_seen_; }
+  double now() const { return regret_; }
+  // The standard error of `value_seen`, since few states are drawn.
+  double error() const {
+    double squares = 0;
+    double concentration = 0;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      squares += belief_.weights()[k] * (seen_[k] - value_seen_) * (seen_[k] - value_seen_);
+      concentration += belief_.weights()[k] * belief_.weights()[k];
+    }
+    return std::sqrt(squares * concentration);
+  }
+  double after(const StateWeights& weights) const { return std::max(mean(weights) - gains_.best(weights), 0.0); }
+
+  // The mean regret after an observation that is made so many times. Where these are too many to list, `see(k, weights)`
+  // draws from state k what is observed. `steps` is counted down.
+  template <class See>
+  double after(const RepeatedObservation& observation, int times, double& steps, Sampler& random, See&& see) const {
+    double sum = 0;
+    if (observation.is_listed(times)) {
+      observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) {
+        sum += probability * after(weights);
+        steps -= steps_of_best();
+      });
+      return sum;
+    }
+    draw_states(belief_.weights(), observations, random, [&](std::size_t k) {
+      StateWeights weights = belief_.weights();
+      see(k, weights);
+      sum += after(weights);
+      steps -= steps_of_best();
+    });
+    return sum / observations;
+  }
+
+ private:
+  // How many steps of the model take as long as to find the best options.
+  double steps_of_best() const {
+    constexpr double of_gain = 0.02;
+    return of_gain * static_cast<double>(gains_.size() * belief_.size());
+  }
+  double mean(const StateWeights& weights) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * seen_[k];
+    return sum;
+  }
+
+  const SampledBelief<Model>& belief_;
+  const OptionGains<Model>& gains_;
+  std::vector<double> seen_;  // what the states are worth if they are seen
+  double value_seen_ = 0;
+  double regret_ = 0;
+};
+
+}  // namespace aos

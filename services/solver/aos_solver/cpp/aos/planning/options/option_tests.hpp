@@ -1,0 +1,125 @@
+// What can be observed where the robot is: actions that change nothing, and what they tell of the state.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/options/option_regret.hpp"
+#include "aos/planning/options/own_changes.hpp"
+#include "aos/planning/options/repeated_observation.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/options/step_reports.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionTests {
+ public:
+  using State = typename Model::State;
+  static constexpr double least_information = 1e-3;  // in nats
+  static constexpr int most_repeats = 8;
+
+  // How many steps of the model take as long as to weigh so many states by what is drawn from them.
+  static double steps_of_weighing(std::size_t states) {
+    constexpr double of_likelihood = 0.2;
+    return of_likelihood * OptionRegret<Model>::observations * static_cast<double>(states);
+  }
+
+  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes)
+      : belief_(belief), regret_(regret), changes_(changes) {}
+
+  // Takes each action once from each state, and notes what is observed. `steps` is counted down.
+  void observe_all(const BarredActions& barred, double& steps, Sampler& random) {
+    const auto actions = static_cast<std::size_t>(Model::action_count());
+    reports_.resize(actions);
+    informations_.assign(actions, 0);
+    tests_.clear();
+    moves_.clear();
+    for (std::size_t a = 0; a < actions; ++a) {
+      reports_[a].resize(belief_.size());
+      if (barred.contains(a)) continue;
+      if (changes_.is_move(static_cast<int>(a))) {
+        moves_.push_back(static_cast<int>(a));
+        continue;
+      }
+      const double reward = take(static_cast<int>(a), steps, random);
+      steps -= steps_of_weighing(belief_.size());
+      informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
+      if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
+    }
+    std::ranges::stable_sort(tests_, std::greater<>{}, &Test::information);
+  }
+
+  bool empty() const { return tests_.empty(); }
+  // The actions that change the state, those that are barred left out.
+  const std::vector<int>& moves() const { return moves_; }
+  bool is_move(int action) const { return changes_.is_move(action); }
+  double information_of(int action) const { return informations_[static_cast<std::size_t>(action)]; }
+
+  // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
+  void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) const {
+    const std::vector<Test> tests = most_telling();
+    for (int repeats = 1; repeats <= most_repeats; repeats *= 2) {
+      for (const Test& test : tests) {
+        if (repeats == 1 || steps > 0) add(candidates, test, repeats, steps, random);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t tried_tests = 8;  // of each skill
+
+  struct Test {
+    int action;
+    double reward;
+    double information;
+  };
+
+  std::vector<Test> most_telling() const {
+    std::vector<Test> tests;
+    std::vector<std::size_t> tried(static_cast<std::size_t>(Model::skill_count));
+    for (const Test& test : tests_) {
+      if (tried[static_cast<std::size_t>(Model::skill_of(test.action))]++ < tried_tests) tests.push_back(test);
+    }
+    return tests;
+  }
+
+  void add(std::vector<OptionCandidate>& candidates, const Test& test, int repeats, double& steps, Sampler& random) const {
+    const std::vector<StepReports>& reports = reports_[static_cast<std::size_t>(test.action)];
+    double paid = 0;
+    double discount = 1;
+    for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
+    const RepeatedObservation observation{reports};
+    if (!observation.is_listed(repeats)) steps -= repeats * steps_of_weighing(belief_.size());
+    const double left = regret_.after(observation, repeats, steps, random, [&](std::size_t k, StateWeights& weights) {
+      for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
+    });
+    candidates.push_back({test.action, paid + discount * (regret_.value_seen() - left), discount, "what can be observed"});
+  }
+
+  // Takes an action from all states. Returns the mean reward.
+  double take(int action, double& steps, Sampler& random) {
+    double reward = 0;
+    for (std::size_t k = 0; k < belief_.size(); ++k) {
+      State state = belief_.states()[k];
+      reward += belief_.weights()[k] * step_.take(state, action, reports_[static_cast<std::size_t>(action)][k], steps, random);
+    }
+    return reward;
+  }
+
+  const SampledBelief<Model>& belief_;
+  const OptionRegret<Model>& regret_;
+  const OwnChanges<Model>& changes_;
+  ReportedStep<Model> step_;
+  std::vector<std::vector<StepReports>> reports_;  // [action][state]
+  std::vector<double> informations_;               // by action
+  std::vector<Test> tests_;
+  std::vector<int> moves_;
+};
+
+}  // namespace aos

@@ -1,0 +1,105 @@
+// What a few states of a belief are worth if they are seen, and what is gained by actions that lead from them to others. The
+// options of a belief count once each; here the same may be earned again and again.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/option_following.hpp"
+#include "aos/planning/options/option_library.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionValues {
+ public:
+  using State = typename Model::State;
+
+  explicit OptionValues(const OptionLibrary<Model>& library) : following_(library) {}
+
+  // Values a few states of a belief. `gains` times the gain of actions will be asked for: the fewer, the more states, and the
+  // further they are followed. `steps` is counted down.
+  void begin(const SampledBelief<Model>& belief, int horizon, std::size_t gains, double& steps, Sampler& random) {
+    horizon_ = static_cast<std::size_t>(horizon);
+    valued_.clear();
+    following_.begin();
+    const double affordable = of_values * steps / static_cast<double>(1 + gains);
+    value_steps_ = std::clamp(affordable / fewest_valued, least_value_steps, most_value_steps);
+    const double before = steps;
+    // States at a distance first, so that those that are valued are spread over the belief.
+    const std::size_t stride = std::max<std::size_t>(belief.size() / most_valued, 1);
+    const std::size_t count = std::min(belief.size(), most_valued);
+    const std::size_t jump = coprime_jump(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i >= fewest_valued && (before - steps) * static_cast<double>(i + 1) / static_cast<double>(i) > affordable) break;
+      const std::size_t k = i * jump % count * stride;
+      valued_.push_back({k, belief.weights()[k], following_.value(belief.states()[k], horizon_, value_steps_, steps, random)});
+    }
+  }
+
+  // How much more the next states are worth than those before, after so many actions, less its standard error: of many gains
+  // that are as uncertain, the highest one is too high.
+  double gain_of(const std::vector<State>& next, std::size_t actions, double& steps, Sampler& random) const {
+    double gain = 0;
+    double weights = 0;
+    std::vector<std::pair<double, double>> gains;  // weight and gain
+    for (const auto& [k, weight, value] : valued_) {
+      if (Model::ending(next[k]) != Ending::running) continue;
+      const std::size_t left = horizon_ > actions ? horizon_ - actions : 0;
+      gains.emplace_back(weight, following_.value(next[k], left, value_steps_, steps, random) - value);
+      gain += weight * gains.back().second;
+      weights += weight;
+    }
+    if (!(weights > 0)) return 0;
+    gain /= weights;
+    double squares = 0;
+    for (const auto& [weight, of_state] : gains) squares += weight * weight * (of_state - gain) * (of_state - gain);
+    return gain - std::sqrt(squares) / weights;
+  }
+
+  // How much more states are worth than by the values that `seen` has of them.
+  template <class Seen>
+  double beyond(Seen&& seen) const {
+    double sum = 0;
+    double weights = 0;
+    for (const auto& [k, weight, value] : valued_) {
+      sum += weight * (value - seen(k));
+      weights += weight;
+    }
+    return weights > 0 ? sum / weights : 0;
+  }
+
+ private:
+  static constexpr std::size_t fewest_valued = 3;
+  static constexpr std::size_t most_valued = 16;
+  static constexpr double of_values = 0.6;             // of the steps
+  static constexpr double least_value_steps = 10'000;  // to follow options from a state
+  static constexpr double most_value_steps = 20'000;
+
+  struct Valued {
+    std::size_t state;
+    double weight;
+    double value;
+  };
+
+  // A step that goes through all numbers below a count, far apart from one to the next.
+  static std::size_t coprime_jump(std::size_t count) {
+    std::size_t jump = std::max<std::size_t>(count * 3 / 8, 1);
+    while (std::gcd(jump, count) != 1) ++jump;
+    return jump;
+  }
+
+  OptionFollowing<Model> following_;
+  std::size_t horizon_ = 1;
+  double value_steps_ = most_value_steps;
+  std::vector<Valued> valued_;
+};
+
+}  // namespace aos

@@ -1,0 +1,77 @@
+// Options as a planner: where states cannot be listed and ways to rewards are found (option_policy.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/options/option_policy.hpp"
+#include "aos/planning/planner.hpp"
+#include "aos/planning/pomcp/pomcp.hpp"
+
+namespace aos {
+
+template <class Model>
+class OptionsPlanner final : public Planner<Model> {
+ public:
+  using typename Planner<Model>::Estimates;
+
+  OptionsPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
+
+  const char* name() const override { return "options"; }
+
+  // POMCP has more to go by where the documents have a rollout policy, or values without observations can be computed.
+  bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
+    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
+    const bool is_asked = is_by_name || (!is_listed && switches::options && !Model::has_rollout_policy && !pomcp_.has_wide_values(belief, horizon));
+    has_looked_ = false;
+    if (!is_asked) return false;
+    if (put_off_ > 0) {
+      --put_off_;
+      choosing.why += "; no way to a reward was found a few decisions before";
+      return false;
+    }
+    has_looked_ = true;
+    const auto start = thread_time();
+    const std::string obstacle = policy_.prepare(belief, budget, horizon, Sampler{Sampler{random}.bits()});
+    choosing.searching += thread_time() - start;
+    if (!obstacle.empty()) choosing.why += "; " + obstacle;
+    // Where no way at all is known, the next look is put off, each time for longer.
+    vain_ = policy_.knows_ways() && !policy_.earns_anyway() ? 0 : std::min(vain_ + 1, most_vain);
+    put_off_ = (1 << vain_) - 1;
+    return obstacle.empty();
+  }
+
+  // Whether the last look has found no way that tells what to do, from any state.
+  bool finds_nothing() const { return vain_ > 0; }
+  // Whether the last decision has looked for ways.
+  bool has_looked() const { return has_looked_; }
+
+  std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
+    const std::uint64_t simulations = policy_.search(question.belief, question.horizon, random, question.barred);
+    why += "; ways to rewards are found by search, and " + std::string{policy_.reason()} + " decides";
+    return simulations;
+  }
+
+  Estimates estimates(const Belief<Model>& /*belief*/) const override { return policy_.estimates(); }
+  Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
+  void start_over() override {
+    policy_.start_over();
+    vain_ = put_off_ = 0;
+  }
+
+ private:
+  static constexpr int most_vain = 4;  // 15 decisions are put off then, as those of simple policies are
+
+  Pomcp<Model>& pomcp_;
+  OptionPolicy<Model> policy_;
+  int vain_ = 0;     // looks in a row that found no way
+  int put_off_ = 0;  // decisions without a look
+  bool has_looked_ = false;
+};
+
+}  // namespace aos

@@ -1,0 +1,98 @@
+// What actions change, apart from what the world changes by itself in the same step: doors that open, batteries that drain.
+//
+// All actions are taken from a state with the same random numbers. What most of them do alike is the world's doing: a model
+// need not say what changes by itself. An action changes a variable where its result is another one.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/values/leaf_cells.hpp"
+
+namespace aos {
+
+inline constexpr double most_actions = 0.75;  // do alike what the world does
+
+// The value that most of so many actions lead to, by `value_of` an action; without one the value before.
+template <class ValueOf>
+std::uint64_t value_in_common(ValueOf&& value_of, std::size_t actions, std::uint64_t before) {
+  // A value of more than half of the actions outlasts all others (majority vote: Boyer and Moore, 1991).
+  std::uint64_t candidate = before;
+  std::size_t votes = 0;
+  for (std::size_t a = 0; a < actions; ++a) {
+    if (votes == 0) candidate = value_of(a);
+    votes = value_of(a) == candidate ? votes + 1 : votes - 1;
+  }
+  std::size_t alike = 0;
+  for (std::size_t a = 0; a < actions; ++a) alike += value_of(a) == candidate ? 1 : 0;
+  return static_cast<double>(alike) >= most_actions * static_cast<double>(actions) ? candidate : before;
+}
+
+template <class Model>
+class OwnChanges {
+ public:
+  using State = typename Model::State;
+
+  // Takes each action once from each state. `steps` is counted down.
+  void measure(const std::vector<State>& states, const LeafCells<Model>& cells, double& steps, Sampler& random) {
+    const auto actions = static_cast<std::size_t>(Model::action_count());
+    moves_.assign(actions, false);
+    is_changed_.assign(cells.size(), false);
+    is_worlds_.assign(cells.size(), false);
+    start_.resize(cells.size());
+    after_.resize(actions * cells.size());
+    ends_.resize(actions);
+    double earning = 0;
+    for (const State& state : states) {
+      cells.write(state, start_.data());
+      const std::uint64_t seed = random.bits();
+      for (std::size_t a = 0; a < actions; ++a) {
+        State next = state;
+        Sampler same{seed};
+        earning += Model::step(next, static_cast<int>(a), same).reward > 0 ? 1 : 0;
+        cells.write(next, &after_[a * cells.size()]);
+        ends_[a] = Model::ending(next) != Ending::running ? 1 : 0;
+      }
+      compare(cells.size());
+    }
+    steps -= static_cast<double>(actions * states.size());
+    earns_anyway_ = earning >= most_actions * static_cast<double>(actions * states.size());
+  }
+
+  // Whether the action changes any of the states, or ends the mission.
+  bool is_move(int action) const { return moves_[static_cast<std::size_t>(action)]; }
+  // Whether the next step earns something whatever the robot does.
+  bool earns_anyway() const { return earns_anyway_; }
+  // Whether a variable changes by itself, and no action changes it.
+  bool is_worlds(std::size_t variable) const { return is_worlds_[variable] && !is_changed_[variable]; }
+
+ private:
+  void compare(std::size_t variables) {
+    for (std::size_t i = 0; i <= variables; ++i) {
+      const auto value = [&](std::size_t a) { return i < variables ? after_[a * variables + i] : ends_[a]; };
+      const std::uint64_t before = i < variables ? start_[i] : 0;
+      const std::uint64_t by_itself = value_in_common(value, moves_.size(), before);
+      if (i < variables && by_itself != before) is_worlds_[i] = true;
+      for (std::size_t a = 0; a < moves_.size(); ++a) {
+        if (value(a) == by_itself) continue;
+        moves_[a] = true;
+        if (i < variables) is_changed_[i] = true;
+      }
+    }
+  }
+
+  bool earns_anyway_ = false;
+  std::vector<bool> moves_;       // by action
+  std::vector<bool> is_changed_;  // by variable
+  std::vector<bool> is_worlds_;   // by variable
+  // Of the state at hand:
+  std::vector<std::uint64_t> start_;
+  std::vector<std::uint64_t> after_;  // [action * variables + variable]
+  std::vector<std::uint64_t> ends_;   // by action
+};
+
+}  // namespace aos

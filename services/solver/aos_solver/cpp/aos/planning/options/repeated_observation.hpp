@@ -1,0 +1,77 @@
+// All that can be observed where the same is observed several times, if that is little.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/options/step_reports.hpp"
+
+namespace aos {
+
+class RepeatedObservation {
+ public:
+  // `reports` are by state.
+  explicit RepeatedObservation(const std::vector<StepReports>& reports) {
+    std::vector<Observation> responses;
+    for (const StepReports& report : reports) {
+      for (const auto& branch : report.branches()) {
+        has_numbers_ = has_numbers_ || !branch.numbers.empty();
+        if (std::ranges::find(responses, branch.response) == responses.end()) responses.push_back(branch.response);
+      }
+    }
+    if (has_numbers_ || responses.size() > most_responses) return;
+    for (const Observation response : responses) {
+      std::vector<double>& likelihoods = likelihoods_.emplace_back();
+      for (const StepReports& report : reports) likelihoods.push_back(report.likelihood({response, {}}));
+    }
+  }
+
+  // Whether all combinations of so many observations can be gone through.
+  bool is_listed(int times) const {
+    double combinations = 1;  // how often each response comes, in whatever order
+    for (std::size_t i = 1; i < likelihoods_.size(); ++i) combinations *= static_cast<double>(times + static_cast<int>(i)) / static_cast<double>(i);
+    return !likelihoods_.empty() && combinations <= most_combinations;
+  }
+  bool tells_nothing() const { return likelihoods_.size() == 1; }
+
+  // Calls `use(probability, weights)` with the weights after each combination.
+  template <class Use>
+  void for_each(const StateWeights& weights, int times, Use&& use) const {
+    follow(0, times, weights, use);
+  }
+
+ private:
+  static constexpr std::size_t most_responses = 8;
+  static constexpr double most_combinations = 64;
+
+  // `weights` have the probability of what was observed so far, in each of its orders.
+  template <class Use>
+  void follow(std::size_t response, int left, const StateWeights& weights, Use& use) const {
+    const bool is_last = response + 1 == likelihoods_.size();
+    StateWeights now = weights;
+    for (int count = 0; count <= left; ++count) {
+      if (count > 0) {
+        // The orders grow from (left over count - 1) to (left over count).
+        const double orders = static_cast<double>(left - count + 1) / count;
+        for (std::size_t k = 0; k < now.size(); ++k) now[k] *= orders * likelihoods_[response][k];
+      }
+      if (is_last && count < left) continue;
+      if (!is_last) {
+        follow(response + 1, left - count, now, use);
+        continue;
+      }
+      double sum = 0;
+      for (const double weight : now) sum += weight;
+      if (!(sum > 0)) continue;
+      for (double& weight : now) weight /= sum;
+      use(sum, now);
+    }
+  }
+
+  bool has_numbers_ = false;
+  std::vector<std::vector<double>> likelihoods_;  // [response][state]; empty if they are too many
+};
+
+}  // namespace aos

@@ -1,0 +1,89 @@
+// A few states of a belief that stand for it, with weights, and what observations make of the weights.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/belief/gathering.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/step_reports.hpp"
+
+namespace aos {
+
+using StateWeights = std::vector<double>;  // by state; they sum to 1
+
+// Calls `use` with the numbers of so many states, drawn at even distances in the weights.
+template <class Use>
+void draw_states(const StateWeights& weights, int count, Sampler& random, Use&& use) {
+  double place = random.uniform() / count;
+  double below = 0;
+  std::size_t k = 0;
+  for (int i = 0; i < count; ++i, place += 1.0 / count) {
+    while (k + 1 < weights.size() && below + weights[k] <= place) below += weights[k++];
+    use(k);
+  }
+}
+
+// Bayes' rule, given what a step from each state may report. Weights that an observation leaves nothing of stay.
+inline void observe(const std::vector<StepReports>& reports, const Seen& seen, StateWeights& weights) {
+  StateWeights after = weights;
+  double sum = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (after[k] > 0) after[k] *= reports[k].likelihood(seen);
+    sum += after[k];
+  }
+  if (!(sum > 0)) return;
+  for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = after[k] / sum;
+}
+
+// The mutual information of the state and what is observed, in nats, estimated from drawn observations.
+inline double information(const StateWeights& weights, const std::vector<StepReports>& reports, int draws, Sampler& random) {
+  double sum = 0;
+  draw_states(weights, draws, random, [&](std::size_t k) {
+    const Seen seen = reports[k].drawn(random);
+    double all = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] > 0) all += weights[i] * reports[i].likelihood(seen);
+    }
+    const double own = reports[k].likelihood(seen);
+    if (own > 0 && all > 0) sum += std::log(own / all);
+  });
+  return sum / draws;
+}
+
+template <class Model>
+class SampledBelief {
+ public:
+  using State = typename Model::State;
+
+  // Draws at most `count` states of the running part, which is not empty. Equal ones are one.
+  void draw(const Belief<Model>& belief, std::size_t count, Sampler& random) {
+    Gathering<Model> gathering;
+    draw_evenly<Model>(belief.particles(), count, random, [&](const State& state) {
+      if (Model::ending(state) == Ending::running) gathering.add(state, 1);
+    });
+    for (auto next = belief.particles().begin(); gathering.size() == 0; ++next) {
+      if (Model::ending(next->state) == Ending::running) gathering.add(next->state, 1);
+    }
+    states_.clear();
+    weights_.clear();
+    for (const auto& [state, weight] : gathering.particles()) {
+      states_.push_back(state);
+      weights_.push_back(weight / gathering.total());
+    }
+  }
+
+  std::size_t size() const { return states_.size(); }
+  const std::vector<State>& states() const { return states_; }
+  const StateWeights& weights() const { return weights_; }
+
+ private:
+  std::vector<State> states_;
+  StateWeights weights_;
+};
+
+}  // namespace aos

@@ -1,0 +1,38 @@
+// The best action of a history, whose value is the value of the history.
+//
+// POMCP's paper backs up the mean of all simulations, which exploring ones pull down. Here a history has the
+// value of its best action (Coulom, 2006). Only actions with enough visits for a reliable value count. The
+// decision at the root is made in the same way.
+#pragma once
+
+#include <cstdint>
+
+#include "aos/planning/pomcp/pomcp_constants.hpp"
+#include "aos/planning/pomcp/search_tree.hpp"
+
+namespace aos {
+
+// Whether an action has enough visits, beside the most visited one, for its value to be reliable.
+inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {
+  return static_cast<std::uint64_t>(n) * well_visited_share >= max_visits && n > 0;
+}
+
+// Makes action `a` the best one if its value is reliable, and higher or more reliable than that of the best so far.
+inline void take_better(HistoryNode& history, const ActionNode* actions, std::uint32_t a) {
+  const bool is_better = actions[a].q > actions[history.best].q || !is_well_visited(actions[history.best].n, history.max_visits);
+  if (is_better && is_well_visited(actions[a].n, history.max_visits)) history.best = a;
+}
+
+// Renews the best action after a visit of one of the history's `count` actions.
+inline void renew_best(HistoryNode& history, const ActionNode* actions, std::uint32_t count, std::uint32_t visited,
+                       bool has_fallen) {
+  const bool is_best = visited == history.best;
+  if ((is_best && has_fallen) || !is_well_visited(actions[history.best].n, history.max_visits)) {
+    history.best = visited;
+    for (std::uint32_t a = 0; a < count; ++a) take_better(history, actions, a);
+  } else if (!is_best) {
+    take_better(history, actions, visited);
+  }
+}
+
+}  // namespace aos

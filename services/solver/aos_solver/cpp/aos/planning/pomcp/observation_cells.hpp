@@ -1,0 +1,103 @@
+// Observed numbers in a search tree. No two simulations observe the same numbers, so a tree that branched on each of
+// them would look ahead by one decision only. Here the numbers after an action and a response fall into cells. Each
+// cell lies around one drawn observation, and a new observation belongs to the nearest cell, in units of the
+// distributions' spreads. The number of cells grows with the visits (progressive widening: Couetoux and others, 2011).
+//
+// Each state that reaches a cell could have given an observation in it. So the history of a cell has a proper belief:
+// that after the cell in place of the numbers. What a policy over cells earns can be earned by numbers, too.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <unordered_map>
+#include <vector>
+
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/pomcp/pomcp_constants.hpp"
+
+namespace aos {
+
+class ObservationCells {
+ public:
+  // Draws the numbers that a step reports.
+  class Drawn final : public NumberSink {
+   public:
+    explicit Drawn(Sampler& random) : random_(random) {}
+    void take(NumberKey key, const Distribution& distribution) override {
+      keys.push_back(key);
+      values.push_back(distribution.draw(random_));
+      spreads.push_back(distribution.spread());
+    }
+    void clear() {
+      keys.clear();
+      values.clear();
+      spreads.clear();
+    }
+
+    std::vector<NumberKey> keys;
+    std::vector<double> values;
+    std::vector<double> spreads;
+
+   private:
+    Sampler& random_;
+  };
+
+  void clear() {
+    places_.clear();
+    cells_ = 0;
+  }
+
+  // The observation that stands for a response and its numbers. `action` is the node of the action before.
+  Observation cell(std::uint32_t action, Observation response, const Drawn& drawn) {
+    if (drawn.keys.empty()) return response;
+    Place& place = places_[mixed(mixed(0, action), static_cast<std::uint64_t>(response))];
+    ++place.visits;
+    const Cell* nearest = nullptr;
+    double min_distance = std::numeric_limits<double>::infinity();
+    for (const Cell& cell : place.cells) {
+      const double distance = squared_distance(cell, drawn, min_distance);
+      if (distance >= min_distance) continue;
+      min_distance = distance;
+      nearest = &cell;
+    }
+    const double wanted = cells_of_one_visit * std::pow(static_cast<double>(place.visits), cell_widening);
+    const bool is_new = nearest == nullptr || (static_cast<double>(place.cells.size()) < wanted && cells_ < max_observation_cells);
+    if (!is_new) return nearest->name;
+    ++cells_;
+    const auto name = mixed(static_cast<std::uint64_t>(response), place.cells.size() + 1);
+    place.cells.push_back({static_cast<Observation>(name), drawn.keys, drawn.values});
+    return place.cells.back().name;
+  }
+
+ private:
+  struct Cell {
+    Observation name;
+    std::vector<NumberKey> keys;
+    std::vector<double> values;
+  };
+  struct Place {
+    std::uint64_t visits = 0;
+    std::vector<Cell> cells;
+  };
+
+  // Infinite if other numbers were reported. From `limit` on the distance is not exact.
+  static double squared_distance(const Cell& cell, const Drawn& drawn, double limit) {
+    if (cell.keys != drawn.keys) return std::numeric_limits<double>::infinity();
+    double sum = 0;
+    for (std::size_t i = 0; i < cell.values.size() && sum < limit; ++i) {
+      const double distance = (cell.values[i] - drawn.values[i]) / drawn.spreads[i];
+      sum += distance * distance;
+    }
+    return sum;
+  }
+
+  std::unordered_map<std::uint64_t, Place> places_;
+  std::size_t cells_ = 0;
+};
+
+}  // namespace aos

@@ -1,0 +1,129 @@
+// One search by several threads. Each thread has a tree of its own, and the values of the trees are merged by visits.
+//
+// POMCP's paper has one tree. Here each thread has a fixed share of a budget in simulations, so that a seed
+// gives the same result however the threads are scheduled.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/pomcp/pomcp_constants.hpp"
+#include "aos/planning/pomcp/tree_search.hpp"
+
+namespace aos {
+
+template <class Model>
+class SearchThreads {
+ public:
+  using Tree = TreeSearch<Model>;
+
+  // Makes one tree for each thread.
+  void prepare(int threads) {
+    simulations_.clear();
+    const auto count = static_cast<std::size_t>(threads);
+    if (trees_.size() == count) return;
+    trees_.clear();
+    for (std::size_t i = 0; i < count; ++i) trees_.push_back(std::make_unique<Tree>(max_search_bytes / count));
+  }
+  const std::vector<std::unique_ptr<Tree>>& trees() const { return trees_; }
+  // Of the last search, by thread.
+  const std::vector<std::uint64_t>& simulations() const { return simulations_; }
+
+  // How a budget in simulations is counted: by the work in the tree, with so many operations to a simulation, or by
+  // descents if there are none, since each of these has a rollout.
+  void count_by(Operations operations_of_simulation) { each_ = operations_of_simulation; }
+
+  // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or
+  // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch.
+  template <class StartState, class IsOver>
+  std::uint64_t simulate(StartState&& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
+                         int first, IsOver&& is_over) {
+    std::vector<Work> works(trees_.size());
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t i = 1; i < trees_.size(); ++i) {
+        const std::uint64_t seed = random.bits();
+        others.emplace_back([&, i, seed] {
+          blame::use_line(static_cast<int>(i));
+          Sampler own{seed};
+          works[i] = work(*trees_[i], start_state, share(budget, i), each_, start, own, first, is_over);
+        });
+      }
+      works[0] = work(*trees_[0], start_state, share(budget, 0), each_, start, random, first, is_over);
+    }
+    std::uint64_t simulations = 0;
+    simulations_.clear();
+    for (const Work& done : works) {
+      if (done.fault) {
+        blame::at(done.piece);
+        std::rethrow_exception(done.fault);
+      }
+      simulations += done.simulations;
+      simulations_.push_back(done.simulations);
+    }
+    return simulations;
+  }
+
+ private:
+  // The result of one thread, with a fault of model code and the piece that ran.
+  struct Work {
+    std::uint64_t simulations = 0;
+    std::exception_ptr fault;
+    std::uint32_t piece = 0;
+  };
+
+  static Budget share(Budget budget, std::size_t thread) {
+    const auto threads = static_cast<std::uint64_t>(budget.threads);
+    if (budget.simulations > 0) budget.simulations = budget.simulations / threads + (thread < budget.simulations % threads);
+    return budget;
+  }
+
+  template <class StartState, class IsOver>
+  static Work work(Tree& tree, const StartState& start_state, Budget budget, Operations each,
+                   PlanningClock::time_point start, Sampler& random, int first, IsOver&& is_over) {
+    constexpr std::uint64_t between_looks = 64;
+    constexpr Operations start_cost = 30;
+    Work done;
+    try {
+      const bool has_limit = budget.simulations > 0 || budget.seconds <= 0;
+      std::uint64_t descents = 0;
+      while (!has_limit || done.simulations < budget.simulations) {
+        if (descents % between_looks == 0) {
+          if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, descents, first))) break;
+        }
+        ++descents;
+        auto state = start_state(random);
+        if (!state.has_ended()) tree.simulate(state, first, random);
+        done.simulations = each == 0 ? descents : (tree.work() + descents * start_cost + each - 1) / each;
+      }
+    } catch (...) {
+      done.fault = std::current_exception();
+      done.piece = blame::piece();
+    }
+    blame::at(0);
+    return done;
+  }
+
+  static bool is_enough(const Tree& tree, double seconds, PlanningClock::time_point start, std::uint64_t simulations,
+                        int first) {
+    const double spent = std::chrono::duration<double>(PlanningClock::now() - start).count();
+    if (spent >= seconds) return true;
+    if (first >= 0 || spent < min_time_share * seconds) return false;
+    return tree.is_decided(static_cast<double>(simulations) * (seconds / spent - 1));
+  }
+
+  std::vector<std::unique_ptr<Tree>> trees_;
+  std::vector<std::uint64_t> simulations_;
+  Operations each_ = 0;
+};
+
+}  // namespace aos

@@ -1,0 +1,144 @@
+// What a state is worth to a robot that does not plan: one that rests, or one that acts at random. To rest is to take the one
+// action for ever that returns most so. The values are tables over few variables (cell_tables.hpp), fitted to simulated
+// returns. They are returns of a policy, so that fitting them is regression, and no best successor makes them too high.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "aos/base/mixed.hpp"
+#include "aos/base/progress.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/values/cell_tables.hpp"
+#include "aos/planning/values/random_walk.hpp"
+#include "aos/planning/values/state_cells.hpp"
+
+namespace aos {
+
+// The seeds of steps to come, under which ways of acting are compared: their draws at a step do not depend on those before.
+class StepLuck {
+ public:
+  explicit StepLuck(Sampler& random) : seed_(random.bits()) {}
+  Sampler of(std::size_t step) const { return Sampler{mixed(seed_, step)}; }
+
+ private:
+  std::uint64_t seed_;
+};
+
+// A policy that does not plan.
+enum class BasePolicy { rest, random };
+
+template <class Model>
+class RestValues {
+ public:
+  using State = typename Model::State;
+
+  // Learns from a belief whose running part is not empty. Returns whether values tell states apart. The work is limited in
+  // steps and not in time, so that decisions can be repeated.
+  bool learn(BasePolicy base, const Belief<Model>& belief, int horizon, Sampler& random) {
+    horizon_ = horizon;
+    find_action(belief, random);
+    const std::vector<State> examples = walked(belief, random);
+    if (examples.empty() || !cells_.find(examples)) return false;
+    std::vector<std::uint16_t> rows;
+    std::vector<double> targets;
+    for (const State& example : examples) {
+      if (targets.size() % examples_between_looks == 0) progress::tell("learning what states are worth", targets.size(), examples.size());
+      cells_.add_row(example, rows);
+      targets.push_back(base == BasePolicy::rest ? returned(action_, example, StepLuck{random}) : returned_at_random(example, random));
+    }
+    tables_ = CellTables{cells_.variables()};
+    for (int i = 0; i < sweeps; ++i) tables_.fit(rows, targets);
+    used_ = tables_.used_variables();
+    return !used_.empty();
+  }
+
+  // What an action returns that is taken for ever.
+  double returned(int action, const State& start, const StepLuck& luck) const {
+    return returned_by(start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
+      Sampler random = luck.of(step);
+      return Model::step(state, taken, random);
+    });
+  }
+  // The action of the rest.
+  int action() const { return action_; }
+  // What a state is worth; 0 where the mission is over.
+  double value(const State& state) const {
+    return Model::ending(state) == Ending::running ? tables_.value(cells_.row(state, used_)) : 0;
+  }
+
+ private:
+  static constexpr std::size_t max_steps = 600'000;  // of the model, for examples
+  static constexpr std::size_t fewest_examples = 200;
+  static constexpr std::size_t most_examples = 20'000;
+  static constexpr std::size_t examples_between_looks = 64;
+  static constexpr int sweeps = 30;
+  static constexpr int first_tries = 4;  // of each action, with other states; four times as many of each better quarter
+  static constexpr std::size_t kept_share = 4;
+
+  // Sequential halving: all actions are tried under the same luck, the better quarter of them four times as often, and so on.
+  void find_action(const Belief<Model>& belief, Sampler& random) {
+    std::vector<int> actions(static_cast<std::size_t>(Model::action_count()));
+    std::iota(actions.begin(), actions.end(), 0);
+    for (int tries = first_tries; actions.size() > 1; tries *= static_cast<int>(kept_share)) {
+      std::vector<double> sums(static_cast<std::size_t>(Model::action_count()), 0);
+      for (int i = 0; i < tries; ++i) {
+        const State& state = belief.sample(random);
+        if (Model::ending(state) != Ending::running) continue;
+        const StepLuck luck{random};
+        for (const int action : actions) sums[static_cast<std::size_t>(action)] += returned(action, state, luck);
+      }
+      std::ranges::stable_sort(actions, [&](int one, int other) { return sums[static_cast<std::size_t>(one)] > sums[static_cast<std::size_t>(other)]; });
+      actions.resize(std::max<std::size_t>(actions.size() / kept_share, 1));
+    }
+    action_ = actions.front();
+  }
+
+  // What a policy returns from a state, given its actions and the draws of its steps.
+  template <class Choice, class Luck>
+  double returned_by(State state, Choice&& choice, Luck&& luck) const {
+    double sum = 0;
+    double discount = 1;
+    for (int i = 0; i < horizon_ && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
+      const int action = choice(state);
+      sum += discount * luck(state, action, static_cast<std::size_t>(i)).reward;
+    }
+    return sum;
+  }
+  double returned_at_random(const State& start, Sampler& random) {
+    walk_.start();
+    return returned_by(start, [&](const State& state) { return walk_.next(state, random); },
+                       [&](State& state, int taken, std::size_t) { return Model::step(state, taken, random); });
+  }
+
+  // Takes a state from each random walk.
+  std::vector<State> walked(const Belief<Model>& belief, Sampler& random) {
+    const std::size_t wanted = std::clamp(max_steps / static_cast<std::size_t>(std::max(horizon_, 1)), fewest_examples, most_examples);
+    std::vector<State> examples;
+    for (std::size_t walks = 0; examples.size() < wanted && walks < 4 * wanted; ++walks) {
+      State state = belief.sample(random);
+      walk_.start();
+      for (int left = random.below(horizon_); left > 0 && Model::ending(state) == Ending::running; --left) {
+        Model::step(state, walk_.next(state, random), random);
+      }
+      if (Model::ending(state) == Ending::running) examples.push_back(std::move(state));
+    }
+    return examples;
+  }
+
+  int horizon_ = 1;
+  int action_ = 0;
+  StateCells<Model> cells_;
+  CellTables tables_;
+  std::vector<std::uint32_t> used_;
+  RandomWalk<Model> walk_;
+};
+
+}  // namespace aos

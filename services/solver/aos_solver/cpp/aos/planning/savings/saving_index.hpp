@@ -1,0 +1,154 @@
+// Ways that save something, and their index: what each saves from a state in each step, on average under other luck. What
+// is worth doing again and again counts by its income: a way that saves more and takes longer may save less in the end.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/savings/rest_values.hpp"
+#include "aos/planning/savings/saving_search.hpp"
+#include "aos/planning/values/leaf_cells.hpp"
+#include "aos/planning/values/state_values.hpp"
+
+namespace aos {
+
+template <class Model>
+class SavingIndex final : public StateValues<Model> {
+ public:
+  using State = typename Model::State;
+
+  // Learns what states are worth after a way, finds ways, and plays missions by their index that see the state. Returns
+  // what these return on average; minus infinity where that is not beyond doubt more than rests return.
+  double learn(BasePolicy base, const LeafCells<Model>& cells, const Belief<Model>& belief, int horizon, Sampler random) {
+    ways_.clear();
+    incomes_.clear();
+    decided_.clear();
+    if (!values_.learn(base, belief, horizon, random)) return -std::numeric_limits<double>::infinity();
+    constexpr double beyond_doubt = 2;  // standard errors
+    double sum = 0;
+    double more = 0;
+    double squares = 0;
+    double count = 0;
+    for (int mission = 0; mission < missions; ++mission) {
+      const State start = belief.sample(random);
+      if (Model::ending(start) != Ending::running) continue;
+      const double returned = played(start, mission < practised ? &cells : nullptr, horizon, random);
+      if (mission < practised) continue;
+      const double beyond = returned - values_.returned(values_.action(), start, StepLuck{random});
+      sum += returned;
+      more += beyond;
+      squares += beyond * beyond;
+      ++count;
+    }
+    const double error = std::sqrt(std::max(squares / count - more * more / (count * count), 0.0) / (count - 1));
+    return count > 1 && more / count > beyond_doubt * error ? sum / count : -std::numeric_limits<double>::infinity();
+  }
+
+  // Looks for ways from a state. `steps` is counted down.
+  void extend(const LeafCells<Model>& cells, const State& state, double& steps, Sampler& random) {
+    SavingSearch<Model> search{cells, values_};
+    for (const Option& way : search.from(state, steps, random)) {
+      for (auto first = way.begin(); first != way.end() && ways_.size() < most_ways; ++first) {
+        Option rest(first, way.end());
+        if (std::ranges::find(ways_, rest) == ways_.end()) ways_.push_back(std::move(rest));
+      }
+    }
+  }
+
+  // Values the ways from all states, by their weights.
+  void measure(const std::vector<State>& states, const StateWeights& weights, double& steps, Sampler& random) {
+    incomes_.assign(ways_.size(), 0);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const StepLuck luck{random};
+      const Rest<Model> rest{values_, states[k], SavingSearch<Model>::longest, luck};
+      steps -= steps_of_rest(SavingSearch<Model>::longest);
+      for (std::size_t i = 0; i < ways_.size(); ++i) {
+        incomes_[i] += weights[k] * income<Model>(saved(values_, rest, ways_[i], states[k], luck), ways_[i].size());
+        steps -= steps_of_way(ways_[i].size());
+      }
+    }
+  }
+
+  // Keeps the ways with the highest incomes that were measured, where they are many.
+  void drop_worst() {
+    if (ways_.size() <= kept_ways) return;
+    std::vector<std::size_t> order(ways_.size());
+    std::iota(order.begin(), order.end(), 0);
+    incomes_.resize(ways_.size(), 0);
+    std::ranges::stable_sort(order, std::greater<>{}, [&](std::size_t i) { return incomes_[i]; });
+    std::vector<Option> kept;
+    for (std::size_t i = 0; i < kept_ways; ++i) kept.push_back(std::move(ways_[order[i]]));
+    ways_ = std::move(kept);
+  }
+
+  // What a state is worth to a robot that does not plan, and what the best way with each action saves in a step.
+  double value(const State& state, int left) const override { return left > 0 ? values_.value(state) : 0; }
+  void advantages(const State& state, double* worths, Sampler& random) const override {
+    constexpr double none = -1e100;
+    std::fill_n(worths, Model::action_count(), none);
+    worths[values_.action()] = 0;
+    const StepLuck luck{random};
+    const Rest<Model> rest{values_, state, SavingSearch<Model>::longest, luck};
+    for (std::size_t i = 0; i < std::min(decided_.size(), followed); ++i) {
+      const Option& way = decided_[i].first;
+      double& worth = worths[way.front()];
+      worth = std::max(worth, income<Model>(saved(values_, rest, way, state, luck), way.size()));
+    }
+  }
+
+  const RestValues<Model>& values() const { return values_; }
+  const std::vector<Option>& ways() const { return ways_; }
+  double income_of(std::size_t way) const { return incomes_[way]; }
+
+ private:
+  static constexpr int missions = 20;   // that are played
+  static constexpr int practised = 4;  // of these, in which ways are looked for
+  static constexpr int between_looks = 6;  // steps of these
+  static constexpr std::size_t followed = 32;  // ways that have decided most often
+  static constexpr std::size_t most_ways = 128;
+  static constexpr std::size_t kept_ways = 64;
+
+  // The return of a mission that sees the state. With `cells` ways are looked for.
+  double played(State state, const LeafCells<Model>* cells, int horizon, Sampler& random) {
+    double sum = 0;
+    double discount = 1;
+    double steps = std::numeric_limits<double>::max();
+    for (int i = 0; i < horizon && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
+      if (cells != nullptr && i % between_looks == 0) extend(*cells, state, steps, random);
+      measure({state}, {1.0}, steps, random);
+      sum += discount * Model::step(state, best_action(), random).reward;
+    }
+    return sum;
+  }
+  int best_action() {
+    const auto best = std::ranges::max_element(incomes_);
+    if (best == incomes_.end() || *best <= 0) return values_.action();
+    const Option& way = ways_[static_cast<std::size_t>(best - incomes_.begin())];
+    note_decided(way);
+    return way.front();
+  }
+  void note_decided(const Option& way) {
+    auto entry = std::ranges::find(decided_, way, &std::pair<Option, int>::first);
+    if (entry == decided_.end()) entry = decided_.insert(entry, {way, 0});
+    ++entry->second;
+    for (; entry != decided_.begin() && (entry - 1)->second < entry->second; --entry) std::iter_swap(entry - 1, entry);
+  }
+
+  RestValues<Model> values_;
+  std::vector<Option> ways_;
+  std::vector<double> incomes_;  // by way, as they were measured
+  std::vector<std::pair<Option, int>> decided_;  // ways that decided in played missions, and how often, most often first
+};
+
+}  // namespace aos

@@ -1,0 +1,123 @@
+// What an action saves in each step if the best way is taken after it, given what is then observed.
+//
+// States that tell the same belong together, and so do all with rare observations, since a robot that went by so few
+// states would know what no robot can know. Half of the states of a group choose the way, and the others tell what it
+// saves, and the other way round: the best way for a few drawn states is too good for these.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/options/option_search.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/savings/rest_values.hpp"
+#include "aos/planning/savings/saving_search.hpp"
+
+namespace aos {
+
+template <class Model>
+class SavingLookahead {
+ public:
+  using State = typename Model::State;
+
+  SavingLookahead(const RestValues<Model>& values, const std::vector<Option>& ways) : values_(values), ways_(ways) {}
+
+  // How many steps of the model an action takes.
+  static double steps_of(const std::vector<Option>& ways, std::size_t states) {
+    double sum = steps_of_way(1);
+    for (const Option& way : ways) sum += steps_of_way(way.size());
+    return sum * static_cast<double>(states);
+  }
+
+  // Draws the luck of the states, under which all actions are compared.
+  void begin(const SampledBelief<Model>& belief, Sampler& random) {
+    belief_ = &belief;
+    lucks_.clear();
+    rests_.clear();
+    for (const State& state : belief.states()) {
+      lucks_.emplace_back(random);
+      rests_.emplace_back(values_, state, SavingSearch<Model>::longest + 1, lucks_.back());
+    }
+  }
+
+  // The income of an action, with what follows.
+  double income_of(int action) {
+    const std::size_t states = belief_->size();
+    told_.clear();
+    incomes_.resize(states * (ways_.size() + 1));
+    for (std::size_t k = 0; k < states; ++k) take(action, k);
+    std::ranges::stable_sort(told_, {}, &std::pair<Observation, std::size_t>::first);
+    double sum = 0;
+    rare_.clear();
+    for (auto start = told_.begin(); start != told_.end();) {
+      auto end = start;
+      while (end != told_.end() && end->first == start->first) ++end;
+      group_.clear();
+      for (auto entry = start; entry != end; ++entry) group_.push_back(entry->second);
+      if (group_.size() < smallest_group) rare_.insert(rare_.end(), group_.begin(), group_.end());
+      else sum += of_group(group_);
+      start = end;
+    }
+    return sum + of_group(rare_);
+  }
+
+ private:
+  static constexpr std::size_t smallest_group = 8;
+
+  // Takes the action, and then each way or nothing, from a state.
+  void take(int action, std::size_t k) {
+    State next = belief_->states()[k];
+    Sampler random = lucks_[k].of(0);
+    const Step step = Model::step(next, action, random);
+    told_.emplace_back(step.observation, k);
+    double* const incomes = &incomes_[k * (ways_.size() + 1)];
+    const bool goes_on = Model::ending(next) == Ending::running;
+    for (std::size_t i = 0; i <= ways_.size(); ++i) {
+      double earned = step.reward;
+      double discount = Model::discount;
+      State state = next;
+      const std::size_t length = i < ways_.size() ? ways_[i].size() : 0;
+      for (std::size_t t = 0; t < length && goes_on && Model::ending(state) == Ending::running; ++t, discount *= Model::discount) {
+        Sampler draws = lucks_[k].of(t + 1);
+        earned += discount * Model::step(state, ways_[i][t], draws).reward;
+      }
+      incomes[i] = income<Model>(earned + discount * values_.value(state) - rests_[k].returned(length + 1), length + 1);
+    }
+  }
+
+  // The income of a group, times its weight.
+  double of_group(const std::vector<std::size_t>& group) {
+    double sum = 0;
+    for (std::size_t half = 0; half < 2 && !group.empty(); ++half) {
+      // One state alone knows nothing: it goes by itself.
+      const bool is_split = group.size() > 1;
+      best_.assign(ways_.size() + 1, 0);
+      for (std::size_t j = 0; j < group.size(); ++j) {
+        if (is_split && j % 2 != half) continue;
+        for (std::size_t i = 0; i < best_.size(); ++i) best_[i] += belief_->weights()[group[j]] * incomes_[group[j] * best_.size() + i];
+      }
+      const auto best = static_cast<std::size_t>(std::ranges::max_element(best_) - best_.begin());
+      for (std::size_t j = 0; j < group.size(); ++j) {
+        if (!is_split || j % 2 != half) sum += (is_split ? 1 : 0.5) * belief_->weights()[group[j]] * incomes_[group[j] * best_.size() + best];
+      }
+    }
+    return sum;
+  }
+
+  const RestValues<Model>& values_;
+  const std::vector<Option>& ways_;
+  const SampledBelief<Model>* belief_ = nullptr;
+  std::vector<StepLuck> lucks_;       // by state
+  std::vector<Rest<Model>> rests_;    // by state
+  std::vector<double> incomes_;       // [state * (ways + 1) + way], of the action at hand
+  std::vector<std::pair<Observation, std::size_t>> told_;
+  std::vector<std::size_t> group_;
+  std::vector<std::size_t> rare_;
+  std::vector<double> best_;
+};
+
+}  // namespace aos

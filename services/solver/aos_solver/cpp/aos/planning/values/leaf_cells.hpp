@@ -1,0 +1,103 @@
+// The variables that steps change, as cells: a real number falls into cells about as wide as its larger steps, and any
+// other value is a cell of its own. A search tells by them what is new.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/values.hpp"
+#include "aos/planning/values/random_walk.hpp"
+
+namespace aos {
+
+template <class Model>
+class LeafCells {
+ public:
+  using State = typename Model::State;
+
+  // Finds the variables by random walks from the belief.
+  void prepare(const Belief<Model>& belief, Sampler& random) {
+    find_leaves(belief.particles().front().state);
+    std::vector<std::vector<double>> changes(leaves_.size());
+    std::vector<bool> has_changed(leaves_.size());
+    for (int walk = 0; walk < walks; ++walk) {
+      State state = belief.sample(random);
+      walk_.start();
+      for (int step = 0; step < longest && Model::ending(state) == Ending::running; ++step) {
+        const State before = state;
+        Model::step(state, walk_.next(state, random), random);
+        for (std::size_t i = 0; i < leaves_.size(); ++i) {
+          if (bits(leaves_[i], state) == bits(leaves_[i], before)) continue;
+          has_changed[i] = true;
+          if (leaves_[i].is_real) changes[i].push_back(std::abs(number(leaves_[i], state) - number(leaves_[i], before)));
+        }
+      }
+    }
+    std::vector<Place> moving;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      if (!has_changed[i]) continue;
+      if (leaves_[i].is_real) leaves_[i].width = width_of(changes[i]);
+      moving.push_back(leaves_[i]);
+    }
+    leaves_ = std::move(moving);
+  }
+
+  std::size_t size() const { return leaves_.size(); }
+
+  // Writes the cells of a state.
+  void write(const State& state, std::uint64_t* cells) const {
+    for (const Place& leaf : leaves_) {
+      *cells++ = leaf.is_real ? static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(number(leaf, state) / leaf.width)))
+                              : bits(leaf, state);
+    }
+  }
+
+ private:
+  struct Place {
+    std::size_t offset;
+    std::size_t size;
+    bool is_real;
+    double width = 1;
+  };
+  static constexpr int walks = 100;
+  static constexpr int longest = 16;
+  static constexpr double larger = 0.9;     // of the changes are smaller than a larger one
+  static constexpr double of_larger = 0.5;  // the width of a cell
+
+  void find_leaves(const State& state) {
+    leaves_.clear();
+    NamedLeaves named{[&](const std::string&, const Leaf& leaf) {
+      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
+      if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
+      leaves_.push_back({static_cast<std::size_t>(offset), leaf.size, leaf.kind == Leaf::Kind::real});
+    }};
+    Model::visit_values(state, named);
+  }
+  static std::uint64_t bits(const Place& leaf, const State& state) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, Model::bytes_of(state) + leaf.offset, leaf.size);
+    return bits;
+  }
+  static double number(const Place& leaf, const State& state) {
+    const std::byte* const place = Model::bytes_of(state) + leaf.offset;
+    return leaf.size == sizeof(float) ? static_cast<double>(stored_at<float>(place)) : stored_at<double>(place);
+  }
+  static double width_of(std::vector<double>& changes) {
+    std::sort(changes.begin(), changes.end());
+    return std::max(of_larger * changes[static_cast<std::size_t>(larger * static_cast<double>(changes.size() - 1))], 1e-9);
+  }
+
+  std::vector<Place> leaves_;
+  RandomWalk<Model> walk_;
+};
+
+}  // namespace aos

@@ -1,0 +1,85 @@
+// Draws the values of a search towards a prior, unless the search shows that the prior is wrong: empirical
+// Bayes (Efron and Morris, 1973).
+//
+// With many actions and few simulations, the best of many noisy values is rarely the best action. The prior ranks
+// actions by values of states and has no noise. The error of the prior is estimated from the distances between values
+// and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/listed/state_space.hpp"
+#include "aos/planning/pomcp/pomcp_constants.hpp"
+#include "aos/planning/values/learned_values.hpp"
+#include "aos/planning/values/mdp_values.hpp"
+
+namespace aos {
+
+// Makes a prior: how much less each action is worth than the best one.
+inline std::vector<double> below_best(std::vector<double> worths) {
+  const double best = *std::max_element(worths.begin(), worths.end());
+  for (double& worth : worths) worth = best - worth;
+  return worths;
+}
+
+// The prior by learned values of the next states, on average over some states of the belief and with the same
+// luck for all actions (QMDP: Littman, Cassandra and Kaelbling, 1995).
+template <class Model>
+std::vector<double> learned_prior(const LearnedValues<Model>& values, const Belief<Model>& belief, int horizon,
+                                  Sampler& random) {
+  std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
+  const auto states = std::clamp<std::size_t>(max_prior_steps / worths.size(), 20, 500);
+  for (std::size_t i = 0; i < states; ++i) {
+    const typename Model::State& state = belief.sample(random);
+    const Sampler luck{random.bits()};
+    if (Model::ending(state) != Ending::running) continue;
+    for (int a = 0; a < Model::action_count(); ++a) {
+      worths[static_cast<std::size_t>(a)] += values.action_value(state, a, horizon, luck) / static_cast<double>(states);
+    }
+  }
+  return below_best(std::move(worths));
+}
+
+// The prior by the values of listed states.
+template <class Model>
+std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
+  std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
+  for (const auto& [number, weight] : space.weights_of(belief)) values.add_action_values(number, worths, weight);
+  return below_best(std::move(worths));
+}
+
+// Draws estimates towards a prior in their unit. `counts(estimate)` tells which actions were searched for
+// long enough; the others get the value of the prior.
+template <class Counts>
+void draw_towards(const std::vector<double>& prior, std::vector<ActionEstimate>& estimates, Counts&& counts) {
+  double sum = 0;
+  double count = 0;
+  for (std::size_t a = 0; a < prior.size(); ++a) {
+    if (!counts(estimates[a])) continue;
+    sum += estimates[a].q + prior[a];
+    ++count;
+  }
+  if (count == 0) return;
+  const double level = sum / count;  // the best action's value by the prior
+  double unexplained = 0;
+  for (std::size_t a = 0; a < prior.size(); ++a) {
+    const double distance = estimates[a].q - (level - prior[a]);
+    if (counts(estimates[a])) unexplained += distance * distance - estimates[a].standard_error * estimates[a].standard_error;
+  }
+  const double spread = std::max(unexplained / std::max(count - 1, 1.0), 0.0);  // variance of the prior's errors
+  for (std::size_t a = 0; a < prior.size(); ++a) {
+    const double error = estimates[a].standard_error * estimates[a].standard_error;
+    const double share = counts(estimates[a]) && spread > 0 ? spread / (spread + error) : 0;
+    estimates[a].q = share * estimates[a].q + (1 - share) * (level - prior[a]);
+  }
+}
+
+}  // namespace aos

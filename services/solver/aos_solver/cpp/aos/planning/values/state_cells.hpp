@@ -1,0 +1,57 @@
+// The variables that differ among examples of states, each as one of few cells: what tables of states are fitted over.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aos/model/reflection.hpp"
+#include "aos/model/values.hpp"
+#include "aos/planning/values/cell_tables.hpp"
+
+namespace aos {
+
+template <class Model>
+class StateCells {
+ public:
+  using State = typename Model::State;
+
+  // Finds the variables that differ among the examples. Returns whether there are any.
+  bool find(const std::vector<State>& examples) {
+    variables_.clear();
+    std::vector<double> numbers;
+    const State& any = examples.front();
+    NamedLeaves leaves{[&](const std::string&, const Leaf& leaf) {
+      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(any);
+      if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
+      CellVariable variable{leaf, static_cast<std::size_t>(offset)};
+      numbers.clear();
+      for (const State& example : examples) numbers.push_back(variable.number(Model::bytes_of(example)));
+      if (variable.divide(numbers)) variables_.push_back(variable);
+    }};
+    Model::visit_values(any, leaves);
+    return !variables_.empty();
+  }
+  void forget() { variables_.clear(); }
+
+  std::size_t size() const { return variables_.size(); }
+  const std::vector<CellVariable>& variables() const { return variables_; }
+
+  // Adds the cells of a state to rows.
+  void add_row(const State& state, std::vector<std::uint16_t>& rows) const {
+    for (const CellVariable& variable : variables_) rows.push_back(variable.cell(Model::bytes_of(state)));
+  }
+  // The row of a state, with the cells of the `used` variables only. It lasts until the thread's next call.
+  CellTables::Row row(const State& state, const std::vector<std::uint32_t>& used) const {
+    thread_local std::vector<std::uint16_t> row;
+    row.resize(variables_.size());
+    for (const std::uint32_t variable : used) row[variable] = variables_[variable].cell(Model::bytes_of(state));
+    return row.data();
+  }
+
+ private:
+  std::vector<CellVariable> variables_;
+};
+
+}  // namespace aos
