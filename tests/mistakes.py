@@ -24,7 +24,7 @@ __all__ = ["Mistake", "Verdict", "judged", "mistakes"]
 
 ROOT = Path(__file__).resolve().parents[1]
 MARK = "«"
-EXAMPLE = re.compile(r"^```(sdl|json) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+EXAMPLE = re.compile(r"^```sdl ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 class Mistake(msgspec.Struct, frozen=True):
@@ -83,10 +83,15 @@ def judged(mistake: Mistake) -> Verdict:
 
 
 def _bundle(name: str) -> dict[str, bytes]:
-    if name in ("sdl", "json"):
+    if name == "sdl":
         page = (ROOT / "docs/languages.md").read_text(encoding="utf-8")
-        return {file: body.encode() for kind, file, body in EXAMPLE.findall(page) if kind == name}
-    folders = (ROOT / "deploy/bundles" / name, ROOT / "tests/data/bundles" / name)
+        return {file: body.encode() for file, body in EXAMPLE.findall(page)}
+    example = "kettle-json" if name == "json" else name
+    folders = (
+        ROOT / "docs/examples" / example,
+        ROOT / "deploy/bundles" / name,
+        ROOT / "tests/data/bundles" / name,
+    )
     return read_bundle_files(next(folder for folder in folders if folder.is_dir()))[0]
 
 

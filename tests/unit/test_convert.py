@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
@@ -15,7 +14,6 @@ from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files, read_bundle_files
 from aos_protocol.documents import Project
 
-EXAMPLE = re.compile(r"^```(sdl|json) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CORPUS = [
     "armadillo-finer", "armadillo-rough", "paper-example-json", "paper-example-sdl", "sampling-rate",
     "sarsop-simple", "tic-tac-toe-json", "tic-tac-toe-sdl", "turtlebot-visit", "wildfire",
@@ -61,14 +59,12 @@ def test_a_shipped_bundle_says_the_same_in_both_dialects(bundles: Path, name: st
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
 def test_the_language_pages_examples_say_the_same_in_both_dialects(root: Path, dialect: str) -> None:
-    page = (root / "docs" / "languages.md").read_text(encoding="utf-8")
-    files = {name: body.encode() for kind, name, body in EXAMPLE.findall(page) if kind == dialect}
+    files, _ = read_bundle_files(root / "docs" / "examples" / f"kettle-{dialect}")
     says_the_same_in_both_dialects(files)
 
 
 def test_file_names_come_from_the_documents_not_from_the_files(root: Path) -> None:
-    page = (root / "docs" / "languages.md").read_text(encoding="utf-8")
-    files = {name: body.encode() for kind, name, body in EXAMPLE.findall(page) if kind == "json"}
+    files, _ = read_bundle_files(root / "docs" / "examples" / "kettle-json")
     sdl = converted(files, Dialect.SDL)
     assert sorted(sdl) == ["environment.ef", "environment.lf", "pour.am", "pour.sd"]
     names = [f"{name}.json" for name in sorted(sdl)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,13 +21,12 @@ from aos_language.reading.json_record import Record
 from aos_language.reading.json_text import JsonObject, parse_json
 from aos_language.reading.source import Source, open_source
 
-EXAMPLE = re.compile(r"^```json ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 DIALECTS = {"PlpMain": "plp", "GsdlMain": "gsdl"}
 
 
 def examples(root: Path) -> dict[str, Any]:
-    text = (root / "docs" / "languages.md").read_text(encoding="utf-8")
-    return {name: json.loads(body) for name, body in EXAMPLE.findall(text)}
+    folder = root / "docs" / "examples" / "kettle-json"
+    return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in folder.iterdir()}
 
 
 def complaints(schema: str, value: Any) -> list[str]:

@@ -132,6 +132,8 @@ class RosAdapter:
                     _log.error("%s is not served: %s", path, error)
                     continue
                 self._serving.add(path)
+                # More may have come meanwhile: who sees the path served finds in the log what still is not.
+                self._say_what_is_missing()
                 await self.host.serve(path)
             elif not is_there and path in self._serving:
                 self._serving.discard(path)
