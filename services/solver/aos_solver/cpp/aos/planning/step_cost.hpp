@@ -1,6 +1,7 @@
 // What a step by the documents' code costs beside a step by a list of outcomes, counted and not timed.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -71,5 +72,22 @@ Operations cost_of_step() {
   }
   return static_cast<Operations>(steps == 0 ? per_step : cost / steps);
 }
+
+// How many steps of the model a planner may take that counts its work by them.
+template <class Model>
+class AffordableSteps {
+ public:
+  double of(Budget budget, int horizon) {
+    constexpr double operations_of_second = 1e9;
+    if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least);
+    if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
+    return std::max(budget.seconds * operations_of_second / static_cast<double>(step_cost_), least);
+  }
+
+ private:
+  static constexpr double least = 100'000;
+
+  Operations step_cost_ = 0;  // 0: not known yet
+};
 
 }  // namespace aos

@@ -50,7 +50,7 @@ class OptionPolicy {
     if (!obstacle_.empty()) return obstacle_;
     const ForgottenTexts forgotten;
     if (!is_prepared_) library_.prepare(belief, random);
-    affordable_ = affordable_steps(budget, horizon);
+    affordable_ = affordable_steps_.of(budget, horizon);
     const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, 64);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
     library_.drop_unused(gains_);
@@ -99,19 +99,10 @@ class OptionPolicy {
   }
 
  private:
-  static constexpr double least_steps = 100'000;
   static constexpr double of_states = 0.05;
   static constexpr double enough_found = 0.5;   // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
-
-  // How many steps of the model fit the budget.
-  double affordable_steps(Budget budget, int horizon) {
-    constexpr double operations_of_second = 1e9;
-    if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least_steps);
-    if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
-    return std::max(budget.seconds * operations_of_second / static_cast<double>(step_cost_), least_steps);
-  }
 
   // What keeps the policy from deciding in this model.
   std::string obstacle_of_model(Sampler& random) {
@@ -197,7 +188,7 @@ class OptionPolicy {
   OptionGains<Model> gains_;
   double affordable_ = 0;  // steps of the model
   double steps_ = 0;       // that `prepare` took
-  Operations step_cost_ = 0;  // 0: not known yet
+  AffordableSteps<Model> affordable_steps_;
   // Of the last decision:
   SampledBelief<Model> belief_;
   OptionRegret<Model> regret_{belief_, gains_};

@@ -12,14 +12,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
-#include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
+#include "aos/planning/values/seen_cells.hpp"
 
 namespace aos {
 
@@ -169,25 +168,14 @@ class OptionSearch {
 
   void note_start(const State& state, int width) {
     cells_.write(state, cells_after_.data());
-    for (std::size_t i = 0; i < cells_.size(); ++i) note(i, width);
+    for (std::size_t i = 0; i < cells_.size(); ++i) seen_.note(cells_after_.data(), cells_.size(), i, width);
   }
   // Notes the values of a state. Returns whether it has any that no state before it had.
   bool is_new(const State& state, int width) {
     cells_.write(state, cells_after_.data());
     bool is_new = false;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (cells_after_[i] != cells_before_[i]) is_new = note(i, width) || is_new;
-    }
-    return is_new;
-  }
-  bool note(std::size_t leaf, int width) {
-    const std::uint64_t atom = mixed(mixed(0, leaf), cells_after_[leaf]);
-    if (width == 1) return seen_.insert(atom).second;
-    bool is_new = false;
-    for (std::size_t other = 0; other < cells_.size(); ++other) {
-      if (other == leaf) continue;
-      const std::uint64_t second = mixed(mixed(0, other), cells_after_[other]);
-      is_new = seen_.insert(mixed(std::min(atom, second), std::max(atom, second))).second || is_new;
+      if (cells_after_[i] != cells_before_[i]) is_new = seen_.note(cells_after_.data(), cells_.size(), i, width) || is_new;
     }
     return is_new;
   }
@@ -195,7 +183,7 @@ class OptionSearch {
   const LeafCells<Model>& cells_;
   std::vector<Node> nodes_;
   std::vector<Found> found_;
-  std::unordered_set<std::uint64_t> seen_;
+  SeenCells seen_;
   std::vector<std::uint64_t> cells_before_;
   std::vector<std::uint64_t> cells_after_;
 };

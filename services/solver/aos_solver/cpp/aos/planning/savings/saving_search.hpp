@@ -10,17 +10,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
-#include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/savings/rest_values.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
+#include "aos/planning/values/seen_cells.hpp"
 
 namespace aos {
 
@@ -115,7 +114,7 @@ class SavingSearch {
     cells_after_.resize(actions * cells_.size());
     after_.resize(actions, start);
     cells_.write(start, cells_before_.data());
-    for (std::size_t i = 0; i < cells_.size(); ++i) note(cells_before_.data(), i, width);
+    for (std::size_t i = 0; i < cells_.size(); ++i) seen_.note(cells_before_.data(), cells_.size(), i, width);
     for (std::uint32_t number = 0; number < nodes_.size() && limit > 0 && nodes_[number].depth < longest; ++number) {
       const std::uint32_t depth = nodes_[number].depth;
       const double discount = std::pow(Model::discount, depth);
@@ -174,18 +173,7 @@ class SavingSearch {
   bool is_new(std::size_t action, int width) {
     bool is_new = false;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (is_own_[action * cells_.size() + i]) is_new = note(&cells_after_[action * cells_.size()], i, width) || is_new;
-    }
-    return is_new;
-  }
-  bool note(const std::uint64_t* cells, std::size_t leaf, int width) {
-    const std::uint64_t atom = mixed(mixed(0, leaf), cells[leaf]);
-    if (width == 1) return seen_.insert(atom).second;
-    bool is_new = false;
-    for (std::size_t other = 0; other < cells_.size(); ++other) {
-      if (other == leaf) continue;
-      const std::uint64_t second = mixed(mixed(0, other), cells[other]);
-      is_new = seen_.insert(mixed(std::min(atom, second), std::max(atom, second))).second || is_new;
+      if (is_own_[action * cells_.size() + i]) is_new = seen_.note(&cells_after_[action * cells_.size()], cells_.size(), i, width) || is_new;
     }
     return is_new;
   }
@@ -194,7 +182,7 @@ class SavingSearch {
   const RestValues<Model>& values_;
   std::vector<Node> nodes_;
   std::vector<Found> found_;
-  std::unordered_set<std::uint64_t> seen_;
+  SeenCells seen_;
   // Of the node at hand, by action:
   std::vector<State> after_;
   std::vector<Worth> worths_;

@@ -39,7 +39,7 @@ class SavingsPlanner final : public Planner<Model> {
     const auto start = thread_time();
     // A look for options has taken its share of the budget.
     const double share = options_.has_looked() ? 1 - OptionPolicy<Model>::of_options : 1;
-    policy_.prepare(belief, share * affordable_steps(budget, horizon), barred, own);
+    policy_.prepare(belief, share * affordable_steps_.of(budget, horizon), barred, own);
     choosing.searching += thread_time() - start;
     return true;
   }
@@ -80,20 +80,10 @@ class SavingsPlanner final : public Planner<Model> {
   void start_over() override { policy_.start_over(); }
 
  private:
-  static constexpr double least_steps = 100'000;
-
-  // How many steps of the model fit the budget.
-  double affordable_steps(Budget budget, int horizon) {
-    constexpr double operations_of_second = 1e9;
-    if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least_steps);
-    if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
-    return std::max(budget.seconds * operations_of_second / static_cast<double>(step_cost_), least_steps);
-  }
-
   const OptionsPlanner<Model>& options_;
   GroupMissions<Model>& missions_;
   SavingPolicy<Model> policy_;
-  Operations step_cost_ = 0;  // 0: not known yet
+  AffordableSteps<Model> affordable_steps_;
 };
 
 }  // namespace aos
