@@ -101,6 +101,13 @@ async def test_an_adapter_that_ends_at_once_may_have_begun(
         await system.state_when(lambda state: "sense" in state.unavailable)
 
 
+async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_still_starts(system: System) -> None:
+    await system.adapter.announce_early("/sense", "slow")
+    await system.state_when(lambda state: "still starting" in state.unavailable["sense"])
+    await system.adapter.announce("/serve", "slow")
+    await system.state_when(lambda state: state.unavailable.keys().isdisjoint({"sense", "serve"}))
+
+
 async def test_a_token_without_anybody_who_answers_is_no_adapter(system: System) -> None:
     await system.adapter.announce("/sense")
     await system.state_when(lambda state: "sense" not in state.unavailable)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys, Serving
 from aos_runtime.bus import Bus
+from aos_runtime.subscription import merged
 
 __all__ = ["ServedPaths", "no_adapter"]
 
@@ -18,7 +19,12 @@ _log = logging.getLogger("aos.middleware")
 
 class ServedPaths:
     """The adapters that serve each path now; `follow` keeps them up to date, and `on_change` is called
-    after each change."""
+    after each change.
+
+    An adapter that has just been started announces one path after the other, and then that it is ready. A
+    decision between two of them would do without skills that are there a moment later, so that nobody decides
+    for any of them before.
+    """
 
     def __init__(self, bus: Bus, keys: Keys, on_change: Callable[[], None]) -> None:
         self._bus = bus
@@ -27,26 +33,31 @@ class ServedPaths:
         self._changed = asyncio.Event()
         self._servers: dict[str, list[Serving]] = {}
         self._announced: Counter[str] = Counter()
+        self._ready: set[str] = set()
         self._has_heard = asyncio.Event()
 
     async def follow(self) -> None:
         """Follows the tokens until the bus closes."""
-        async with self._bus.presence(self._keys.all_serve) as changes:
+        all_keys = (self._keys.all_serve, self._keys.all_live)
+        async with merged(*(self._bus.presence(keys) for keys in all_keys)) as changes:
             if not changes.has_items:
                 self._has_heard.set()
             async for key, is_alive in changes:
-                serving = self._keys.serving_of(key)
-                if serving is None:
-                    continue
-                servers = self._servers.setdefault(serving.path, [])
-                servers.append(serving) if is_alive else servers.remove(serving)
-                self._announced[serving.path] += is_alive
-                verb = "serves" if is_alive else "has left"
-                _log.info("%s %s %s", serving.adapter, verb, serving.path)
+                if serving := self._keys.serving_of(key):
+                    self._take_in(serving, is_alive)
+                else:
+                    service = self._keys.service_of(key)
+                    (self._ready.add if is_alive else self._ready.discard)(service)
                 self._changed.set()
                 if not changes.has_items:
                     self._has_heard.set()
                     self._on_change()
+
+    def _take_in(self, serving: Serving, is_alive: bool) -> None:
+        servers = self._servers.setdefault(serving.path, [])
+        servers.append(serving) if is_alive else servers.remove(serving)
+        self._announced[serving.path] += is_alive
+        _log.info("%s %s %s", serving.adapter, "serves" if is_alive else "has left", serving.path)
 
     async def until_heard(self) -> None:
         """Returns once everybody who was there before is known."""
@@ -73,6 +84,14 @@ class ServedPaths:
                 hint="End one of them, or bind it to another path",
             )
         return None
+
+    def why_unavailable(self, path: str) -> str:
+        """Returns why nobody should decide for a skill of this path now; empty where somebody may."""
+        if fault := self.fault(path):
+            return fault.message
+        (server,) = self.servers(path)
+        is_ready = server.adapter in self._ready
+        return "" if is_ready else f"{path} is served by {server.adapter}, which is still starting"
 
     async def has_left(self, path: str, within_s: float) -> bool:
         """Waits until nobody serves a path, at most for a short time; returns whether that is so."""

@@ -119,8 +119,8 @@ class _Middleware:
 
     def _state(self) -> MappingState:
         """The mappings that run, which of their skills nobody could run, and how often adapters came."""
-        faults = {skill: self._served.fault(path) for skill, path in self._mappings.paths.items()}
-        unavailable = {skill: fault.message for skill, fault in faults.items() if fault is not None}
+        why = {skill: self._served.why_unavailable(path) for skill, path in self._mappings.paths.items()}
+        unavailable = {skill: reason for skill, reason in why.items() if reason}
         announced = {skill: self._served.announced(path) for skill, path in self._mappings.paths.items()}
         self._stamp_ns = max(self._stamp_ns + 1, self._service.clock.now_ns())
         return msgspec.structs.replace(
