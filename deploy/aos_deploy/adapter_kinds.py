@@ -14,7 +14,7 @@ import msgspec
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import Extra, pip_install
 
-__all__ = ["COMMAND", "EXTERNAL", "MODEL", "Kind", "adapter_kinds", "check_installed"]
+__all__ = ["COMMAND", "EXTERNAL", "MODEL", "PYTHON", "Kind", "adapter_kinds", "check_installed"]
 
 
 class Kind(msgspec.Struct, frozen=True, kw_only=True):
@@ -41,6 +41,7 @@ class Kind(msgspec.Struct, frozen=True, kw_only=True):
 COMMAND = "command"
 EXTERNAL = "external"
 MODEL = "model"
+PYTHON = "python"
 
 _KINDS = {
     "pybullet": Kind(
@@ -58,7 +59,7 @@ _KINDS = {
         value="note",
         ready_s=600.0,  # It compiles the model.
     ),
-    "python": Kind(
+    PYTHON: Kind(
         adapter="aos_skills.python_functions:PythonAdapter",
         value="file",
         ready_s=1.0,

@@ -8,7 +8,7 @@ from typing import Any
 
 import msgspec
 
-from aos_deploy.adapter_kinds import COMMAND, EXTERNAL, MODEL, Kind, adapter_kinds
+from aos_deploy.adapter_kinds import COMMAND, EXTERNAL, MODEL, PYTHON, Kind, adapter_kinds
 from aos_deploy.remote import HOST
 from aos_deploy.typed import known_names, plain_value
 from aos_deploy.yaml_source import YamlMap, YamlNode, YamlScalar
@@ -67,12 +67,17 @@ class AdapterPlan(msgspec.Struct, frozen=True, kw_only=True):
 
 def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[AdapterPlan, ...]:
     """The adapters that something is bound to, in the order of the file. `world` is the simulated world's."""
-    named = _named(node.entries.get("adapters"), findings)
+    adapters = node.entries.get("adapters")
+    named = _named(adapters, findings)
+    # What is bound to an adapter with a mistake of its own is no mistake.
+    wrong = adapters.entries.keys() - named.keys() if isinstance(adapters, YamlMap) else set()
     bind = node.entries.get("bind")
     bound: dict[str, dict[str, Binding]] = {}
     others = ""
     for key, value in bind.entries.items() if isinstance(bind, YamlMap) else ():
         assert isinstance(bind, YamlMap)
+        if _adapter_word(value) in wrong:
+            continue
         found = _bound(key, value, named, bind.keys[key], findings)
         if found is None:
             continue
@@ -80,6 +85,7 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
         bound.setdefault(name, {})
         if key == EVERYTHING_ELSE:
             others = name
+            _check_others(name, value, named, findings)
         else:
             bound[name]["/" + key.strip("/")] = binding
     everywhere = [path for paths in bound.values() for path in paths]
@@ -212,6 +218,24 @@ def _bound(
         result=_expressions(node, "result", path, findings),
     )
     return words[0], binding
+
+
+def _adapter_word(node: YamlNode) -> object:
+    """The adapter that a value of `bind:` names; None where it names none, or several."""
+    if isinstance(node, YamlMap):
+        words = [word for word in node.entries if word not in _BINDING_KEYS]
+        return words[0] if len(words) == 1 else None
+    return node.value if isinstance(node, YamlScalar) else None
+
+
+def _check_others(name: str, node: YamlNode, named: Mapping[str, AdapterPlan], findings: Findings) -> None:
+    """Tells what `"*"` cannot say: which function serves a path, and what the adapter calls it."""
+    if (named[name].kind_name if name in named else name) == PYTHON:
+        message = f"bind.{EVERYTHING_ELSE} names {name}, whose paths are bound one by one to functions"
+        findings.error("AOS106", message, node.span, f"Write it as /pick: {{{name}: pick}}")
+    elif isinstance(node, YamlMap):
+        message = f"bind.{EVERYTHING_ELSE} says more than an adapter's name"
+        findings.error("AOS106", message, node.span, f'Write it as "{EVERYTHING_ELSE}": {name}')
 
 
 def _expressions(node: YamlMap, key: str, path: str, findings: Findings) -> dict[str, str] | None:

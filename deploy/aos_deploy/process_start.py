@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+import shlex
 import shutil
 from pathlib import Path
 
@@ -84,5 +85,7 @@ def check_command(name: str, command: tuple[str, ...], folder: Path) -> None:
     elif not path.is_file():
         raise DeployError(f"{name}: there is no program {program} in {folder}", code="AOS802", hint=_WHERE)
     elif not os.access(path, os.X_OK):
-        hint = f"Run chmod +x {path}, or name the interpreter first: [python, {program}]"
+        interpreter = "bash" if path.suffix == ".sh" else "python"
+        command_line = f"chmod +x {shlex.quote(str(path))}"
+        hint = f"Run {command_line}, or name the interpreter first: [{interpreter}, {program}]"
         raise DeployError(f"{name}: the program {path} may not be executed", code="AOS802", hint=hint)

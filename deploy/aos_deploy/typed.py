@@ -99,7 +99,12 @@ def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> An
         if any(type(value) is type(argument) and value == argument for argument in arguments):
             return value
         known = [str(argument) for argument in arguments]
-        message = f"{path} is {_shown(value)}, not {' or '.join(known)}"
+        is_quoted = isinstance(value, str) and value in known
+        said = f'the text "{value}"' if is_quoted else _shown(value)
+        message = f"{path} is {said}, not {' or '.join(known)}"
+        if is_quoted:
+            findings.error("AOS106", message, node.span, "Write it without quotes")
+            return UNSET
         findings.unknown(str(value), known, message, node.span, code="AOS106")
         return UNSET
     base = arguments[0] if origin is typing.Annotated else kind

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_language.cpp.keywords import CPP_KEYWORDS
 from aos_protocol.documents import Assignment, Environment, Parameter, SkillModel, Snippet
 
 __all__ = ["with_values_of_enums"]
@@ -26,6 +27,8 @@ def with_values_of_enums(model: SkillModel, environment: Environment | None) -> 
         not listed
         or any(parameter.type not in enums for parameter in listed)
         or any(parameter.type in compounds for parameter in others)
+        # An error already: C++ would only tell of it again, in code that nobody wrote.
+        or not CPP_KEYWORDS.isdisjoint({*(parameter.name for parameter in model.parameters), *enums})
     ):
         return model
     lines = [f"for ({_each(parameter, declared)})" for parameter in model.parameters]

@@ -118,6 +118,8 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
     except OSError as error:
         reason = error.strerror or "cannot be read"
         hint = "A bundle is a directory with .ef, .sd, .am, .lf or .json files, or an archive of one"
+        if path.suffix in (".pomdp", ".pomdpx"):
+            hint += f". Such a file is for `aos solve {path}`"
         return {}, [Diagnostic(Severity.ERROR, "AOS101", reason, Span(str(path)), hint)]
     total = 0
     for entry in entries:

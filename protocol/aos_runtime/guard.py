@@ -22,6 +22,7 @@ about 17 ms.
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import sys
@@ -137,7 +138,10 @@ def _become(
             become_confined(command, sandbox)
         os.execvp(command[0], command)
     except OSError as error:
-        _fail(f"cannot start {command[0]}: {error.strerror}")
+        reason = str(error.strerror)
+        if error.errno == errno.ENOEXEC:
+            reason += ". A script needs a first line that names its interpreter, as #!/bin/sh"
+        _fail(f"cannot start {command[0]}: {reason}")
 
 
 def _give_way(niceness: int) -> None:

@@ -122,6 +122,14 @@ def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixtur
     assert "pick -> timed_out (no answer within 9 s)" in capsys.readouterr().out
 
 
+def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    lost = Outcome(OUTCOME.id, "pick", "failed", fault=Fault("AOS510", "no\nmap \x1b[31m"))
+    PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
+    assert "pick -> failed (no map  [31m)" in capsys.readouterr().out
+
+
 def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.CaptureFixture[str]) -> None:
     view = PlainView()
     for remark in ("listing states: 1 of 2", "listing states: 2 of 3", "computing first bounds: 1 of 10"):

@@ -246,6 +246,14 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
             "adapters: {arm: {command: [./arm], folder: /opt}}",
             "4:12 AOS106 adapters.arm.folder is given without a host",
         ),
+        (
+            "adapters: {arm: {python: arm.py}}\nbind: {'*': arm}",
+            "5:13 AOS106 bind.* names arm, whose paths are bound one by one to functions. Write it as /pick:",
+        ),
+        (
+            "bind: {'*': {pybullet: /go, fields: {}}}",
+            '4:13 AOS106 bind.* says more than an adapter\'s name. Write it as "*": pybullet',
+        ),
         ("adapters: {solver: external}", "4:12 AOS126 'solver' is no name for an adapter"),
         ("adapters: {sim: {pybullet: a.yaml, wrld: b}}", "4:36 AOS102 unknown key adapters.sim.wrld"),
         ("bind: {/drive: command}", "1:1 AOS105 the adapter command has no command"),
@@ -269,6 +277,7 @@ def test_a_mistake_is_named_with_its_place(folder: Path, text: str, found: str) 
         ("- aos\n", "1:0 AOS104 not a mapping of keys to values"),
         ("aos: 1\nrobot: rover\n", "1:1 AOS105 the key bundles is missing"),
         (HEAD.replace("aos: 1", "aos: 2"), "1:6 AOS106 aos is 2, not 1"),
+        (HEAD.replace("1", '"1"'), '1:6 AOS106 aos is the text "1", not 1. Write it without quotes'),
         (HEAD.replace("rover", "my rover"), "2:8 AOS106 'my rover' is not a robot name. Use letters"),
         (HEAD.replace("[bundle]", "[]"), "3:10 AOS105 bundles names none. Name a bundle's folder"),
         (HEAD.replace("[bundle]", "[bundle, gone]"), "3:19 AOS101 there is no bundle folder"),
@@ -281,6 +290,11 @@ def test_what_a_file_must_have(folder: Path, text: str, found: str) -> None:
 def test_all_mistakes_are_found_in_one_run(folder: Path) -> None:
     text = f"{HEAD}leave_out: [lok]\nworld: gone.yaml\nsolver: {{sed: 1, seed: x}}\nmission: 3\n"
     assert [found.split()[0] for found in findings(folder, text)] == ["4:13", "5:8", "6:10", "6:24", "7:10"]
+
+
+def test_a_path_of_an_adapter_with_a_mistake_is_none_as_well(folder: Path) -> None:
+    text = f"{HEAD}adapters: {{arm: {{command: ./arm}}}}\nbind: {{'*': arm, /drive: {{arm: go}}}}\n"
+    assert [found.split(".command")[0] for found in findings(folder, text)] == ["4:12 AOS106 adapters.arm"]
 
 
 def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path) -> None:

@@ -118,7 +118,7 @@ def test_a_text_response_and_reported_numbers_come_from_the_result_too() -> None
     assert (found.response, found.local_variables["bearing"]) == ("told", "0.25")
 
 
-@pytest.mark.parametrize("name", ["response", "request", "from_", "parameters"])
+@pytest.mark.parametrize("name", ["response", "request", "from", "from_", "parameters"])
 def test_a_parameter_may_have_a_name_that_the_mapping_needs(name: str) -> None:
     mapping = running(LOOK.replace("side", name))
     assert fields(mapping, {name: "Left"}) == {name: "Left"}
@@ -171,7 +171,8 @@ def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path)
     shown = outline(project)
     assert "activation: skill /look(side=side)" in shown
     assert "derived: no abstraction mapping is written" in shown
-    files = {"barn.ef": ENVIRONMENT.encode(), "look.sd": LOOK.encode()}
+    environment = ENVIRONMENT.replace("action_parameter: Side left\ncode:\nstate.left = Left;\n", "")
+    files = {"barn.ef": environment.encode(), "look.sd": LOOK.encode()}
     texts, findings = convert(files, Dialect.JSON)
     assert (set(texts), findings) == ({"environment.ef.json", "look.sd.json"}, ())
     made = adapter_files("python", project, "barn")
@@ -184,3 +185,12 @@ def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path)
     assert response is not None
     assert response.is_declaration
     assert str(response.span) == "look.sd:5:27"
+
+
+def test_a_type_with_a_name_of_cpp_is_told_where_it_stands_and_not_in_code_that_nobody_wrote() -> None:
+    environment = ENVIRONMENT.replace("action_parameter: Side left\ncode:\nstate.left = Left;\n", "")
+    files = {"barn.ef": environment.replace("Side", "class").encode()}
+    files["look.sd"] = b"project: barn\nparameter: class side\n"
+    found = load_files(files).diagnostics
+    assert "AOS126" in {each.code for each in found}
+    assert "AOS108" not in {each.code for each in found}

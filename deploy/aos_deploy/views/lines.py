@@ -89,6 +89,17 @@ class JsonView:
 
 def lines_of(event: Event) -> list[str]:
     """An event as text for people."""
+    return [line if isinstance(event, Told | BundleReport) else _on_one_line(line) for line in _lines(event)]
+
+
+def _on_one_line(text: str) -> str:
+    """The text without line ends, and without letters that a terminal takes for commands: robots say both."""
+    if text.isprintable():
+        return text
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _lines(event: Event) -> list[str]:
     match event:
         case ServiceChanged():
             detail = f": {event.detail}" if event.detail else ""

@@ -105,10 +105,6 @@ def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
             hint = f"The first is at {first[variable.name].span}"
             findings.error("AOS126", f"a second local variable `{variable.name}`", variable.span, hint)
         first.setdefault(variable.name, variable)
-    for field in mapping.activation.fields:
-        if keyword.iskeyword(field.name):
-            message = f"the field `{field.name}` is a word of Python"
-            findings.error("AOS126", message, field.value.span, "Choose another name")
 
 
 # --- code ----------------------------------------------------------------------------------------------

@@ -66,7 +66,9 @@ def check_name(name: Text, what: str, findings: Findings) -> bool:
     What has such a name is read all the same: code that uses the name is not wrong as well.
     """
     if not _IDENTIFIER.fullmatch(name.text):
-        hint = "A name is at most 64 letters, digits and underscores, and does not start with a digit"
+        hint = (
+            "A name is at most 64 letters (A-Z, a-z), digits and underscores, and does not start with a digit"
+        )
     elif name.text in SPECIAL_NAMES or name.text == "__input" or COMPILER_NAMES.fullmatch(name.text):
         hint = "It means something else already; choose another name"
     else:

@@ -15,6 +15,7 @@ import importlib.util
 import inspect
 import sys
 import threading
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -26,6 +27,7 @@ from aos_runtime.adapters import Answer, Call, Host
 __all__ = ["PythonAdapter"]
 
 _END_S = 1.0
+_POSITIONAL = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
 
 
 class PythonAdapter:
@@ -128,15 +130,26 @@ class PythonAdapter:
         return module
 
     def _object(self, place: str, name: str, kind: Any) -> Any:
-        if (place, name) not in self._objects:
-            self._objects[place, name] = kind(self._host) if _takes_host(kind) else kind()
-        return self._objects[place, name]
+        if (place, name) in self._objects:
+            return self._objects[place, name]
+        try:
+            made = kind(self._host) if _takes_host(kind) else kind()
+        except Exception as error:
+            frame = traceback.extract_tb(error.__traceback__)[-1]
+            raise DeployError(
+                f"{name} of {place} cannot be made: {type(error).__name__}: {error}",
+                hint="It is made without arguments, or with the host alone"
+                if frame.filename == __file__
+                else f"It was raised at {Path(frame.filename).name}:{frame.lineno}",
+            ) from error
+        self._objects[place, name] = made
+        return made
 
     async def _run(self, function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
         self._task = asyncio.current_task()
         kind = type(function)
         if inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(kind.__call__):
-            answer = await function(call, **fields)
+            answer = await _awaited(function, call, fields)
         else:
             answer = await self._on_thread(function, call, fields)
         return {} if answer is None else answer
@@ -144,7 +157,7 @@ class PythonAdapter:
     async def _on_thread(self, function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
         ended: asyncio.Future[Any] = self._loop.create_future()
 
-        def settle(answer: Any, error: BaseException | None) -> None:
+        def settle(answer: Any, error: Exception | None) -> None:
             if ended.done():
                 return
             if error is None:
@@ -153,10 +166,12 @@ class PythonAdapter:
                 ended.set_exception(error)
 
         def work() -> None:
+            answer: Any = None
+            error: Exception | None = None
             try:
-                answer, error = function(call, **fields), None
+                answer = function(call, **fields)
             except BaseException as failure:
-                answer, error = None, failure
+                error = _failure(call, failure)
             self._loop.call_soon_threadsafe(settle, answer, error)
 
         threading.Thread(target=work, name=call.path, daemon=True).start()
@@ -198,10 +213,30 @@ def _from_file(path: Path) -> ModuleType:
 
 
 def _takes_host(kind: Any) -> bool:
+    """Returns whether a class is made with the host: its one argument has no default, or is called `host`."""
     try:
-        return len(inspect.signature(kind).parameters) == 1
+        parameters = list(inspect.signature(kind).parameters.values())
     except (TypeError, ValueError):
         return False
+    if len(parameters) != 1 or parameters[0].kind not in _POSITIONAL:
+        return False
+    return parameters[0].default is inspect.Parameter.empty or parameters[0].name == "host"
+
+
+async def _awaited(function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
+    """Runs an asynchronous function; what would end the event loop becomes a failure of the call."""
+    try:
+        return await function(call, **fields)
+    except (SystemExit, KeyboardInterrupt) as error:
+        raise _failure(call, error) from error
+
+
+def _failure(call: Call, error: BaseException) -> Exception:
+    """The exception of a call; one that no future can hold, or that would end the process, told in words."""
+    if isinstance(error, Exception) and not isinstance(error, StopIteration):
+        return error
+    text = f"{call.path} failed: {error!r}"
+    return SkillError(text, code="AOS510", hint="A function ends by an answer or an error of its own")
 
 
 def _takes_call(function: Callable[..., Any]) -> bool:
@@ -210,8 +245,7 @@ def _takes_call(function: Callable[..., Any]) -> bool:
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
         return True
-    kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    return any(parameter.kind in (*kinds, inspect.Parameter.VAR_POSITIONAL) for parameter in parameters)
+    return any(parameter.kind in (*_POSITIONAL, inspect.Parameter.VAR_POSITIONAL) for parameter in parameters)
 
 
 def _fitting(function: Callable[..., Any], call: Call) -> dict[str, Any]:
