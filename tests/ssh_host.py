@@ -19,7 +19,7 @@ from pathlib import Path
 
 from processes import HANG_S
 
-__all__ = ["refusing_ssh", "ssh_server", "stand_in"]
+__all__ = ["refusing_ssh", "slow_stand_in", "ssh_server", "stand_in"]
 
 
 # As sshd it ends the command's input when it is ended, and nothing else of it.
@@ -59,6 +59,24 @@ sys.exit(child.wait() % 256)
 def stand_in(folder: Path) -> str:
     """A folder for the PATH with an `ssh` that reaches `robot@arm`, which is this machine."""
     return _program(folder, STAND_IN.format(python=sys.executable))
+
+
+def slow_stand_in(folder: Path) -> str:
+    """A stand-in that tells its configuration only after the record of the run was written once more."""
+    slow = """
+import pathlib, time
+
+def written():
+    return {path.stat().st_ino for path in pathlib.Path("runs").glob("*/run.json")}
+
+if "-G" in sys.argv:
+    first = written()
+    while not first or written() == first:
+        first = first or written()
+        time.sleep(0.01)
+    sys.exit(1)
+"""
+    return _program(folder, STAND_IN.format(python=sys.executable).replace("\nwords = ", f"{slow}\nwords = "))
 
 
 def refusing_ssh(folder: Path, text: str) -> str:

@@ -193,7 +193,7 @@ class Supervisor:
         await asyncio.wait(self._watches, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
 
     async def _spawn(self, program: Program) -> None:
-        running = self._running[program.name] = RunningProgram(program)
+        running = RunningProgram(program)
         await self._launch(running)
         self._changed(program.name, "starting")
         self._watches.append(self._tasks.create_task(self._watch(running)))
@@ -207,6 +207,8 @@ class Supervisor:
         if program.name == ROUTER.name:
             self._passes.write_dictionary()  # The router before it, if there was one, has removed its own.
         running.child = await start_process(program, self._base, self._run, self._passes)
+        # Not before: another host may be asked first, and what has no process cannot be stopped or counted.
+        self._running[program.name] = running
         reach("up.start.after")
         if program.on_exit:
             running.seeking = self._beside(self._seek_ready(running, log_start))

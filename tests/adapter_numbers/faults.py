@@ -139,4 +139,3 @@ async def _serve_wrongly(bus: Bus, made: Harness, name: str) -> None:
         await other.answer(keys.call("/skill"), SkillCall, call)
     await bus.answer(keys.cancel("/skill"), Cancel, cancel)
     await bus.announce(keys.serve(Serving("wrong", "1", bus.instance, "/skill")))
-    await bus.announce(keys.live("wrong"))

@@ -116,12 +116,7 @@ class Adapter:
         await self.announce(path)
 
     async def announce(self, path: str, adapter: str = "scripted") -> None:
-        """Says that calls of the path are answered, by an adapter that is ready."""
-        await self._bus.announce(self._token(path, adapter))
-        await self._bus.announce(self._keys.live(adapter))
-
-    async def announce_early(self, path: str, adapter: str) -> None:
-        """Says that calls of the path are answered, by an adapter that still starts."""
+        """Says that calls of the path are answered."""
         await self._bus.announce(self._token(path, adapter))
 
     def withdraw(self, path: str, adapter: str = "scripted") -> None:

@@ -101,10 +101,15 @@ async def test_an_adapter_that_ends_at_once_may_have_begun(
         await system.state_when(lambda state: "sense" in state.unavailable)
 
 
-async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_still_starts(system: System) -> None:
-    await system.adapter.announce_early("/sense", "slow")
-    await system.state_when(lambda state: "still starting" in state.unavailable["sense"])
-    await system.adapter.announce("/serve", "slow")
+async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_is_started_again(system: System) -> None:
+    ready = system.keys.live("scripted")
+    await system.adapter.announce("/sense")
+    await system.bus.announce(ready)
+    await system.state_when(lambda state: "sense" not in state.unavailable)
+    system.bus.withdraw(ready)
+    await system.state_when(lambda state: "still starting" in state.unavailable.get("sense", ""))
+    await system.adapter.announce("/serve")
+    await system.bus.announce(ready)
     await system.state_when(lambda state: state.unavailable.keys().isdisjoint({"sense", "serve"}))
 
 

@@ -32,7 +32,6 @@ async def main():
     async with await Bus.open(sys.argv[1], sender="adapter") as bus:
         await bus.answer(Keys("test").call("/serve"), SkillCall, hang)
         await bus.announce(Keys("test").serve(Serving("doomed", "1", bus.instance, "/serve")))
-        await bus.announce(Keys("test").live("doomed"))
         print("serving", flush=True)
         await asyncio.Event().wait()
 

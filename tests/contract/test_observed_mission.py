@@ -199,7 +199,6 @@ async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path)
     await other.answer(keys.project, ProjectQuery, answer)
     await other.answer(keys.call("/count"), SkillCall, robot.run_skill)
     await other.announce(keys.serve(Serving("counter", "1", other.instance, "/count")))
-    await other.announce(keys.live("counter"))
     middleware = await start_middleware(bus, keys, endpoint, tmp_path)
     try:
         await robot.await_mappings()

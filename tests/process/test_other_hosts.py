@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from processes import COMMAND_S
-from ssh_host import refusing_ssh, ssh_server, stand_in
+from ssh_host import refusing_ssh, slow_stand_in, ssh_server, stand_in
 
 BIN = Path(sys.executable).parent
 
@@ -76,6 +76,11 @@ def test_a_program_on_another_host_runs_a_mission_and_nothing_of_it_stays(ssh: s
     assert status == 0, said
     assert "mission ended: the goal is reached" in said
     assert left_behind(tmp_path) == []
+
+
+def test_our_services_may_be_ready_before_it_is_known_how_to_dial_the_other_host(tmp_path: Path) -> None:
+    status, said = up(slow_stand_in(tmp_path), f"[{sys.executable}, fetch_robot.py]", tmp_path)
+    assert status == 0, said
 
 
 def test_a_program_that_ends_over_there_is_started_again(tmp_path: Path) -> None:

@@ -21,9 +21,9 @@ class ServedPaths:
     """The adapters that serve each path now; `follow` keeps them up to date, and `on_change` is called
     after each change.
 
-    An adapter that has just been started announces one path after the other, and then that it is ready. A
-    decision between two of them would do without skills that are there a moment later, so that nobody decides
-    for any of them before.
+    An adapter that is started again announces one path after the other, and then that it is ready. A decision
+    between two of them would do without skills that are there a moment later, so that nobody decides for any
+    of them before. Programs in other languages announce their paths alone.
     """
 
     def __init__(self, bus: Bus, keys: Keys, on_change: Callable[[], None]) -> None:
@@ -33,7 +33,7 @@ class ServedPaths:
         self._changed = asyncio.Event()
         self._servers: dict[str, list[Serving]] = {}
         self._announced: Counter[str] = Counter()
-        self._ready: set[str] = set()
+        self._is_ready: dict[str, bool] = {}
         self._has_heard = asyncio.Event()
 
     async def follow(self) -> None:
@@ -46,8 +46,7 @@ class ServedPaths:
                 if serving := self._keys.serving_of(key):
                     self._take_in(serving, is_alive)
                 else:
-                    service = self._keys.service_of(key)
-                    (self._ready.add if is_alive else self._ready.discard)(service)
+                    self._is_ready[self._keys.service_of(key)] = is_alive
                 self._changed.set()
                 if not changes.has_items:
                     self._has_heard.set()
@@ -90,7 +89,7 @@ class ServedPaths:
         if fault := self.fault(path):
             return fault.message
         (server,) = self.servers(path)
-        is_ready = server.adapter in self._ready
+        is_ready = self._is_ready.get(server.adapter, True)
         return "" if is_ready else f"{path} is served by {server.adapter}, which is still starting"
 
     async def has_left(self, path: str, within_s: float) -> bool:
