@@ -16,18 +16,28 @@ from aos_solver.mission.simulation import simulate_mission
 _SIMULATIONS = 4000
 
 
-async def test_plants_are_watered_and_the_tank_is_refilled(cache_dir: Path) -> None:
-    """Rests return -88, and a round trip by hand -20, over 120 steps."""
+async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missions_return(
+    cache_dir: Path,
+) -> None:
+    """Rests return -88, and a round trip by hand -20, over 120 steps.
+
+    The first decision tells a value within three errors of what missions return, or within 12.
+    """
     built = await built_text(greenhouse(5), cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other:
         plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
         assert plan.planner == "savings"
         assert (await other.plan(simulations=_SIMULATIONS, seed=1, planner="auto")).actions == plan.actions
-        search = Search(simulations=_SIMULATIONS, seed=1)
-        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
-    assert sum(action.startswith("water") for action in run.actions) >= 12
-    assert sum(action == "refill" for action in run.actions) >= 2
-    assert run.discounted_return > -40
+        limits = MissionLimits(goal_probability=1, step_limit=60)
+        searches = (Search(simulations=_SIMULATIONS, seed=seed) for seed in range(2))
+        runs = [await simulate_mission(engine, search, limits) for search in searches]
+    for run in runs:
+        assert sum(action.startswith("water") for action in run.actions) >= 12
+        assert sum(action == "refill" for action in run.actions) >= 2
+    told = plan.actions[plan.index]
+    mean = sum(run.discounted_return for run in runs) / len(runs)
+    assert mean > -45
+    assert abs(told.q - mean) < max(3 * told.stderr, 12)
 
 
 async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once(
@@ -47,17 +57,3 @@ async def test_an_action_that_is_barred_saves_nothing(cache_dir: Path) -> None:
         other = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto", within=within)
     assert other.planner == "savings"
     assert other.index != plan.index
-
-
-async def test_a_value_is_what_missions_return(cache_dir: Path) -> None:
-    """The first decision tells a value within three errors of what missions return, or within 12."""
-    returns = []
-    async with engine_of(await built_text(greenhouse(5), cache_dir)) as engine:
-        plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
-        for seed in range(2):
-            search = Search(simulations=_SIMULATIONS, seed=seed)
-            run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
-            returns.append(run.discounted_return)
-    told = plan.actions[plan.index]
-    mean = sum(returns) / len(returns)
-    assert abs(told.q - mean) < max(3 * told.stderr, 12)
