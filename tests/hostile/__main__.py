@@ -1,14 +1,21 @@
-"""Plays hostile documents in `aos lint`, in pushes and in missions, and tells which promises did not hold."""
+"""Plays hostile documents in `aos lint`, in pushes and in missions, and tells which promises did not hold.
+
+    python -m tests.hostile --times 50 --log attempts.tsv
+
+With a log the rounds that it has are not played again, so that an interrupted campaign goes on.
+"""
 
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
 import tempfile
-from collections import Counter
 from pathlib import Path
 
-from tests.hostile.attempt import TOLD_S, WAYS, Attempt, Playground, attempts
+from tests.hostile.attempt import TOLD_S, WAYS, Playground
+from tests.hostile.log import Log, summary, who_plays
+from tests.hostile.said import import_commands
 
 from aos_deploy.program import cache_dir
 from aos_runtime.parent import adopt_orphans
@@ -17,40 +24,37 @@ from aos_runtime.sandbox.support import sandbox_text
 
 def main() -> int:
     """Exit code 0 where every attempt was kept from what it reached for, and told."""
+    options = _options()
+    adopt_orphans()
+    import_commands()
+    log = Log(options.log, who_plays())
+    # Not a TemporaryDirectory: the first command that is forked from here would remove it at its exit.
+    folder = Path(tempfile.mkdtemp(prefix="aos-hostile-"))
+    try:
+        playground = Playground(folder, cache_dir(), fresh=options.fresh)
+        for number in range(1, options.times + 1):
+
+            def wanted(kind: str, name: str, way: str, number: int = number) -> bool:
+                is_asked = way in options.ways and options.only in f"{kind} {name}"
+                return is_asked and not log.has(number, kind, name, way)
+
+            for attempt in playground.round(number, wanted):
+                log.add(number, attempt)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    print(sandbox_text())
+    print(summary(log.lines, TOLD_S))
+    return int(any(line.faults for line in log.lines))
+
+
+def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tests.hostile", description=__doc__)
     parser.add_argument("--times", type=int, default=1, help="repetitions of each attempt")
     parser.add_argument("--ways", nargs="+", choices=WAYS, default=WAYS)
     parser.add_argument("--only", default="", help="attempts whose kind and name contain this")
-    options = parser.parse_args()
-    print(sandbox_text())
-    adopt_orphans()
-    played: list[Attempt] = []
-    with tempfile.TemporaryDirectory(prefix="aos-hostile-", ignore_cleanup_errors=True) as folder:
-        playground = Playground(Path(folder), cache_dir())
-        for _ in range(options.times):
-            for kind, name, way in attempts(tuple(options.ways)):
-                if options.only not in f"{kind} {name}":
-                    continue
-                attempt = playground.play(kind, name, way)
-                played.append(attempt)
-                told = "-" if attempt.told_s is None else f"{attempt.told_s:.1f} s"
-                print(f"{kind} that {name}, {way}: {told}  {'; '.join(attempt.faults)}", flush=True)
-    print(_summary(played))
-    return int(any(attempt.faults for attempt in played))
-
-
-def _summary(played: list[Attempt]) -> str:
-    """One line: how many of each kind, how many broke a promise, and the latest word."""
-    kinds = Counter(attempt.kind for attempt in played)
-    counted = ", ".join(f"{count} of {kind}s" for kind, count in kinds.items())
-    broken = sum(bool(attempt.faults) for attempt in played)
-    told_s = [attempt.told_s for attempt in played if attempt.told_s is not None]
-    early = sum(one_s <= TOLD_S for one_s in told_s)
-    last_s = max(told_s, default=0.0)
-    return (
-        f"{counted}: {broken} broke a promise; {early} of {len(told_s)} were told within {TOLD_S:g} s, "
-        f"the last after {last_s:.1f} s"
-    )
+    parser.add_argument("--log", type=Path, help="a file with a line for each attempt, to go on from")
+    parser.add_argument("--fresh", action="store_true", help="compile each attempt, start each command anew")
+    return parser.parse_args()
 
 
 if __name__ == "__main__":

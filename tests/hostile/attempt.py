@@ -1,53 +1,41 @@
-"""One attempt: documents with hostile code in a command or a mission, and what came of it."""
+"""Attempts: documents with hostile code in `aos lint`, in missions and in pushes, and what came of them.
+
+A round is every case in every way. A model or a compile attack has a command of its own, and a mission of its
+own, which it ends. Mappings are attacks in one mission, which goes on and runs one after the other, and are
+linted together: linting runs no mapping. One more mission receives every case as a push, in an order that is
+another one in each round.
+"""
 
 from __future__ import annotations
 
 import os
-import secrets
-import signal
-import subprocess
-import sys
-import threading
+import random
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from tests.hostile.cases import COMPILED, MAPPINGS, MODELS
+from tests.hostile.documents import DEPLOY_FILE, HOSTILE, hostile_skills, place_of, write_hostile, write_system
+from tests.hostile.said import DID_NOT_END, Command, processor_s
+from tests.hostile.secret import Secret
 from tests.kept_cache import link_engines
 
-from .counters import counting
+__all__ = ["TOLD_S", "WAYS", "Attempt", "Playground", "Wanted"]
 
-__all__ = ["TOLD_S", "WAYS", "Attempt", "Playground", "attempts"]
-
-WAYS = ("lint", "push", "mission")
+WAYS = ("lint", "mission", "push")
 TOLD_S = 15.0
 """The time within which a place is to be told on a machine that does nothing else."""
 _HEARD_S = 8 * TOLD_S
-_COMMAND_S = 240.0
-_LINES = {"model": "reach.sd:", "compiler": "reach.sd:", "mapping": "reach.am:10:"}
-"""The words that tell the place. Code that goes on for ever is told at its head, other code at its line."""
-_DID_NOT_END = "(it did not end when it was told to)"
+_START_S = 240.0
+_CASES = {"model": MODELS, "compiler": COMPILED, "mapping": MAPPINGS}
 _HARMLESS = ("prints 1 GB",)
 """This is no fault: what is printed beyond the limit is dropped."""
+_STEP = "step "
+"""The words of a mission that goes on."""
 
-_RESULT = """local_variable: value
-from_ros_service_response: true
-code:
-CODE
-"""
-"""The rest of a mapping, whose code is Python."""
-_DEPLOY = """aos: 1
-robot: cell
-bundles: [{bundles}]
-bus: {{listen: "tcp/127.0.0.1:0"}}
-mission: {{step_limit: 100000}}
-solver: {{simulations: 20}}
-bind: {{/step: {{python: "robot.py:act"}}, /reach: {{python: "robot.py:act"}}}}
-runs: runs
-"""
-_ROBOT = "def act(call):\n    return {}\n"
-_GOOD = "value = 1"
+Wanted = Callable[[str, str, str], bool]
+"""Says whether an attempt of this kind, name and way is to be played."""
 
 
 class Attempt(NamedTuple):
@@ -57,186 +45,184 @@ class Attempt(NamedTuple):
     name: str
     way: str
     told_s: float | None
+    processor_s: float
     faults: tuple[str, ...]
 
 
-class Heard:
-    """A process and what it has said. A thread reads all the time, so that it never waits for a reader."""
-
-    def __init__(self, process: subprocess.Popen[bytes]) -> None:
-        self._process = process
-        self._said = b""
-        self._news = threading.Condition()
-        self._has_ended = False
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def listen(self, words: str, timeout_s: float) -> float | None:
-        """Returns when it has said the words; None if it ends, or the time does, before."""
-        with self._news:
-            self._news.wait_for(lambda: self._has_ended or words.encode() in self._said, timeout_s)
-            return time.monotonic() if words.encode() in self._said else None
-
-    def end(self) -> str:
-        """Has it end by Ctrl-C if it has not, and returns all that it has said."""
-        if self._process.poll() is None:
-            self._process.send_signal(signal.SIGINT)
-        try:
-            self._process.wait(timeout=_COMMAND_S)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._said += f"\n{_DID_NOT_END}".encode()
-        self._reader.join(timeout=_COMMAND_S)
-        return self._said.decode(errors="replace")
-
-    def _read(self) -> None:
-        assert self._process.stdout is not None
-        while text := os.read(self._process.stdout.fileno(), 65536):
-            with self._news:
-                self._said += text
-                self._news.notify_all()
-        with self._news:
-            self._has_ended = True
-            self._news.notify_all()
-
-
 class Playground:
-    """A folder with a secret, a cache of compiled models and the documents of one attempt after the other."""
+    """A folder with a secret, a cache of compiled models and the documents of one attempt after the other.
 
-    def __init__(self, folder: Path, engines: Path) -> None:
+    What attacks at run time is compiled in the first round, and found in the cache in later ones: the file
+    with the secret stays, and its content is another one in each attempt. `fresh` begins each attempt with
+    an empty cache but for the engine, and starts commands as programs of their own.
+    """
+
+    def __init__(self, folder: Path, engines: Path, *, fresh: bool = False) -> None:
         self.folder = folder
-        self._bin = Path(sys.executable).parent
-        self._secret = folder / "home" / "secret"
-        self._canary = f"canary{secrets.token_hex(16)}"
-        self._secret.parent.mkdir()
-        self._secret.write_text(self._canary)
-        self._secret.chmod(0o600)
+        self._fresh = fresh
+        self._engines = engines
         self._cache = folder / "cache"
-        link_engines(engines, self._cache)
-        self._environment = {
+        self._secret = Secret(folder / "home")
+        self._said = folder / "said"
+        self._said.mkdir()
+        (folder / "tmp").mkdir()
+        self._empty_cache()
+
+    def round(self, number: int, wanted: Wanted) -> Iterator[Attempt]:
+        """Plays the wanted attempts of a round. Every process that one started must have ended with it."""
+        yield from self._lints(wanted)
+        yield from self._missions(wanted)
+        yield from self._pushes(wanted, random.Random(number))
+
+    def _lints(self, wanted: Wanted) -> Iterator[Attempt]:
+        for kind, name in _named("model", "compiler"):
+            if wanted(kind, name, "lint"):
+                bundle = self._written(kind, {HOSTILE: name})
+                yield self._alone(kind, name, "lint", ["aos", "lint", str(bundle)])
+        if names := [name for name in MAPPINGS if wanted("mapping", name, "lint")]:
+            bundle = self._written("mapping", _skills(names))
+            before_s = processor_s()
+            lint = self._start(["aos", "lint", str(bundle)], "lint")
+            faults = tuple(self._broken(lint.end(_HEARD_S)))
+            spent_s = (processor_s() - before_s) / len(names)
+            for name in names:
+                yield Attempt("mapping", name, "lint", None, spent_s, faults)
+
+    def _missions(self, wanted: Wanted) -> Iterator[Attempt]:
+        for kind, name in _named("model", "compiler"):
+            if wanted(kind, name, "mission"):
+                self._written(kind, {HOSTILE: name})
+                yield self._alone(kind, name, "mission", ["aos-up", DEPLOY_FILE, "--plain"])
+        if names := [name for name in MAPPINGS if wanted("mapping", name, "mission")]:
+            yield from self._mission_of_mappings(names)
+
+    def _alone(self, kind: str, name: str, way: str, words: list[str]) -> Attempt:
+        """An attempt with a command of its own, whose documents are there."""
+        started_s, before_s = time.monotonic(), processor_s()
+        command = self._start(words, way)
+        is_harmless = way == "mission" and name in _HARMLESS
+        told_s = command.listen(_STEP if is_harmless else place_of(kind, HOSTILE), _HEARD_S)
+        faults = [*self._broken(command.end()), *_untold(name, told_s, command)]
+        spent_s = processor_s() - before_s
+        told_s = None if told_s is None or is_harmless else told_s - started_s
+        return Attempt(kind, name, way, told_s, spent_s, tuple(faults))
+
+    def _mission_of_mappings(self, names: list[str]) -> Iterator[Attempt]:
+        """One mission whose skills are all hostile but one; each is told once it has been run."""
+        skills = _skills(names)
+        self._written("mapping", skills, times=1)
+        before_s = processor_s()
+        mission = self._start(["aos-up", DEPLOY_FILE, "--plain"], "mission")
+        mission.listen("mission", _START_S)
+        places = {place_of("mapping", skill): name for skill, name in skills.items()}
+        told = {places[words]: told_s for words, told_s in mission.listen_to_all(places, _HEARD_S)}
+        faults = tuple(self._broken(mission.end()))
+        spent_s = (processor_s() - before_s) / len(names)
+        for name in names:
+            own = tuple(_untold(name, told.get(name), mission))
+            yield Attempt("mapping", name, "mission", told.get(name), spent_s, (*faults, *own))
+
+    def _pushes(self, wanted: Wanted, chance: random.Random) -> Iterator[Attempt]:
+        """One mission that receives one hostile bundle after the other, and goes on."""
+        cases = [case for case in _named(*_CASES) if wanted(*case, "push")]
+        chance.shuffle(cases)
+        if not cases:
+            return
+        place = self.folder / "documents"
+        write_system(place)
+        before_s = processor_s()
+        mission = self._start(["aos-up", DEPLOY_FILE, "--plain"], "mission")
+        mission.listen(_STEP, _START_S)
+        played = [self._push(mission, place, *case, deeper=number) for number, case in enumerate(cases)]
+        goes_on = mission.listen(_STEP, _HEARD_S, after=mission.said_bytes) is not None
+        faults = tuple(self._broken(mission.end()))
+        # What the system itself spends is known when it has ended.
+        rest_s = (processor_s() - before_s - sum(attempt.processor_s for attempt in played)) / len(played)
+        if not goes_on:
+            faults = (*faults, f"the mission did not go on: {mission.said[-400:]!r}")
+        for number, attempt in enumerate(played):
+            is_last = number == len(played) - 1
+            own = attempt.faults + faults if is_last else attempt.faults
+            yield attempt._replace(processor_s=attempt.processor_s + rest_s, faults=own)
+
+    def _push(self, mission: Command, place: Path, kind: str, name: str, *, deeper: int) -> Attempt:
+        bundle = place / "hostile"
+        self._secret.renew()
+        if self._fresh:
+            self._empty_cache()
+        write_hostile(bundle, kind, {HOSTILE: self._code(kind, name)}, deeper=deeper)
+        running = str(place / "runs" / "latest")
+        words = place_of(kind, HOSTILE, deeper=deeper)
+        after, started_s, before_s = mission.said_bytes, time.monotonic(), processor_s()
+        push = self._start(["aos", "bundle", "push", str(bundle), "--run", running], "push")
+        told_s = push.listen(words, _HEARD_S)
+        said = push.end(_HEARD_S)
+        if told_s is None and name not in _HARMLESS:
+            told_s = mission.listen(words, _HEARD_S, after=after)
+        if kind == "mapping" or told_s is None:
+            said += self._start(["aos", "bundle", "rm", "cell", HOSTILE, "--run", running], "removal").end(_HEARD_S)
+        faults = [*self._broken(said + mission.said[after:], but=(mission.pid,)), *_untold(name, told_s, push)]
+        return Attempt(
+            kind, name, "push", told_s and told_s - started_s, processor_s() - before_s, tuple(faults)
+        )
+
+    def _written(self, kind: str, skills: dict[str, str], *, times: int = 1) -> Path:
+        """Writes the documents of an attempt, whose hostile skills have the names of cases; the bundle."""
+        self._secret.renew()
+        if self._fresh:
+            self._empty_cache()
+        bundle = write_system(self.folder / "documents", times=times)
+        write_hostile(bundle, kind, {skill: self._code(kind, name) for skill, name in skills.items()})
+        return bundle
+
+    def _code(self, kind: str, name: str) -> str:
+        secret = self._secret.file
+        return _CASES[kind][name].replace("SECRET", str(secret)).replace("FOLDER", str(secret.parent))
+
+    def _start(self, words: list[str], what: str) -> Command:
+        environment = {
             **os.environ,
             "AOS_CACHE_DIR": str(self._cache),
-            "AOS_RUNNING_DIR": str(folder / "running"),
-            "AOS_CANARY": self._canary,
+            "AOS_RUNNING_DIR": str(self.folder / "running"),
+            "AOS_CANARY": self._secret.canary,
+            "TMPDIR": str(self.folder / "tmp"),
         }
-
-    def play(self, kind: str, name: str, way: str) -> Attempt:
-        """The attempt. Every process that it started must have ended with it."""
-        code = {"model": MODELS, "compiler": COMPILED, "mapping": MAPPINGS}[kind][name]
-        code = code.replace("SECRET", str(self._secret)).replace("FOLDER", str(self._secret.parent))
         place = self.folder / "documents"
-        bundle = self._write(place, kind, code, apart=way == "push")
-        started_s = time.monotonic()
-        self._before_s = 0.0
-        said, told_s = {"lint": self._lint, "push": self._push, "mission": self._mission}[way](
-            place, bundle, _LINES[kind]
-        )
-        told_s = None if told_s is None else told_s - started_s - self._before_s
-        return Attempt(kind, name, way, told_s, tuple(self._broken(kind, name, way, told_s, said)))
+        return Command(words, place, environment, self._said / what, fresh=self._fresh)
 
-    def _write(self, place: Path, kind: str, code: str, *, apart: bool) -> Path:
-        """Writes a deploy file, good documents, and the hostile ones: with the good ones, or `apart`."""
-        subprocess.run(["rm", "-rf", str(place)], check=True)
-        good = place / "good"
-        hostile = place / "hostile" if apart else good
-        good.mkdir(parents=True)
-        hostile.mkdir(exist_ok=True)
-        (place / "cell.yaml").write_text(_DEPLOY.format(bundles="good"))
-        (place / "robot.py").write_text(_ROBOT)
-        files = counting("cell", steps="100000")
-        (good / "cell.ef").write_text(files["cell.ef"])
-        (good / "step.sd").write_text(files["step.sd"])
-        (good / "step.am").write_text(files["step.am"] + _RESULT.replace("CODE", _GOOD))
-        model, mapping = ("", code) if kind == "mapping" else (code, _GOOD)
-        files = counting("cell", "reach", code=model)
-        (hostile / "reach.sd").write_text(files["reach.sd"])
-        (hostile / "reach.am").write_text(files["reach.am"] + _RESULT.replace("CODE", mapping))
-        if kind == "mapping" and not apart:
-            # Then the mission has no other skill to choose.
-            (good / "step.sd").unlink()
-            (good / "step.am").unlink()
-        return hostile
+    def _empty_cache(self) -> None:
+        for entry in self._cache.glob("model-*"):
+            entry.rename(self.folder / "tmp" / f"{entry.name}.{time.monotonic_ns()}")
+        link_engines(self._engines, self._cache)
 
-    def _lint(self, place: Path, bundle: Path, line: str) -> tuple[str, float | None]:
-        words = [str(self._bin / "aos"), "lint", str(bundle)]
-        return self._listened(words, place, line)
-
-    def _mission(self, place: Path, bundle: Path, line: str) -> tuple[str, float | None]:
-        words = [str(self._bin / "aos-up"), "cell.yaml", "--plain"]
-        return self._listened(words, place, line)
-
-    def _push(self, place: Path, bundle: Path, line: str) -> tuple[str, float | None]:
-        """Pushes the hostile bundle into a mission that goes on; only the time from then on counts."""
-        started_s = time.monotonic()
-        mission = self._started([str(self._bin / "aos-up"), "cell.yaml", "--plain"], place)
-        mission.listen("step", _COMMAND_S)
-        self._before_s = time.monotonic() - started_s
-        push = [
-            str(self._bin / "aos"),
-            "bundle",
-            "push",
-            str(bundle),
-            "--run",
-            str(place / "runs" / "latest"),
-        ]
-        said, told_s = self._listened(push, place, line)
-        if told_s is None:
-            told_s = mission.listen(line, _HEARD_S)
-        return said + mission.end(), told_s
-
-    def _listened(self, words: list[str], place: Path, line: str) -> tuple[str, float | None]:
-        heard = self._started(words, place)
-        told_s = heard.listen(line, _HEARD_S)
-        return heard.end(), told_s
-
-    def _started(self, words: list[str], place: Path) -> Heard:
-        return Heard(
-            subprocess.Popen(
-                words, cwd=place, env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-            )
-        )
-
-    def _broken(self, kind: str, name: str, way: str, told_s: float | None, said: str) -> Iterator[str]:
-        """The promises that do not hold."""
-        if _DID_NOT_END in said:
+    def _broken(self, said: str, but: tuple[int, ...] = ()) -> Iterator[str]:
+        """The promises that do not hold after an attempt."""
+        if DID_NOT_END in said:
             yield "the command did not end when it was told to"
-        if self._canary in said:
-            yield "the secret is in what was said"
-        found = [path for path in self._written() if self._canary.encode() in path.read_bytes()]
-        if found:
-            yield f"the secret is in {found[0].relative_to(self.folder)}"
-        if self._secret.read_text() != self._canary or self._secret.stat().st_mode & 0o777 != 0o600:
-            yield "the secret is another"
-        if list(self._secret.parent.iterdir()) != [self._secret]:
-            yield "something was written"
-        if left := _left_running():
+        yield from self._secret.broken(said, self.folder)
+        if left := _left_running(but):
             yield f"{len(left)} processes run on: {'; '.join(left)}"
-        if told_s is None and name not in _HARMLESS and (kind, way) != ("mapping", "lint"):
-            yield f"the line was not told: {said[-400:]!r}"
-
-    def _written(self) -> Iterator[Path]:
-        """Every file that the attempts have written, the engines apart, which were there before."""
-        for path in self.folder.rglob("*"):
-            if path != self._secret and path.is_file() and not path.is_symlink():
-                yield path
 
 
-def _left_running() -> list[str]:
+def _named(*kinds: str) -> list[tuple[str, str]]:
+    return [(kind, name) for kind in kinds for name in _CASES[kind]]
+
+
+def _skills(names: list[str]) -> dict[str, str]:
+    return {skill: name for skill, name in hostile_skills().items() if name in names}
+
+
+def _untold(name: str, told_s: float | None, command: Command) -> Iterator[str]:
+    if told_s is None and name not in _HARMLESS:
+        yield f"the line was not told: {command.said[-400:]!r}"
+
+
+def _left_running(but: tuple[int, ...]) -> list[str]:
     """The command lines of what has become a child of this process, which adopts what others leave behind."""
-    while True:
-        try:
-            if os.waitpid(-1, os.WNOHANG)[0] == 0:
-                break
-        except ChildProcessError:
-            return []
     listing = Path(f"/proc/self/task/{os.getpid()}/children").read_text()
-    commands = (Path(f"/proc/{pid}/cmdline").read_bytes() for pid in listing.split())
-    return [command.replace(b"\0", b" ").decode(errors="replace")[:200] for command in commands]
-
-
-def attempts(ways: tuple[str, ...] = WAYS) -> Iterator[tuple[str, str, str]]:
-    """Every case in every way, as `play` takes it. Linting runs no mappings, and is tried all the same."""
-    for kind, cases in (("model", MODELS), ("compiler", COMPILED), ("mapping", MAPPINGS)):
-        for name in cases:
-            for way in ways:
-                yield kind, name, way
+    left = []
+    for pid in {int(text) for text in listing.split()} - {*but}:
+        if os.waitpid(pid, os.WNOHANG)[0] == 0:
+            command = Path(f"/proc/{pid}/cmdline").read_bytes()
+            left.append(command.replace(b"\0", b" ").decode(errors="replace")[:200])
+    return left

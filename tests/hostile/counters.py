@@ -21,7 +21,7 @@ _SKILL = """project: PROJECT
 dynamic_model:
 state__.count = state.count + 1;
 CODE
-__moduleResponse = done;
+EARNS__moduleResponse = done;
 """
 _MAPPING = """project: PROJECT
 
@@ -32,10 +32,13 @@ response_rule: True
 """
 
 
-def counting(project: str, skill: str = "step", *, code: str = "", steps: str = "STEPS") -> dict[str, str]:
+def counting(
+    project: str, skill: str = "step", *, code: str = "", steps: str = "STEPS", reward: int = 0
+) -> dict[str, str]:
     """The files by name. The mission is over after so many steps. The skill runs the code, from line 5 on."""
     files = {f"{project}.ef": _ENVIRONMENT, f"{skill}.sd": _SKILL, f"{skill}.am": _MAPPING}
     words = {"PROJECT": project, "SKILL": skill, "STEPS": steps, "CODE\n": f"{code}\n" if code else ""}
+    words["EARNS"] = f"__reward = {reward};\n" if reward else ""
     for word, text in words.items():
         files = {name: file.replace(word, text) for name, file in files.items()}
     return files

@@ -8,6 +8,7 @@ from asyncio.subprocess import PIPE
 from pathlib import Path
 
 import pytest
+from hostile.counters import counting
 from mappings import mapping_text
 from models import built_text, engine_of
 from processes import HANG_S
@@ -64,6 +65,26 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
     await shelf.close()
     assert (refusal.code, refusal.span.file) == ("AOS112", "lamp.ef")
     assert "give the running mission no belief" in refusal.message
+
+
+@pytest.mark.parametrize(
+    "code, fault",
+    [("if (state.count > 0) *(volatile int*)nullptr = 1;", "AOS210"), ("while (state.count > 3) {}", "AOS211")],
+)
+async def test_documents_whose_code_would_end_a_running_mission_are_refused(
+    code: str, fault: str, cache_dir: Path
+) -> None:
+    def documents(code: str) -> dict[str, str]:
+        return counting("lamp", "press", code=code, steps="1000")
+
+    shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
+    project = load_files({name: text.encode() for name, text in documents(code).items()}).project
+    assert project is not None
+    async with engine_of(await built_text(documents(""), cache_dir)) as engine:
+        (refusal,) = await shelf.check(project, RunningModel(1, engine))
+    await shelf.close()
+    assert (refusal.code, refusal.span.file) == (fault, "press.sd")
+    assert "in a state that can be reached" in refusal.message
 
 
 async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ import msgspec
 from aos_language.mission_parameters import ParameterLeaf, usable_values
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Constraint, MissionValue, Project
-from aos_protocol.errors import AosError
+from aos_protocol.errors import AosError, CodeFaultError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.clock import Clock, SystemClock
 from aos_solver.building.build import BuiltModel
@@ -35,6 +35,10 @@ __all__ = ["ModelShelf"]
 log = logging.getLogger(__name__)
 
 SYSTEM_CLOCK = SystemClock()
+
+_TRIED_S = 0.1
+_TRIED_CPU_S = 4.0
+"""One step of a model that takes so much processor time does not end, for all that a mission can wait."""
 
 
 class ModelShelf:
@@ -250,7 +254,9 @@ class ModelShelf:
                 self._ready = None
 
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
-        """Returns what keeps these documents from being used now: mistakes, or no belief for the mission."""
+        """Returns what keeps these documents from being used now: mistakes, no belief for the mission that
+        runs, or code that fails or does not end, which would end it. The code is tried by random actions for
+        `_TRIED_S`."""
         span = project.environment.span
         try:
             built = await self._built(project)
@@ -267,7 +273,14 @@ class ModelShelf:
             message = f"the new documents give the running mission no belief: {error.message}"
             hint = "Mend the initial belief, or end the mission and start it with the new documents"
             return (Diagnostic(Severity.ERROR, "AOS112", message, place, hint),)
-        await engine.close()  # It is stopped at once, also where nobody waits for its end.
+        try:
+            await engine.rate(_TRIED_S, seed=1, max_seconds=_TRIED_CPU_S)
+        except CodeFaultError as error:
+            return tuple(map(_reached, error.diagnostics)) or (
+                Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),
+            )
+        finally:
+            await engine.close()  # It is stopped at once, also where nobody waits for its end.
         return ()
 
     async def close(self) -> None:
@@ -286,3 +299,7 @@ class ModelShelf:
         """Returns once all engines have ended that nobody asks any more."""
         while ending := self._ending | (self._thorough.tasks if self._is_closed else set()):
             await asyncio.wait(ending)
+
+
+def _reached(found: Diagnostic) -> Diagnostic:
+    return msgspec.structs.replace(found, message=f"in a state that can be reached: {found.message}")
