@@ -9,6 +9,7 @@ root has; where Python stands in a folder that he may not enter, he sees of that
 
 from __future__ import annotations
 
+import asyncio
 import os
 import pwd
 import shutil
@@ -18,6 +19,7 @@ import tempfile
 from pathlib import Path
 
 from aos_deploy.program import cache_dir
+from aos_solver.building.build import ANY_SIZE, STATE_BYTES, build_engine
 
 __all__ = ["PLACES", "is_possible", "placed"]
 
@@ -66,9 +68,9 @@ def is_possible(place: str) -> bool:
 
 def _copy_engines(cache: Path) -> None:
     """Saves the user minutes of compiling: what root has compiled he cannot reach."""
-    for engine in cache_dir().glob("engine-*-*"):
-        if engine.suffix not in (".building", ".lock"):
-            shutil.copytree(engine, cache / engine.name)
+    for state_bytes in (STATE_BYTES[0], ANY_SIZE):
+        engine = asyncio.run(build_engine(cache_dir(), state_bytes=state_bytes))
+        shutil.copytree(engine, cache / engine.name)
 
 
 def _closed_to_others(path: Path) -> str:
