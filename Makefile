@@ -58,9 +58,9 @@ study:  ## replay missions and study decisions, and hold the answers against pla
 	$(BIN)/python -m tests.study
 
 hostile:  ## play hostile documents and strangers on the bus, and print what they were kept from
-	$(BIN)/python -m tests.hostile --times 50
-	$(BIN)/python -m tests.hostile.placed user $(BIN)/python -m tests.hostile
-	$(BIN)/python -m tests.hostile.placed closed $(BIN)/python -m tests.hostile
+	$(BIN)/python -m tests.hostile --times 17
+	$(BIN)/python -m tests.hostile.placed user $(BIN)/python -m tests.hostile --times 17
+	$(BIN)/python -m tests.hostile.placed closed $(BIN)/python -m tests.hostile --times 17
 	$(BIN)/python -m tests.hostile.unit
 	$(BIN)/python -m tests.hostile.bus
 

@@ -16,7 +16,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tests.hostile.cases import COMPILED, MAPPINGS, MODELS
-from tests.hostile.documents import DEPLOY_FILE, HOSTILE, hostile_skills, place_of, write_hostile, write_system
+from tests.hostile.documents import (
+    DEPLOY_FILE,
+    HOSTILE,
+    hostile_skills,
+    place_of,
+    write_hostile,
+    write_system,
+)
 from tests.hostile.said import DID_NOT_END, Command, processor_s
 from tests.hostile.secret import Secret
 from tests.kept_cache import link_engines
@@ -160,8 +167,13 @@ class Playground:
         if told_s is None and name not in _HARMLESS:
             told_s = mission.listen(words, _HEARD_S, after=after)
         if kind == "mapping" or told_s is None:
-            said += self._start(["aos", "bundle", "rm", "cell", HOSTILE, "--run", running], "removal").end(_HEARD_S)
-        faults = [*self._broken(said + mission.said[after:], but=(mission.pid,)), *_untold(name, told_s, push)]
+            said += self._start(["aos", "bundle", "rm", "cell", HOSTILE, "--run", running], "removal").end(
+                _HEARD_S
+            )
+        faults = [
+            *self._broken(said + mission.said[after:], but=(mission.pid,)),
+            *_untold(name, told_s, push),
+        ]
         return Attempt(
             kind, name, "push", told_s and told_s - started_s, processor_s() - before_s, tuple(faults)
         )

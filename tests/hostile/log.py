@@ -87,6 +87,7 @@ def summary(lines: Iterable[Line], in_time_s: float) -> str:
         spent_s = sum(line.processor_s for line in own)
         told.append(
             f"{who}: {counted}: {broken} broke a promise; {early} of {len(all_s)} were told within "
-            f"{in_time_s:g} s, the last after {max(all_s, default=0.0):.1f} s; {spent_s:.0f} s of processor time"
+            f"{in_time_s:g} s, the last after {max(all_s, default=0.0):.1f} s; "
+            f"{spent_s:.0f} s of processor time"
         )
     return "\n".join(told)

@@ -68,8 +68,11 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
 
 
 @pytest.mark.parametrize(
-    "code, fault",
-    [("if (state.count > 0) *(volatile int*)nullptr = 1;", "AOS210"), ("while (state.count > 3) {}", "AOS211")],
+    ("code", "fault"),
+    [
+        ("if (state.count > 0) *(volatile int*)nullptr = 1;", "AOS210"),
+        ("while (state.count > 0) { state__.count = 1; }", "AOS211"),
+    ],
 )
 async def test_documents_whose_code_would_end_a_running_mission_are_refused(
     code: str, fault: str, cache_dir: Path
