@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "aos/base/enumerator.hpp"
-#include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 
 namespace aos {
@@ -51,7 +50,7 @@ std::map<std::pair<std::uint32_t, std::size_t>, double> ExactEvaluation::occupan
     double weight = 0;
   };
   std::map<std::pair<std::uint32_t, std::size_t>, double> found;
-  std::unordered_map<BeliefKey, Visit, KeyHash> level;
+  std::unordered_map<BeliefKey, Visit, BeliefKey::Hash> level;
   const auto add = [](auto& visits, Weighted states, double weight) {
     double total = 0;
     for (const auto& part : states) total += part.second;
@@ -63,7 +62,7 @@ std::map<std::pair<std::uint32_t, std::size_t>, double> ExactEvaluation::occupan
   };
   add(level, belief, 1);
   for (int left = horizon; left > 0 && !level.empty(); --left) {
-    std::unordered_map<BeliefKey, Visit, KeyHash> next;
+    std::unordered_map<BeliefKey, Visit, BeliefKey::Hash> next;
     for (const auto& [key, visit] : level) {
       const std::size_t chosen = left == horizon ? action : best_action(visit.belief, left);
       for (const auto& [state, weight] : visit.belief) found[{state, chosen}] += visit.weight * weight;
@@ -198,13 +197,9 @@ double ExactEvaluation::bound(const Weighted& belief, std::size_t action, int ho
 }
 
 // Probabilities are rounded to 1e-13, so that sums of the same terms in different orders give the same key.
-ExactEvaluation::BeliefKey ExactEvaluation::key_of(const Weighted& belief) {
-  BeliefKey key{0x9ae16a3b2f90404fu, 0xc949d7c7509e6557u};
-  for (const auto& [number, weight] : belief) {
-    const auto rounded = static_cast<std::uint64_t>(std::llround(weight * 1e13));
-    key.high = mixed(key.high, rounded * 31 + number);
-    key.low = mixed(key.low ^ number, rounded);
-  }
+BeliefKey ExactEvaluation::key_of(const Weighted& belief) {
+  BeliefKey key;
+  for (const auto& [state, weight] : belief) key.add(state, static_cast<std::uint64_t>(std::llround(weight * 1e13)));
   return key;
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "numbers/belief_key.hpp"
 #include "numbers/observable_values.hpp"
 #include "point_based/flat_model.hpp"
 
@@ -71,13 +72,6 @@ class ExactEvaluation {
   std::uint64_t work() const { return work_; }
 
  private:
-  struct BeliefKey {
-    std::uint64_t high, low;
-    bool operator==(const BeliefKey&) const = default;
-  };
-  struct KeyHash {
-    std::size_t operator()(const BeliefKey& key) const { return key.high ^ key.low; }
-  };
   using Posteriors = std::map<std::uint32_t, std::map<std::uint32_t, double>>;
 
   ExactValue action_value(const Weighted& belief, std::size_t action, int horizon);
@@ -94,7 +88,7 @@ class ExactEvaluation {
   ExactLimits limits_;
   std::uint64_t evaluated_ = 0;
   std::uint64_t work_ = 0;
-  std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, KeyHash>> values_;
+  std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, BeliefKey::Hash>> values_;
 };
 
 }  // namespace aos

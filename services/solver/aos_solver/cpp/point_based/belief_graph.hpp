@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -16,7 +17,7 @@
 #include <vector>
 
 #include "aos/base/switches.hpp"
-#include "point_based/belief_key.hpp"
+#include "numbers/belief_key.hpp"
 #include "point_based/belief_nodes.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/certainty_equivalent.hpp"
@@ -51,7 +52,7 @@ class BeliefGraph {
 
   // The node of a belief over the region's states (by local number, ascending; normalised).
   std::uint32_t node_of(std::uint32_t region, std::uint32_t left, const Belief& belief) {
-    const BeliefKey key = key_of(region, left, belief, kept_bits_);
+    const BeliefKey key = key_of(region, left, belief);
     work_ += per_look_up + 2 * belief.size();
     const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(nodes_.size()));
     if (!is_new) return entry->second;
@@ -252,6 +253,17 @@ class BeliefGraph {
   }
 
  private:
+  // Only `kept_bits_` binary digits of a probability count, so that different ways to the same belief meet.
+  BeliefKey key_of(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
+    BeliefKey key{std::uint64_t{left} << 32 | region};
+    const int dropped = 52 - kept_bits_;
+    const std::uint64_t half = std::uint64_t{1} << dropped >> 1;
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      key.add(belief.states[i], (std::bit_cast<std::uint64_t>(belief.probabilities[i]) + half) >> dropped);
+    }
+    return key;
+  }
+
   // What takes time whatever the size of a belief.
   static constexpr std::uint64_t per_node = 1400;    // a new one
   static constexpr std::uint64_t per_look_up = 200;  // of a belief
@@ -402,7 +414,7 @@ class BeliefGraph {
   std::vector<LowerBound> lower_;                   // by region
   std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;
-  std::unordered_map<BeliefKey, std::uint32_t, BeliefKeyHash> index_;
+  std::unordered_map<BeliefKey, std::uint32_t, BeliefKey::Hash> index_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> uninformed_;  // by region, decisions left, action
   std::size_t bytes_ = 0;
   std::uint64_t work_ = 0;

@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
@@ -34,6 +33,7 @@
 #include "aos/planning/pomcp/exploration.hpp"
 #include "aos/planning/tree_planner.hpp"
 #include "aos/planning/values/mdp_values.hpp"
+#include "numbers/belief_key.hpp"
 
 namespace aos {
 
@@ -138,7 +138,7 @@ class BeliefTree final : public TreePlanner<Model> {
   struct Node {
     std::size_t first = 0;  // its states
     std::size_t last = 0;
-    std::uint64_t hash = 0;
+    BeliefKey key;
     std::uint32_t times = 0;  // how often it was drawn
     std::uint32_t n = 0;
     double value = 0;
@@ -159,7 +159,7 @@ class BeliefTree final : public TreePlanner<Model> {
 
   std::uint32_t add_node(const SmallBelief& belief, int left) {
     const auto number = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({states_.size(), states_.size() + belief.size(), hash_of(belief)});
+    nodes_.push_back({states_.size(), states_.size() + belief.size(), key_of(belief)});
     states_.insert(states_.end(), belief.begin(), belief.end());
     actions_.resize(actions_.size() + space_.actions());
     double total = 0;
@@ -220,8 +220,8 @@ class BeliefTree final : public TreePlanner<Model> {
     work_ += per_outcome * next_.work();
     if (!goes_on) return false;
     const std::vector<std::uint32_t>& known = actions_of(node)[a].children;
-    const std::uint64_t hash = hash_of(next_.after());
-    const auto same = std::ranges::find_if(known, [&](std::uint32_t child) { return nodes_[child].hash == hash; });
+    const BeliefKey key = key_of(next_.after());
+    const auto same = std::ranges::find_if(known, [&](std::uint32_t child) { return nodes_[child].key == key; });
     const std::uint32_t child = same != known.end() ? *same : add_node(next_.after(), left);
     ++nodes_[child].times;
     ActionNode& action = actions_of(node)[a];
@@ -232,13 +232,11 @@ class BeliefTree final : public TreePlanner<Model> {
   }
 
   // Differences of weights that come from rounding do not count.
-  static std::uint64_t hash_of(const SmallBelief& belief) {
+  static BeliefKey key_of(const SmallBelief& belief) {
     constexpr float unit = 1e5f;
-    std::uint64_t hash = belief.size();
-    for (const auto& [state, weight] : belief) {
-      hash = mixed(hash, std::uint64_t{state} << 32 | static_cast<std::uint32_t>(std::lround(unit * weight)));
-    }
-    return hash;
+    BeliefKey key;
+    for (const auto& [state, weight] : belief) key.add(state, static_cast<std::uint64_t>(std::lround(unit * weight)));
+    return key;
   }
 
   void back_up(std::size_t i) {
