@@ -1,4 +1,4 @@
-// Responses that are too many to list: sensing_tables.hpp, text_pieces.hpp, belief_tree.hpp.
+// Responses that are too many to list: sensing_tables.hpp, belief_tree.hpp.
 #include "aos/planning/belief_tree/belief_tree.hpp"
 
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "aos/base/distributions.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"
-#include "aos/planning/belief_tree/text_pieces.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -136,22 +135,6 @@ TEST("A described distribution has the densities of the one that it describes, a
       EXPECT(described.below(value + 1e-9) >= place - 1e-8);
     }
   }
-}
-
-TEST("Numbers in a text fall into cells once they are many, each in its own surroundings") {
-  aos::TextPieces pieces;
-  EXPECT(pieces.symbol(0, "7 ") != pieces.symbol(0, "8 "));
-  std::vector<std::string> written;
-  for (int i = 0; i < 40; ++i) written.push_back(std::to_string(100 + i) + " ");
-  std::vector<const std::string*> places;
-  for (const std::string& each : written) places.push_back(&each);
-  EXPECT(pieces.adapt(0, places));
-  EXPECT(!pieces.adapt(0, places));
-  EXPECT_EQUAL(pieces.symbol(0, "121 "), pieces.symbol(0, "122 "));
-  EXPECT(pieces.symbol(0, "121 ") != pieces.symbol(0, "130 "));
-  EXPECT(pieces.symbol(0, "121 ") != pieces.symbol(0, "121;"));
-  EXPECT(pieces.symbol(1, "121 ") != pieces.symbol(1, "122 "));
-  EXPECT(pieces.symbol(0, "- ") != pieces.symbol(0, "121 "));
 }
 
 struct Tree {

@@ -91,11 +91,11 @@ TEST("Variables that do not matter tell no states apart, and all others do") {
 TEST("A limit that is met leaves nothing listed, and is told") {
   const Problem problem = units::corridor(50, 0.9);
   const Belief belief = initial_belief(problem);
-  Space space{aos::SpaceLimits{.states = 10}};
+  Space space{aos::ListLimits{.states = 10}};
   EXPECT(!space.reach(belief));
   EXPECT_EQUAL(space.size(), 0u);
   EXPECT(space.obstacle().find("too many states") != std::string::npos);
-  Space work{aos::SpaceLimits{.work = 20}};
+  Space work{aos::ListLimits{.work = 20}};
   EXPECT(!work.reach(belief));
   EXPECT(!work.obstacle().empty());
 }
@@ -110,7 +110,7 @@ TEST("A later try is for half as many states in the belief, and lists fewer stat
   };
   Space first;
   EXPECT(tries_from(first, {{5'000, 1.0}}));
-  Space space{aos::SpaceLimits{.states = 29'000}};
+  Space space{aos::ListLimits{.states = 29'000}};
   EXPECT(!tries_from(space, {{0, 0.25}, {1, 0.25}, {2, 0.25}, {3, 0.25}}));
   EXPECT(!tries_from(space, {{12'000, 0.5}, {12'001, 0.25}, {12'002, 0.25}}));
   EXPECT(!tries_from(space, {{5'000, 0.5}, {5'001, 0.5}}));

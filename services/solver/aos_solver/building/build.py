@@ -82,7 +82,7 @@ _SECONDS = "cpu_seconds"
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
-NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values")
+NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values", "numbers/compact_model")
 """The parts of the engine that know models as numbers only, the same for states of any size: mostly loops."""
 _NUMBERS_OPTION = "-O3"
 _EXECUTABLE = "model"

@@ -9,6 +9,9 @@
 
 namespace aos {
 
+// Values have settled where no change is larger than this share of the largest value.
+inline constexpr double settled_share = 1e-4;
+
 // The value of an action in a state, from those of the states after it.
 inline double backed_up(const point_based::FlatModel& rows, std::size_t row, const std::vector<double>& later) {
   return rows.rewards[row] + rows.discount * rows.later_value(row, later);

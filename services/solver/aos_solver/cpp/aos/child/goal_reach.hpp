@@ -64,10 +64,7 @@ class GoalReach {
     RandomWalk<Model> walk;
     draw_evenly<Model>(running, max_walks, random, [&](State state) {
       if (is_reachable_ || processor_time() > latest) return;
-      walk.start();
-      for (int step = 0; step < horizon && Model::ending(state) == Ending::running; ++step) {
-        Model::step(state, walk.next(state, random), random);
-      }
+      walk.take(state, horizon, random);
       is_reachable_ = Model::ending(state) == Ending::goal;
     });
   }

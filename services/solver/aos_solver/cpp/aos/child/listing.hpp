@@ -55,7 +55,7 @@ class Listing {
 
  private:
   // Memory is the only limit here, since no decision waits for the listing.
-  static SpaceLimits limits(std::size_t max_states) {
+  static ListLimits limits(std::size_t max_states) {
     constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
     return {.states = max_states, .bytes = any, .outcomes = any, .work = any};
   }

@@ -19,16 +19,13 @@ inline constexpr std::size_t tree_root_states = 500;
 
 // --- probabilities of observations -------------------------------------------------------------------
 
-// Runs of the model's code along an outcome. Texts with two decimals hardly come twice in them (docs/lab/lasertag.md). Nobody has
-// varied the number.
+// Runs of the model's code along an outcome. Nobody has varied the number.
 inline constexpr std::size_t sensing_runs = 64;
 // The first runs, which tell tables apart. Nobody has varied it.
 inline constexpr std::size_t compared_runs = 8;
 // Runs and draws by which sensors' draws are told from those that shape the next state. Nobody has varied them.
 inline constexpr std::size_t tested_runs = 4;
 inline constexpr std::size_t max_tested_draws = 64;
-// Values of a number in texts from which on it falls into cells. Nobody has varied it.
-inline constexpr double many_values = 16;
 // The highest logarithm of a ratio of densities, so that no weight is infinite. Nobody has varied it.
 inline constexpr double highest_log_ratio = 60;
 // Of what is observed, the share that no run gave, above which POMCP decides. Nobody has varied it.

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -22,7 +21,6 @@
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensed_path.hpp"
 #include "aos/planning/belief_tree/sensing_runs.hpp"
-#include "aos/planning/belief_tree/text_pieces.hpp"
 #include "aos/planning/listed/observation_tables.hpp"
 #include "aos/planning/listed/state_space.hpp"
 
@@ -47,7 +45,7 @@ class SensingTables {
     tables_ = {};
     kinds_.clear();
     whole_.assign(whole_.size(), false);
-    text_pieces_ = {};
+    symbols_.clear();
   }
 
   // How many steps of the model were run so far.
@@ -81,7 +79,7 @@ class SensingTables {
     runs_.list(static_cast<std::uint32_t>(row / space_.actions()), action);
     const auto& rows = space_.rows().outcomes;
     std::uint64_t version = 0;
-    do {  // again where a table has changed how texts are parted
+    do {  // again where a table has told that texts are not parted
       if (tables_.size() > max_sensing_tables) forget_tables();
       version = version_;
       for (std::size_t outcome = rows.first[row]; outcome < rows.first[row + 1] && version == version_; ++outcome) {
@@ -103,10 +101,6 @@ class SensingTables {
       return no_table;
     }
     for (std::size_t i = compared_runs; i < sensing_runs; ++i) add_run(i);
-    if (has_new_cells()) {
-      forget_tables();
-      return no_table;
-    }
     return by_reports_[hash] = tables_.add(numbered());
   }
 
@@ -120,25 +114,19 @@ class SensingTables {
     reports_.push_back(std::move(*report));
   }
 
-  bool has_new_cells() {
-    std::map<std::pair<std::size_t, std::size_t>, std::vector<const std::string*>> by_place;
-    for (const Report& report : reports_) {
-      for (std::size_t i = 0; i < report.pieces.size(); ++i) by_place[{report.pieces.size(), i}].push_back(&report.pieces[i]);
-    }
-    bool has_changed = false;
-    for (const auto& [place, pieces] : by_place) has_changed = text_pieces_.adapt(skill_, pieces) || has_changed;
-    return has_changed;
-  }
-
   std::vector<NumberedReport> numbered() {
     std::vector<NumberedReport> result;
     for (const Report& report : reports_) {
       NumberedReport& numbers = result.emplace_back();
       numbers.kind = kind_of(report);
-      for (const std::string& piece : report.pieces) numbers.symbols.push_back(text_pieces_.symbol(skill_, piece));
+      for (const std::string& piece : report.pieces) numbers.symbols.push_back(symbol_of(piece));
       for (const auto& [name, distribution] : report.numbers) numbers.distributions.push_back(tables_.number_of(distribution));
     }
     return result;
+  }
+  // The number of a piece of the skill's texts.
+  std::uint32_t symbol_of(const std::string& piece) {
+    return symbols_.try_emplace(std::to_string(skill_) + "=" + piece, static_cast<std::uint32_t>(symbols_.size())).first->second;
   }
   std::uint32_t kind_of(const Report& report) {
     std::vector<std::uint64_t> key{static_cast<std::uint64_t>(report.response), report.pieces.size()};
@@ -171,7 +159,7 @@ class SensingTables {
   ObservationTables tables_;
   std::unordered_map<std::uint64_t, std::uint32_t> by_reports_;  // by a hash of the first ones
   std::unordered_map<std::vector<std::uint64_t>, std::uint32_t, NumbersHash> kinds_;
-  TextPieces text_pieces_;
+  std::unordered_map<std::string, std::uint32_t> symbols_;  // pieces
 
   int skill_ = 0;  // whose reports these are
   std::vector<Report> reports_;

@@ -51,7 +51,7 @@ class NearStates {
   }
 
  private:
-  static constexpr SpaceLimits first_limits{.states = 100'000, .outcomes = 3'000'000, .work = 10'000'000};
+  static constexpr ListLimits first_limits{.states = 100'000, .outcomes = 3'000'000, .work = 10'000'000};
   static constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
 
   // How many decisions from a belief are listed; none from one with another state.

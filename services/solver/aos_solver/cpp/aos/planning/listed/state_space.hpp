@@ -1,7 +1,7 @@
 // The model as numbers: the states that can be reached, and all outcomes of each action in each of them.
 //
 // The planner owns one space and lends it. The documents' code enumerates each pair of a state and an action
-// once. Limits are in numbers and work, not in time, so that decisions repeat.
+// once (state_lister.hpp).
 #pragma once
 
 #include <algorithm>
@@ -25,21 +25,14 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/number_reports.hpp"
 #include "aos/planning/listed/observation_numbers.hpp"
+#include "aos/planning/listed/state_lister.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos {
 
-struct SpaceLimits {
-  std::size_t states = 400'000;
-  std::size_t bytes = std::size_t{100} << 20;  // of states
-  std::size_t outcomes = 12'000'000;
-  std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds
-};
 // Of later tries, which hold up a mission: together with what planners prepare then they take 0.1 to 0.3 seconds.
-inline constexpr SpaceLimits later_limits{.states = 16'000, .outcomes = 500'000, .work = 1'500'000};
-
-inline constexpr std::uint32_t states_between_looks = 256;  // at the progress
+inline constexpr ListLimits later_limits{.states = 16'000, .outcomes = 500'000, .work = 1'500'000};
 
 using point_based::Numbering;
 
@@ -49,7 +42,7 @@ class StateSpace {
  public:
   using State = typename Model::State;
 
-  explicit StateSpace(SpaceLimits limits = {}) : limits_(limits) {
+  explicit StateSpace(const ListLimits& limits = {}) : lister_(limits) {
     rows_.actions = static_cast<std::size_t>(Model::action_count());
     rows_.discount = Model::discount;
     rows_.outcomes.first.push_back(0);
@@ -66,10 +59,10 @@ class StateSpace {
     if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
     try {
       add_states_of(belief);
-      while (!is_closed()) list_rows_before(numbers_.size());
+      while (!is_closed()) list_rows_before(size());
       return true;
     } catch (const NotEnumerable& limit) {
-      if (draws_.meets_sensing() && !skips_sensing_) {
+      if (lister_.draws().meets_sensing() && !skips_sensing_) {
         leave_out_observations(limit.reason);
         return reach(belief);
       }
@@ -83,7 +76,7 @@ class StateSpace {
   // Lists what `decisions` decisions can lead to from a belief. Throws NotEnumerable, or what model code throws.
   void reach_within(const Belief<Model>& belief, int decisions) {
     add_states_of(belief);
-    for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(numbers_.size());
+    for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(size());
   }
 
   // Lists from a belief alone what `decisions` decisions can lead to, or as many of them as the limits allow, which are
@@ -95,7 +88,7 @@ class StateSpace {
       int listed = 0;
       try {
         add_states_of(belief);
-        for (; listed < decisions && !is_closed(); ++listed) list_rows_before(numbers_.size());
+        for (; listed < decisions && !is_closed(); ++listed) list_rows_before(size());
         const bool is_whole = is_closed();
         end_list();
         return is_whole ? std::numeric_limits<int>::max() : listed;
@@ -105,7 +98,7 @@ class StateSpace {
       }
     }
   }
-  void limit(SpaceLimits limits) { limits_ = limits; }
+  void limit(const ListLimits& limits) { lister_.limit(limits); }
 
   // Begins another mission: its tries come when those of the first one came.
   void start_over() { given_up_with_ = first_given_up_with_; }
@@ -113,15 +106,15 @@ class StateSpace {
   const std::string& obstacle() const { return obstacle_; }
   // Code that keeps numbers of states compares numberings before it uses these again.
   Numbering numbering() const { return {restarts_, size()}; }
-  std::size_t size() const { return numbers_.size(); }
+  std::size_t size() const { return lister_.numbers().size(); }
   std::size_t actions() const { return rows_.actions; }
-  State operator[](std::uint32_t number) const { return numbers_[number]; }
+  State operator[](std::uint32_t number) const { return lister_.numbers()[number]; }
   // The number of a state; `no_state` if it has ended or cannot be reached.
   std::uint32_t find(const State& state) const {
-    return Model::ending(state) == Ending::running ? numbers_.find(state) : no_state;
+    return Model::ending(state) == Ending::running ? lister_.numbers().find(state) : no_state;
   }
   // Whether every state has its rows.
-  bool is_closed() const { return listed_ == numbers_.size(); }
+  bool is_closed() const { return listed_ == size(); }
   // Rewards and outcomes by state and action, without starts.
   const point_based::FlatModel& rows() const { return rows_; }
   const ObservationNumbers<Model>& observations() const { return observations_; }
@@ -135,21 +128,21 @@ class StateSpace {
   // drawn belief has no bound, so its bounds are those of its particles.
   double slack(const Belief<Model>& belief, int horizon) const {
     const double wrong = belief.is_drawn() ? 0 : belief.error_bound();
-    if (wrong <= 0 && most_left_out_ <= 0) return 0;
+    if (wrong <= 0 && lister_.most_left_out() <= 0) return 0;
     double largest = 0;
     for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
     double decisions = 0;
     for (int left = 0; left < horizon; ++left) decisions = 1 + Model::discount * decisions;
-    return (2 * wrong + horizon * most_left_out_) * largest * decisions;
+    return (2 * wrong + horizon * lister_.most_left_out()) * largest * decisions;
   }
   const NumberReports& reports() const { return reports_; }
-  bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
+  bool reaches(Ending ending) const { return lister_.reaches(ending); }
 
   // The running part of a belief, by ascending numbers. The weights are not normalised.
   std::vector<std::pair<std::uint32_t, double>> weights_of(const Belief<Model>& belief) const {
     std::vector<std::pair<std::uint32_t, double>> weights;
     for (const auto& [state, weight] : belief.particles()) {
-      if (Model::ending(state) == Ending::running) weights.emplace_back(numbers_.find(state), weight);
+      if (Model::ending(state) == Ending::running) weights.emplace_back(lister_.numbers().find(state), weight);
     }
     std::sort(weights.begin(), weights.end());
     std::size_t kept = 0;
@@ -177,7 +170,7 @@ class StateSpace {
     blame::at(0);
     const std::uint64_t restarts = restarts_ + 1;
     const std::size_t first_given_up_with = first_given_up_with_;
-    *this = StateSpace{limits_};
+    *this = StateSpace{lister_.limits()};
     restarts_ = restarts;
     first_given_up_with_ = first_given_up_with;
   }
@@ -189,79 +182,50 @@ class StateSpace {
     restart();
     skips_sensing_ = true;
     observations_obstacle_ = std::move(why);
-    draws_.skip_sensing(true);
+    lister_.draws().skip_sensing(true);
   }
   void give_up(std::string why, const Belief<Model>& belief) {
     restart();
     obstacle_ = std::move(why);
     given_up_with_ = belief.particles().size();
     if (first_given_up_with_ == 0) first_given_up_with_ = given_up_with_;
-    limits_.states = std::min(limits_.states, later_limits.states);
-    limits_.outcomes = std::min(limits_.outcomes, later_limits.outcomes);
-    limits_.work = std::min(limits_.work, later_limits.work);
+    const ListLimits& before = lister_.limits();
+    limit({std::min(before.states, later_limits.states), before.bytes, std::min(before.outcomes, later_limits.outcomes),
+           std::min(before.work, later_limits.work)});
   }
 
-  // Adds the states of a belief. If a sampled belief has most of its states only once, there are more.
   void add_states_of(const Belief<Model>& belief) {
     obstacle_.clear();
-    work_ = 0;
-    const std::size_t before = numbers_.size();
-    for (const auto& [state, weight] : belief.particles()) {
-      note_ending(state);
-      if (Model::ending(state) == Ending::running) add(state);
-    }
-    if (belief.is_drawn() && before == 0 && 2 * numbers_.size() > belief.particles().size()) {
-      throw NotEnumerable{"nearly all states of the belief differ"};
-    }
+    lister_.add_states_of(belief);
   }
-
-  std::uint32_t add(const State& state) {
-    const std::uint32_t number = numbers_.add(state);
-    if (numbers_.size() > limits_.states || numbers_.bytes() > limits_.bytes) {
-      throw NotEnumerable{"there are too many states to list"};
-    }
-    return number;
-  }
-  void note_ending(const State& state) { reached_[static_cast<std::size_t>(Model::ending(state))] = true; }
 
   void list_rows_before(std::size_t end) {
-    if (reports_numbers_) draws_.report_to(&reports_);
+    if (reports_numbers_) lister_.draws().report_to(&reports_);
     for (; listed_ < end; ++listed_) {
-      if (listed_ % states_between_looks == 0) progress::tell("listing states", listed_, numbers_.size());
-      for (std::size_t action = 0; action < rows_.actions; ++action) add_row(listed_, static_cast<int>(action));
+      if (listed_ % states_between_looks == 0) progress::tell("listing states", listed_, size());
+      const State state = (*this)[listed_];
+      for (std::size_t action = 0; action < rows_.actions; ++action) add_row(state, static_cast<int>(action));
     }
     rows_.states = listed_;
     rows_.observations = skips_sensing_ ? 1 : reports_numbers_ ? reports_.reports().size() : observations_.size();
   }
 
   void end_list() {
-    for (; listed_ < numbers_.size(); ++listed_) {
+    for (; listed_ < size(); ++listed_) {
       rows_.rewards.resize(rows_.rewards.size() + rows_.actions);
       rows_.outcomes.first.resize(rows_.outcomes.first.size() + rows_.actions, rows_.outcomes.elements.size());
     }
     rows_.states = listed_;
   }
 
-  void add_row(std::uint32_t number, int action) {
-    double reward = 0;
+  void add_row(const State& state, int action) {
     paths_.clear();
-    const auto run = [&](Enumerator& path) {
-      work_ += work_of_step(path, Model::state_bytes());
-      if (work_ > limits_.work) throw NotEnumerable{"there are too many outcomes to list"};
-      next_ = numbers_[number];
-      step_ = Model::step(next_, action, path);
-    };
-    const double left_out = draws_.for_nearly_each_path(run, [&](Enumerator& path) {
-      reward += path.probability() * step_.reward;
-      note_ending(next_);
-      if (Model::ending(next_) != Ending::running) return;
-      paths_.push_back({add(next_), observation_of(action, step_), path.probability()});
-    });
-    most_left_out_ = std::max(most_left_out_, left_out);
-    rows_.rewards.push_back(reward);
+    rows_.rewards.push_back(lister_.walk(state, action, [&](const State& next, const Step& step, double probability) {
+      paths_.push_back({lister_.add(next), observation_of(action, step), probability});
+    }));
     add_outcomes();
     rows_.outcomes.first.push_back(rows_.outcomes.elements.size());
-    if (rows_.outcomes.elements.size() > limits_.outcomes || rows_.likelihoods.elements.size() > limits_.outcomes) {
+    if (std::max(rows_.outcomes.elements.size(), rows_.likelihoods.elements.size()) > lister_.limits().outcomes) {
       throw NotEnumerable{"there are too many outcomes to list"};
     }
   }
@@ -309,26 +273,19 @@ class StateSpace {
     return entry->second;
   }
 
-  SpaceLimits limits_;
-  StateNumbers<Model> numbers_;
+  StateLister<Model> lister_;
   ObservationNumbers<Model> observations_;
   bool reports_numbers_ = Model::reports_numbers();
   NumberReports reports_;
   point_based::FlatModel rows_;
   std::uint32_t listed_ = 0;  // how many states have their rows
   std::uint64_t restarts_ = 0;
-  bool reached_[ending_count]{};
-  std::size_t work_ = 0;
-  double most_left_out_ = 0;  // of the probability of a row
   bool skips_sensing_ = false;
   std::string observations_obstacle_;
   std::string obstacle_;
   std::size_t given_up_with_ = 0;        // how many states the belief had
   std::size_t first_given_up_with_ = 0;  // in the first try
 
-  Enumerator draws_;
-  State next_;  // to which the last run led
-  Step step_;
   std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;
   std::vector<Path> paths_;
   std::vector<point_based::Likelihood> likelihoods_;

@@ -37,7 +37,9 @@ class RootRecord {
   // another action the highest return seen, or give the best action the lowest one.
   bool is_decided(const HistoryNode& root, const ActionNode* actions, const BarredActions& barred, double more) const {
     if (root.n < settled_visits || barred.contains(root.best)) return false;
-    const auto moved = [&](const ActionNode& node, double to) { return (node.n * node.q + more * to) / (node.n + more); };
+    const auto moved = [&](const ActionNode& node, double to) {
+      return node.n > 0 ? (node.n * node.q + more * to) / (node.n + more) : to;
+    };
     const double min_best = moved(actions[root.best], lowest_);
     for (std::size_t a = 0; a < rewards_.size(); ++a) {
       if (a != root.best && !barred.contains(a) && moved(actions[a], highest_) >= min_best) return false;

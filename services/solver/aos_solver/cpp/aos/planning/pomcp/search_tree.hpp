@@ -36,7 +36,10 @@ struct HistoryNode {
 };
 
 struct ActionNode {
-  double q = 0;              // before the first visit, what the action is worth beyond its history, if known
+  union {
+    double q;                // the value, from the first visit on
+    double advantage = 0;    // before it: what the action is worth beyond its history, if known
+  };
   double rewards = 0;        // sum of immediate rewards
   double continuations = 0;  // sum over children of n * v
   double mean = 0;           // of the sampled returns

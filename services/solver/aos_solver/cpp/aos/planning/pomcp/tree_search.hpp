@@ -84,7 +84,7 @@ class TreeSearch {
     if (!has_actions()) return {};
     const ActionNode& node = tree_.actions(tree_.history(0))[action];
     const double variance = node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0;
-    return {node.q, node.n, variance, record_.mean_reward(static_cast<std::size_t>(action))};
+    return {node.n > 0 ? node.q : 0, node.n, variance, record_.mean_reward(static_cast<std::size_t>(action))};
   }
   std::uint32_t known_simulations() const { return tree_.history(0).n; }
   // The discounted probability that a mission that begins with a root action comes to where the tree ends, if it goes on
@@ -225,7 +225,7 @@ class TreeSearch {
     HistoryNode& parent = tree_.history(visit.history);
     ActionNode* const actions = tree_.actions(parent);
     ActionNode& node = actions[visit.action];
-    const double q_before = node.q;
+    const double before = node.n > 0 ? node.q : -std::numeric_limits<double>::infinity();
     ++node.n;
     node.rewards += visit.reward;
     node.continuations += change;
@@ -236,12 +236,12 @@ class TreeSearch {
     node.squares += square;
     parent.squares += square;
     parent.max_visits = std::max(parent.max_visits, node.n);
-    renew_best(parent, actions, action_count(), visit.action, node.q < q_before);
+    renew_best(parent, actions, action_count(), visit.action, node.q < before);
 
-    const double before = parent.n * parent.v;
+    const double sum = parent.n * parent.v;
     ++parent.n;
     parent.v = !switches::max_backup || parent.n < settled_visits ? parent.v + (seen - parent.v) / parent.n : actions[parent.best].q;
-    return parent.n * parent.v - before;
+    return parent.n * parent.v - sum;
   }
 
   // At the root the bounds decide only after every action was tried. Below it, they decide at once where something
@@ -253,7 +253,7 @@ class TreeSearch {
   [[gnu::always_inline]] double value_of(const ActionNode& action, std::uint32_t a, const HistoryNode& history) const {
     if (action.n > 0) return action.q;
     const bool has_prior = !prior_.empty() && history.parent == no_node;
-    return history.v + (has_prior ? -prior_[a] : action.q);
+    return history.v + (has_prior ? -prior_[a] : action.advantage);
   }
 
   // Every eighth simulation begins with the next of the root's actions in turn, so that all their values can be read.
@@ -288,11 +288,11 @@ class TreeSearch {
     work_ += action_count() * worth_cost_;
     state.advantages(odds_.data(), random);
     ActionNode* const actions = tree_.actions(tree_.history(number));
-    for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q += odds_[a] / asked_states;
+    for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].advantage += odds_[a] / asked_states;
     if (history.n + 1 < visits_of_leaf()) return;
-    const auto has_less = [](const ActionNode& left, const ActionNode& right) { return left.q < right.q; };
-    const double best = std::max_element(actions, actions + action_count(), has_less)->q;
-    for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q -= best;
+    const auto has_less = [](const ActionNode& left, const ActionNode& right) { return left.advantage < right.advantage; };
+    const double best = std::max_element(actions, actions + action_count(), has_less)->advantage;
+    for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].advantage -= best;
   }
 
   // Gives a history its actions. Returns false if there is no room for them.
@@ -308,7 +308,7 @@ class TreeSearch {
     } else if (first_state_tells_ && number != 0) {
       work_ += action_count() * worth_cost_;
       state.advantages(odds_.data(), random);
-      for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q = odds_[a];
+      for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].advantage = odds_[a];
     }
     return true;
   }

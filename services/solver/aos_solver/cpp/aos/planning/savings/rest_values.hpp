@@ -124,10 +124,8 @@ class RestValues {
     std::vector<State> examples;
     for (std::size_t walks = 0; examples.size() < wanted && walks < 4 * wanted; ++walks) {
       State state = belief.sample(random);
-      walk_.start();
-      for (int left = random.below(horizon_); left > 0 && Model::ending(state) == Ending::running; --left) {
-        Model::step(state, walk_.next(state, random), random);
-      }
+      const int steps = random.below(horizon_);
+      walk_.take(state, steps, random);
       if (Model::ending(state) == Ending::running) examples.push_back(std::move(state));
     }
     return examples;

@@ -28,6 +28,7 @@
 #include "aos/planning/budget.hpp"
 #include "aos/planning/step_cost.hpp"
 #include "aos/planning/values/mdp_values.hpp"
+#include "aos/planning/values/random_walk.hpp"
 #include "aos/planning/values/state_values.hpp"
 
 namespace aos {
@@ -142,7 +143,7 @@ class GroupMissions {
     sums_.assign(action_count(), 0);
     worths_.resize(action_count());
     find_choosers(first, last);
-    if (choosers_.empty()) return as_a_rollout(followers_[first].state);
+    if (choosers_.empty()) return walk_.draw(followers_[first].state, random_);
     const std::size_t stride = std::max<std::size_t>(choosers_.size() / asked, 1);
     for (std::size_t i = 0; i < choosers_.size(); i += stride) {
       const Follower& chooser = *choosers_[i];
@@ -154,13 +155,6 @@ class GroupMissions {
       for (std::size_t a = 0; a < sums_.size(); ++a) sums_[a] += worths_[a];
     }
     return static_cast<int>(std::max_element(sums_.begin(), sums_.end()) - sums_.begin());
-  }
-
-  // An action of one that knows nothing but which actions may be taken.
-  int as_a_rollout(const State& state) {
-    odds_.resize(action_count());
-    Model::rollout_odds(state, odds_.data(), random_);
-    return random_.choose(odds_.data(), Model::action_count(), 1);
   }
 
   // Those of a group that choose. Where all of them have ended, every second one of the others does, and tells nothing any more.
@@ -240,7 +234,7 @@ class GroupMissions {
   std::vector<double> losses_;
   std::vector<double> sums_;
   std::vector<double> worths_;
-  std::vector<double> odds_;
+  RandomWalk<Model> walk_;
 };
 
 }  // namespace aos

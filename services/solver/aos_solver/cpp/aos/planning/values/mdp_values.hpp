@@ -22,7 +22,6 @@
 namespace aos {
 
 inline constexpr std::size_t max_layered_values = 8'000'000;
-inline constexpr double settled_share = 1e-4;  // of the largest value
 
 template <class Model>
 class MdpValues final : public StateValues<Model> {

@@ -1,4 +1,4 @@
-// The actions of a random walk. They repeat, as those of some rollouts do (rollout.hpp).
+// Actions as a rollout takes them (rollout.hpp), one by one: those of a random walk repeat, as those of some rollouts do.
 #pragma once
 
 #include <cstddef>
@@ -6,6 +6,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/model/rollout.hpp"
+#include "aos/model/step.hpp"
 
 namespace aos {
 
@@ -14,20 +15,36 @@ class RandomWalk {
  public:
   using State = typename Model::State;
 
+  // An action that a rollout may take from the state, drawn anew.
+  int draw(const State& state, Sampler& random) {
+    find_odds(state, random);
+    return random.choose(odds_.data(), Model::action_count(), 1);
+  }
+
   // Begins another walk.
   void start() { repeats_ = 0; }
-
-  // The next action, one that a rollout may take from the state.
+  // The next action of the walk.
   int next(const State& state, Sampler& random) {
-    odds_.resize(static_cast<std::size_t>(Model::action_count()));
-    Model::rollout_odds(state, odds_.data(), random);
+    find_odds(state, random);
     if (repeats_-- > 0 && odds_[static_cast<std::size_t>(action_)] > 0) return action_;
     action_ = random.choose(odds_.data(), Model::action_count(), 1);
     repeats_ = drawn_repeats(random) - 1;
     return action_;
   }
+  // Walks so many steps from the state, or to the end of the mission. Returns the number of steps.
+  int take(State& state, int steps, Sampler& random) {
+    start();
+    int taken = 0;
+    for (; taken < steps && Model::ending(state) == Ending::running; ++taken) Model::step(state, next(state, random), random);
+    return taken;
+  }
 
  private:
+  void find_odds(const State& state, Sampler& random) {
+    odds_.resize(static_cast<std::size_t>(Model::action_count()));
+    Model::rollout_odds(state, odds_.data(), random);
+  }
+
   int action_ = 0;
   int repeats_ = 0;
   std::vector<double> odds_;
