@@ -155,11 +155,9 @@ class Reach(msgspec.Struct, frozen=True):
 
 
 class GoalReach(msgspec.Struct, frozen=True):
-    """The answer whether actions lead to a goal from a belief's running states; random walks leave it
-    unproven."""
+    """The answer whether actions lead to a goal from a belief's running states, by a list or by random walks."""
 
     is_reachable: bool
-    is_proven: bool
 
 
 class Listed(msgspec.Struct, frozen=True):

@@ -129,11 +129,6 @@ class BeliefQuestions(Asking):
         )
         return await self._change_belief(command, BeliefUpdate)
 
-    async def predict_monitor(self, monitor: str) -> Prediction:
-        """Returns the responses that a monitor may give to the state as it is believed."""
-        command = command_line("predict", action=self._index_of_monitor(monitor), seed=self._draws.newest)
-        return await self._ask(command, Prediction)
-
     async def _corrected(
         self, action: str, question: Mapping[str, Any], local_variables: Mapping[str, str] | None
     ) -> BeliefUpdate:

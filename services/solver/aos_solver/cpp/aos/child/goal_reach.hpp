@@ -29,15 +29,11 @@ class GoalReach {
       if (Model::ending(particle.state) == Ending::running) running.push_back(particle);
     }
     if (running.empty()) return;
-    if (!list(Belief<Model>::of(Cloud<Model>{running, {}, {}}, belief.error_bound(), belief.is_drawn()), seconds)) {
-      is_proven_ = false;
-      walk(running, seconds, horizon, random);
-    }
+    const auto of_running = Belief<Model>::of(Cloud<Model>{running, {}, {}}, belief.error_bound(), belief.is_drawn());
+    if (!list(of_running, seconds)) walk(running, seconds, horizon, random);
   }
 
   bool is_reachable() const { return is_reachable_; }
-  // Whether nothing was left to chance.
-  bool is_proven() const { return is_proven_ || is_reachable_; }
 
  private:
   // Returns whether this tells everything.
@@ -70,7 +66,6 @@ class GoalReach {
   }
 
   bool is_reachable_ = false;
-  bool is_proven_ = true;
 };
 
 }  // namespace aos

@@ -113,7 +113,7 @@ class PlanningCommands {
     if (!left_out.empty()) without.emplace(left_out);
     Sampler random{command.number<std::uint64_t>("seed")};
     const GoalReach<Model> reach{beliefs_.belief_for(command), command.number<double>("seconds"), horizon_of(command), random};
-    json.begin_object().member("is_reachable", reach.is_reachable()).member("is_proven", reach.is_proven()).end_object();
+    json.begin_object().member("is_reachable", reach.is_reachable()).end_object();
   }
 
   // Lists the model from the current belief on. A call without a limit of states continues the listing before it.
