@@ -99,13 +99,16 @@ LIMITS: dict[str, tuple[Row, ...]] = {
     "Planning": (
         Row(
             "states that searches number",
-            "planning/listed/state_space.hpp:states", "", "POMCP without them",
+            "planning/listed/state_lister.hpp:states", "", "POMCP without them",
         ),
         Row(
             "states whose values POMCP computes",
             "planning/values/wide_values.hpp:states", "", "learned values",
         ),
-        Row("outcomes of these states", "planning/listed/state_space.hpp:outcomes", "", "POMCP without them"),
+        Row(
+            "outcomes of these states",
+            "planning/listed/state_lister.hpp:outcomes", "", "POMCP without them",
+        ),
         Row("states of an exact belief", "belief/belief.hpp:max_weighted_states", "", "particles"),
         Row("particles of a sampled belief", "belief/history.hpp:particle_count", "", "drawn anew"),
         Row(

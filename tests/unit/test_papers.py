@@ -107,8 +107,8 @@ def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: 
     monkeypatch.syspath_prepend(root / "docs")
     table = importlib.import_module("limits_table")
     assert table.value_at("aos_runtime.bus_config.LEASE_S") == 2.0
-    assert table.value_at("planning/listed/state_space.hpp:states") == 400_000
-    for place in ("aos_runtime.bus_config.LEASES", "planning/listed/state_space.hpp:stats", "aos_x.y.Z"):
+    assert table.value_at("planning/listed/state_lister.hpp:states") == 400_000
+    for place in ("aos_runtime.bus_config.LEASES", "planning/listed/state_lister.hpp:stats", "aos_x.y.Z"):
         with pytest.raises(AttributeError, match="any more"):
             table.value_at(place)
 

@@ -155,7 +155,7 @@ class Reach(msgspec.Struct, frozen=True):
 
 
 class GoalReach(msgspec.Struct, frozen=True):
-    """The answer whether actions lead to a goal from a belief's running states, by a list or by random walks."""
+    """The answer whether actions lead to a goal from the running states, by a list or by random walks."""
 
     is_reachable: bool
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "aos/model/values.hpp"
+#include "aos/planning/values/value_constants.hpp"
 
 namespace aos {
 
@@ -36,10 +37,10 @@ class CellVariable {
     lowest_ = numbers.front();
     const double range = numbers.back() - lowest_;
     if (!(range > 0 && std::isfinite(range))) return false;
-    has_ranges_ = leaf_.kind == Leaf::Kind::real || range >= max_values;
+    has_ranges_ = leaf_.kind == Leaf::Kind::real || range >= max_cell_values;
     if (has_ranges_) {
-      for (std::size_t i = 1; i < max_ranges; ++i) {
-        const double limit = numbers[i * numbers.size() / max_ranges];
+      for (std::size_t i = 1; i < max_cell_ranges; ++i) {
+        const double limit = numbers[i * numbers.size() / max_cell_ranges];
         if (limits_.empty() || limit > limits_.back()) limits_.push_back(limit);
       }
     }
@@ -59,8 +60,6 @@ class CellVariable {
   }
 
  private:
-  static constexpr double max_values = 255;
-  static constexpr std::size_t max_ranges = 24;
 
   Leaf leaf_;
   std::size_t offset_;
@@ -74,7 +73,6 @@ class CellTables {
  public:
   using Row = const std::uint16_t*;
 
-  static constexpr std::size_t max_tables = 24;
 
   explicit CellTables(const std::vector<CellVariable>& variables = {}) {
     for (const CellVariable& variable : variables) cells_.push_back(variable.cells());
@@ -117,20 +115,15 @@ class CellTables {
       mean_ += more;
       for (double& left : left_) left -= more;
     }
-    if (tables_.size() < max_tables) add_table(max_unexplained * squares_around_mean(targets));
+    if (tables_.size() < max_cell_tables) add_table(max_unexplained_share * squares_around_mean(targets));
   }
 
  private:
-  static constexpr int max_order = 3;
-  static constexpr std::uint32_t max_cells = 1 << 16;
-  static constexpr std::size_t max_tried = 6'000'000;  // lookups of a search for a new table
-  static constexpr double max_unexplained = 2e-4;      // of the targets' squares, which needs no table
-  static constexpr double chance = 3;                  // what a cell has to explain, in variances of what is left
 
   struct Table {
     int order = 0;
-    std::uint32_t variables[max_order]{};
-    std::uint32_t strides[max_order]{};
+    std::uint32_t variables[max_table_order]{};
+    std::uint32_t strides[max_table_order]{};
     std::uint32_t size = 1;
     std::uint32_t first = 0;  // its first weight
 
@@ -207,16 +200,16 @@ class CellTables {
   // with one more variable.
   void add_table(double min_gain) {
     const auto count = static_cast<std::uint32_t>(cells_.size());
-    const bool tries_pairs = count <= max_pairs_of;
+    const bool tries_pairs = count <= max_paired_variables;
     const std::size_t candidates = count * (1 + tables_.size() + (tries_pairs ? count / 2 : 0));
-    const std::size_t stride = std::max<std::size_t>(candidates * left_.size() / max_tried, 1);
+    const std::size_t stride = std::max<std::size_t>(candidates * left_.size() / max_tried_lookups, 1);
     double squares = 0;
     for (const double left : left_) squares += left * left;
     const double variance = squares / static_cast<double>(left_.size());
     Table best;
     double max_gain = min_gain / static_cast<double>(stride);
     const auto consider = [&](const Table& table) {
-      if (table.size > max_cells || is_there(table)) return;
+      if (table.size > max_table_cells || is_there(table)) return;
       const double found = gain(table, variance, stride);
       if (found <= max_gain) return;
       max_gain = found;
@@ -226,7 +219,7 @@ class CellTables {
       consider(grown({}, a));
       for (std::uint32_t b = 0; tries_pairs && b < a; ++b) consider(grown(grown({}, b), a));
       for (const Table& table : tables_) {
-        if (table.order < max_order && !table.has(a)) consider(grown(table, a));
+        if (table.order < max_table_order && !table.has(a)) consider(grown(table, a));
       }
     }
     if (best.order == 0) return;
@@ -246,7 +239,7 @@ class CellTables {
     }
     double gain = 0;
     for (const Sum& sum : sums_) {
-      if (sum.count > 0) gain += sum.left * sum.left / (sum.count + 1) - chance * variance;
+      if (sum.count > 0) gain += sum.left * sum.left / (sum.count + 1) - variances_of_chance * variance;
     }
     return gain;
   }
@@ -258,7 +251,6 @@ class CellTables {
     });
   }
 
-  static constexpr std::uint32_t max_pairs_of = 40;
 
   std::vector<std::uint32_t> cells_;  // how many, by variable
   std::vector<Table> tables_;

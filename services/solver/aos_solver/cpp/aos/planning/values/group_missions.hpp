@@ -30,6 +30,7 @@
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/random_walk.hpp"
 #include "aos/planning/values/state_values.hpp"
+#include "aos/planning/values/value_constants.hpp"
 
 namespace aos {
 
@@ -48,8 +49,8 @@ class GroupMissions {
     constexpr double operations_of_second = 1e9;
     const double of_decision = budget.simulations > 0 ? static_cast<double>(budget.operations(horizon))
                                                       : budget.seconds * operations_of_second;
-    saved_ += share_of_budget * of_decision * (is_first_ ? horizon : 1);
-    return is_first_ || saved_ >= renewed * cost_;
+    saved_ += share_of_groups * of_decision * (is_first_ ? horizon : 1);
+    return is_first_ || saved_ >= fewest_later_followers * cost_;
   }
 
   // Plays a group from the belief's running part that begins with `action`. `listed` are the same values if the states are
@@ -61,7 +62,7 @@ class GroupMissions {
     random_ = random;
     if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
     cost_ = cost_of_follower(horizon);
-    const double affordable = std::clamp(saved_ / cost_, fewest, most);
+    const double affordable = std::clamp(saved_ / cost_, fewest_followers, most_followers);
     saved_ = 0;
     is_first_ = false;
     const ForgottenTexts forgotten;
@@ -85,12 +86,6 @@ class GroupMissions {
  private:
   using State = typename Model::State;
 
-  static constexpr double share_of_budget = 0.01;  // at each decision, and as much for all of them at the first one
-  static constexpr double fewest = 30;    // states of a group
-  static constexpr double most = 500;
-  static constexpr double renewed = 100;  // the fewest of a later one
-  static constexpr std::size_t smallest_group = 10;
-  static constexpr std::size_t asked = 16;  // states of a group that choose the action, about
   static constexpr double cost_of_listed_action = 2;
 
   struct Follower {
@@ -105,7 +100,7 @@ class GroupMissions {
   double cost_of_follower(int horizon) const {
     const auto of_step = static_cast<double>(step_cost_);
     const double of_choice = (listed_ != nullptr ? cost_of_listed_action : of_step) * static_cast<double>(action_count());
-    return horizon * (of_step + of_choice * asked / smallest_group);
+    return horizon * (of_step + of_choice * asked_followers / fewest_alike);
   }
 
   void gather(const Belief<Model>& belief, std::size_t count, int horizon) {
@@ -144,7 +139,7 @@ class GroupMissions {
     worths_.resize(action_count());
     find_choosers(first, last);
     if (choosers_.empty()) return walk_.draw(followers_[first].state, random_);
-    const std::size_t stride = std::max<std::size_t>(choosers_.size() / asked, 1);
+    const std::size_t stride = std::max<std::size_t>(choosers_.size() / asked_followers, 1);
     for (std::size_t i = 0; i < choosers_.size(); i += stride) {
       const Follower& chooser = *choosers_[i];
       if (listed_ != nullptr) {
@@ -189,7 +184,7 @@ class GroupMissions {
     rare_.clear();
     for (auto start = group_.begin(); start != group_.end();) {
       const auto end = std::upper_bound(start, group_.end(), *start, is_before);
-      const bool is_rare = static_cast<std::size_t>(end - start) < smallest_group;
+      const bool is_rare = static_cast<std::size_t>(end - start) < fewest_alike;
       if (is_rare) rare_.insert(rare_.end(), start, end);
       else add_group(start, end);
       start = end;

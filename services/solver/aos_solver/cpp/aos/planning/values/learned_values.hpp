@@ -31,6 +31,7 @@
 #include "aos/planning/values/random_walk.hpp"
 #include "aos/planning/values/state_cells.hpp"
 #include "aos/planning/values/state_values.hpp"
+#include "aos/planning/values/value_constants.hpp"
 
 namespace aos {
 
@@ -46,7 +47,7 @@ class LearnedValues final : public StateValues<Model> {
     if (Model::action_count() == 0 || belief.probability_of(Ending::running) <= 0) return false;
     has_tried_ = true;
     horizon_ = horizon;
-    const bool are_learned = std::any_of(std::begin(efforts), std::end(efforts), [&](const Effort& effort) {
+    const bool are_learned = std::any_of(std::begin(learning_efforts), std::end(learning_efforts), [&](const LearningEffort& effort) {
       learn(belief, effort, random);
       return keeps_its_promise(belief, random);
     });
@@ -78,21 +79,7 @@ class LearnedValues final : public StateValues<Model> {
   }
 
  private:
-  struct Effort {
-    std::size_t successors;  // simulated in a round
-    int rounds;
-  };
-  static constexpr Effort efforts[] = {{100'000, 2}, {200'000, 3}};
-  static constexpr std::size_t max_example_bytes = std::size_t{32} << 20;  // of the states of a round
-  static constexpr std::size_t max_cells = 20'000'000;    // of all rows
-  static constexpr int attempts_to_go_on = 8;  // of a walk, at each step
   static constexpr std::size_t walks_between_looks = 64;  // at the progress
-  static constexpr int sweeps = 30;
-  static constexpr int max_compared = 24;  // actions; a policy takes the best of these
-  static constexpr int tests = 64;
-  static constexpr int max_rollouts = 32;  // before a decision, of all actions together
-  static constexpr std::size_t max_compared_steps = 2'000'000;
-  static constexpr double min_compared_missions = 4;
 
   struct Successor {
     float reward;
@@ -109,13 +96,13 @@ class LearnedValues final : public StateValues<Model> {
     lowest_ = highest_ = 0;
   }
 
-  void learn(const Belief<Model>& belief, const Effort& effort, Sampler& random) {
+  void learn(const Belief<Model>& belief, const LearningEffort& effort, Sampler& random) {
     forget();
     for (int round = 0; round < effort.rounds; ++round) {
       walk(belief, effort.successors, random, round > 0);
       if (examples_.empty() || (round == 0 && !find_variables())) return;
       simulate_all_actions(random);
-      for (int sweep = 0; sweep < std::min(sweeps, horizon_); ++sweep) improve();
+      for (int sweep = 0; sweep < std::min(learning_sweeps, horizon_); ++sweep) improve();
       used_ = tables_.used_variables();
     }
   }
@@ -160,7 +147,7 @@ class LearnedValues final : public StateValues<Model> {
   }
   template <class Worth>
   static int best_by(Worth&& worth_of, Sampler& random) {
-    const bool compares_all = Model::action_count() <= max_compared;
+    const bool compares_all = Model::action_count() <= max_compared_actions;
     int best = 0;
     double most = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < compared(); ++i) {
@@ -172,7 +159,7 @@ class LearnedValues final : public StateValues<Model> {
     }
     return best;
   }
-  static int compared() { return std::min(Model::action_count(), max_compared); }
+  static int compared() { return std::min(Model::action_count(), max_compared_actions); }
 
   bool find_variables() {
     if (!cells_.find(examples_)) return false;
@@ -181,7 +168,7 @@ class LearnedValues final : public StateValues<Model> {
   }
 
   void simulate_all_actions(Sampler& random) {
-    const std::size_t room = max_cells / (cells_.size() * (action_count() + 1));
+    const std::size_t room = max_example_cells / (cells_.size() * (action_count() + 1));
     if (examples_.size() > room) examples_.resize(std::max<std::size_t>(room, 2));
     rows_.clear();
     successors_.clear();
@@ -228,7 +215,7 @@ class LearnedValues final : public StateValues<Model> {
     double promised = 0;
     double earned = 0;
     double at_random = 0;
-    for (int test = 0; test < tests; ++test) {
+    for (int test = 0; test < tested_missions; ++test) {
       const State& state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
       promised += value(state, horizon_);
@@ -245,7 +232,7 @@ class LearnedValues final : public StateValues<Model> {
     double sum = 0;
     double squares = 0;
     std::size_t steps = 0;
-    for (int test = 0; test < tests && steps < max_compared_steps; ++test) {
+    for (int test = 0; test < tested_missions && steps < max_tested_steps; ++test) {
       const State& state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
       const double difference = earned_by_values(state, random) - earned_by_rollouts(state, random, steps);
@@ -274,7 +261,7 @@ class LearnedValues final : public StateValues<Model> {
     return earned_by(state, [&](const State& now, int left) { return best_action(now, left, random); }, random);
   }
   double earned_by_rollouts(const State& state, Sampler& random, std::size_t& steps) const {
-    const int rollouts = std::max(1, max_rollouts / compared());
+    const int rollouts = std::max(1, max_tested_rollouts / compared());
     const auto worth = [&](const State& now, int action, int left) {
       double sum = 0;
       for (int i = 0; i < rollouts; ++i) {

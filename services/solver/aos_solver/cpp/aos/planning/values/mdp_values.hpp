@@ -16,12 +16,12 @@
 #include "aos/belief/belief.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/values/state_values.hpp"
+#include "aos/planning/values/value_constants.hpp"
 #include "numbers/observable_values.hpp"
 #include "point_based/rounding.hpp"
 
 namespace aos {
 
-inline constexpr std::size_t max_layered_values = 8'000'000;
 
 template <class Model>
 class MdpValues final : public StateValues<Model> {

@@ -25,6 +25,7 @@
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/random_walk.hpp"
 #include "aos/planning/values/state_values.hpp"
+#include "aos/planning/values/value_constants.hpp"
 #include "numbers/compact_model.hpp"
 
 namespace aos {
@@ -33,9 +34,6 @@ namespace aos {
 inline constexpr ListLimits wide_limits{
     .states = 8'000'000, .bytes = std::size_t{256} << 20, .outcomes = std::size_t{100} << 20, .work = 80'000'000};
 // Before a listing begins:
-inline constexpr std::size_t looked_at = 20'000;         // walks
-inline constexpr std::size_t max_looking_work = 600'000;  // in steps and copies of 64 bytes
-inline constexpr std::size_t priced_states = 100;
 
 template <class Model>
 class WideValues final : public StateValues<Model> {
