@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -10,9 +11,10 @@ from typing import Any, NoReturn
 
 import typer
 
-from aos_deploy.exit_codes import exit_code_of_error
+from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, Version
+from aos_deploy.terminal import write_what_fits
 from aos_protocol.errors import AosError
 
 __all__ = ["aos_app", "main", "up_main"]
@@ -102,9 +104,20 @@ def _own_options(version: Version = False) -> None:
 
 def _run(app: typer.Typer, name: str) -> NoReturn:
     """Runs the command and ends the process: an AosError as its diagnostics and one line on stderr."""
+    write_what_fits(sys.stdout)
     try:
-        app(prog_name=name)
+        try:
+            app(prog_name=name)
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
     except AosError as error:
         print_fault(name, error)
         sys.exit(exit_code_of_error(error))
+    except OSError as error:
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+            raise
+        sys.stderr.write(f"{name}: {error.filename or 'the output'} cannot be written: {error.strerror}\n")
+        sys.stderr.flush()
+        os._exit(ExitCode.NOT_STARTED)  # Python would write the rest once more.
     sys.exit(0)

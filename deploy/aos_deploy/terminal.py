@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import time
@@ -19,7 +20,7 @@ from rich.progress import (
     TimeElapsedColumn,
 )
 
-__all__ = ["console", "progress", "waiting"]
+__all__ = ["console", "progress", "waiting", "write_what_fits"]
 
 LINE_EVERY_S = 20.0
 _PIPED_COLUMNS = 1000
@@ -34,6 +35,14 @@ def console(*, stderr: bool = False, is_wide: bool = False) -> Console:
     if is_wide and not shown.is_terminal and not os.environ.get("COLUMNS"):
         shown.width = _PIPED_COLUMNS
     return shown
+
+
+def write_what_fits(stream: object) -> None:
+    """Has a stream write a question mark for each letter that its encoding does not have, as Latin-1 and
+    the lines of tables."""
+    if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+        is_unicode = stream.encoding.lower().startswith("utf")
+        stream.reconfigure(errors="backslashreplace" if is_unicode else "replace")
 
 
 def progress(*columns: ProgressColumn) -> Progress:

@@ -38,3 +38,12 @@ def test_a_piped_command_says_nothing_beside_its_result(
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)
     assert done.stderr == ""
+
+
+def test_an_output_that_cannot_be_written_is_told_in_one_line() -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [AOS, "schema", "deploy"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=COMMAND_S
+        )
+    assert done.returncode == 3
+    assert done.stderr == "aos: the output cannot be written: No space left on device\n"

@@ -130,6 +130,11 @@ def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(
     assert "pick -> failed (no map  [31m)" in capsys.readouterr().out
 
 
+def test_an_empty_text_as_a_response_is_seen(capsys: pytest.CaptureFixture[str]) -> None:
+    PlainView()(msgspec.structs.replace(OBSERVED, outcome=msgspec.structs.replace(OUTCOME, response="")))
+    assert 'pick -> ""  surprise' in capsys.readouterr().out
+
+
 def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.CaptureFixture[str]) -> None:
     view = PlainView()
     for remark in ("listing states: 1 of 2", "listing states: 2 of 3", "computing first bounds: 1 of 10"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+
 import pytest
 
 from aos_deploy import terminal
@@ -18,3 +20,15 @@ def test_long_work_tells_a_log_now_and_then_how_far_it_is(
     said = capsys.readouterr()
     assert said.err == "aos: deciding for 21 s: 21 beliefs\naos: deciding for 41 s: 41 beliefs\n"
     assert not said.out
+
+
+@pytest.mark.parametrize(
+    ("encoding", "written"), [("latin-1", b"\xe9 ??"), ("utf-8", b"\xc3\xa9 \xe2\x94\x83\\udcff")]
+)
+def test_what_an_output_cannot_write_does_not_end_the_command(encoding: str, written: bytes) -> None:
+    raw = io.BytesIO()
+    stream = io.TextIOWrapper(raw, encoding=encoding)
+    terminal.write_what_fits(stream)
+    stream.write("\u00e9 \u2503\udcff")
+    stream.flush()
+    assert raw.getvalue() == written

@@ -12,7 +12,9 @@ __all__ = ["at_least_text", "at_most_text", "observation_text", "value_text"]
 
 
 def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
-    """`scanned (beams = 1.2 3.4, tilt = 0.12)`; a number that is missing in an array is a dash."""
+    """`scanned (beams = 1.2 3.4, tilt = 0.12)`; a number that is missing in an array is a dash, an empty
+    text `""`."""
+    response = response or '""'
     shown = ", ".join(f"{name} = {_numbers(value)}" for name, value in numbers.items())
     return f"{response} ({shown})" if shown else response
 

@@ -155,7 +155,8 @@ class Failures:
 
 def _said(outcome: Outcome, is_excluded: bool) -> str:
     if is_excluded:
-        return f"{outcome.response}, which the model excludes"
+        said = outcome.response or "an empty text"
+        return f"{said}, which the model excludes"
     what = outcome.response or outcome.status
     if outcome.fault is None:
         return what
