@@ -9,6 +9,7 @@ import msgspec
 
 from aos_deploy.typed import read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, read_yaml
+from aos_lab.trials.claim_names import ClaimNames, project_of_setting
 from aos_lab.trials.claims import Claim, has_check
 from aos_lab.trials.setting import Setting
 from aos_language.findings import Findings
@@ -115,6 +116,7 @@ def _read(path: Path, kind: type[F], entries: str) -> F:
             where, label = _entry(_entry(node, entries), name), f"{entries}.{name}"
             if isinstance(part, Part):
                 _check(part, where, findings, label)
+                _check_names(part, where, findings, path.resolve().parent)
             elif not part.script:
                 span = where.span if where is not None else Span(label)
                 findings.error("AOS105", f"{label} has no script", span, "Give it a list of actions")
@@ -135,6 +137,15 @@ def _check(part: Part, node: YamlNode | None, findings: Findings, path: str) -> 
         if not has_check(claim):
             hint = "Give it a check, such as first, never, order or endings"
             findings.error("AOS105", f"nothing is checked by the claim {claim.says!r}", where, hint)
+
+
+def _check_names(part: Part, node: YamlNode | None, findings: Findings, folder: Path) -> None:
+    project = project_of_setting(part, folder)
+    listed = _entry(node, "claims")
+    if project is not None and isinstance(listed, YamlList):
+        names = ClaimNames(project, part.by, findings)
+        for claim, item in zip(part.claims, listed.items, strict=False):
+            names.check(claim, item.span)
 
 
 def _entry(node: YamlNode | None, key: str) -> YamlNode | None:
