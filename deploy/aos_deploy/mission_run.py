@@ -194,7 +194,8 @@ class MissionRun:
             await supervisor.until_ready()
             write_record()  # Now all processes have an id.
             self._services_ready_s = self._elapsed_s()
-        await until_skills_can_run(supervisor, self._deployment)
+        for remark in await until_skills_can_run(supervisor, self._deployment):
+            self._report(Told(remark))
         await self._ask_to_start(supervisor, StartMission())
 
     async def _ask_to_start(self, supervisor: Supervisor, start: StartMission) -> None:

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.supervisor import Supervisor
 from aos_deploy.typed import known_names
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
+from aos_protocol.spelling import nearest
 from aos_runtime.reported_state import state_when
 
-__all__ = ["until_skills_can_run"]
+__all__ = ["misspelt_paths", "until_skills_can_run"]
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0
 MAPPINGS_S = 60.0
 
 
-async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> None:
-    """Returns when all skills of the newest revision can be run.
+async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> tuple[str, ...]:
+    """Returns when all skills of the newest revision can be run, with `misspelt_paths` of these.
 
     DeployError AOS807 names the paths that nobody serves, or two adapters serve, after the time that adapters
     may take to start; AOS801 a skill that only the deploy file knows.
@@ -58,6 +61,22 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
             code="AOS807",
             hint=_hint(supervisor, deployment),
         ) from error
+    return misspelt_paths(deployment, {skill.mapping.activation.path for skill in project.project.skills})
+
+
+def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str, ...]:
+    """A remark for each path of `bind:` that no skill calls, and that is nearly one that a skill calls and
+    `"*"` binds: another adapter moves there. A path that is like none may be that of a skill to come.
+    """
+    bound = {path for plan in deployment.adapters for path in plan.bind}
+    remarks = []
+    for path in sorted(bound.difference(called)):
+        if close := nearest(path, set(called) - bound):
+            others = next((plan.name for plan in deployment.adapters if plan.serves_others), "another")
+            remarks.append(
+                f"`bind:` names {path}, which no skill calls. Did you mean {close}? {others} serves that"
+            )
+    return tuple(remarks)
 
 
 def _hint(supervisor: Supervisor, deployment: Deployment) -> str:

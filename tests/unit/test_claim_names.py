@@ -32,7 +32,7 @@ DEPLOY = "aos: 1\nrobot: walker\nbundles: [bundle]\nleave_out: [say]\nbind: {'*'
 
 
 def found(folder: Path, claim: str, more: str = "") -> list[str]:
-    """What is wrong with a test of one claim."""
+    """The mistakes of a file with a test of one claim."""
     (folder / "bundle").mkdir()
     for name, text in DOCUMENTS.items():
         (folder / "bundle" / name).write_text(text)

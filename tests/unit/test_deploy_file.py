@@ -13,6 +13,7 @@ from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file,
 from aos_deploy.needed_here import check_needed_here
 from aos_deploy.own_programs import ReadyPart
 from aos_deploy.program import programs_of_deployment
+from aos_deploy.readiness import misspelt_paths
 from aos_protocol.errors import DeployError
 from aos_runtime.adapters import AdapterSettings, Binding
 
@@ -295,6 +296,16 @@ def test_all_mistakes_are_found_in_one_run(folder: Path) -> None:
 def test_a_path_of_an_adapter_with_a_mistake_is_none_as_well(folder: Path) -> None:
     text = f"{HEAD}adapters: {{arm: {{command: ./arm}}}}\nbind: {{'*': arm, /drive: {{arm: go}}}}\n"
     assert [found.split(".command")[0] for found in findings(folder, text)] == ["4:12 AOS106 adapters.arm"]
+
+
+def test_a_path_that_is_nearly_one_of_a_skill_is_remarked_where_another_adapter_moves(folder: Path) -> None:
+    deployment = read(
+        folder, f"{HEAD}bind: {{/drvie: pybullet, /pick: pybullet, '*': model}}\nworld: room.yaml\n"
+    )
+    assert misspelt_paths(deployment, ["/drive", "/look"]) == (
+        "`bind:` names /drvie, which no skill calls. Did you mean /drive? model serves that",
+    )
+    assert misspelt_paths(deployment, ["/drvie", "/look"]) == (), "a skill that picks may come"
 
 
 def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path) -> None:
