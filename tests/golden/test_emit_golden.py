@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import pytest
 from scripted_models import bundle_project
 
 from aos_solver.emission.emit import emit
@@ -19,6 +20,13 @@ def test_the_emitted_model_is_the_promoted_one(bundles: Path) -> None:
     assert program is not None
     check(GOLDEN / "armadillo-finer.cpp", emit(program).cpp)
     check(GOLDEN / "armadillo-finer.txt", outline(program))
+
+
+@pytest.mark.parametrize("example", ["kettle-json", "kettle-sdl"])
+def test_a_bundle_with_every_block_is_emitted(root: Path, example: str) -> None:
+    program, _ = lower(bundle_project(root / "docs" / "examples" / example))
+    assert program is not None
+    assert "aos_locals.is_full" in emit(program).cpp, "what a real run tells"
 
 
 def test_emission_gives_the_same_bytes_again(bundles: Path) -> None:

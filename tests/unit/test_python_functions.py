@@ -66,12 +66,7 @@ async def end(adapter: PythonAdapter) -> None:
 
 
 async def answer(adapter: PythonAdapter, path: str) -> Any:
-    fields: dict[str, Any] = {}
-    call = Call(
-        id=ActivationId("m", 1), path=path, target=path, fields=fields, deadline_s=5.0, skill="reach",
-        parameters=fields, on_progress=lambda share, text: None, on_message=lambda topic, fields: None,
-    )  # fmt: skip
-    return await adapter.call(call)
+    return await adapter.call(Call(ActivationId("m", 1), path, path, {}, 5.0))
 
 
 async def test_a_function_that_would_end_the_process_fails_its_call_and_the_next_one_runs(

@@ -42,11 +42,11 @@ def project_of_setting(setting: Setting, folder: Path) -> Project | None:
         deployment = read_deploy_file(folder / setting.deploy)
         if deployment.watch is not None:
             return None
-        if setting.bundles:
-            bundles = tuple((folder / bundle).resolve() for bundle in setting.bundles)
-            deployment = msgspec.structs.replace(deployment, bundles=bundles)
+        bundles = tuple(folder / bundle for bundle in setting.bundles) or deployment.bundles
         file = msgspec.structs.replace(deployment.file, leave_out=())
-        return project_of(msgspec.structs.replace(deployment, file=file, constraints=(), mission_values=()))
+        return project_of(
+            msgspec.structs.replace(deployment, bundles=bundles, file=file, constraints=(), mission_values=())
+        )
     except (AosError, OSError):
         return None
 

@@ -280,6 +280,14 @@ class Skill(msgspec.Struct, frozen=True):
         """True if its real observations tell about the state beyond the response."""
         return self.given_observation is not None or bool(self.reported)
 
+    @property
+    def local_bindings(self) -> tuple[tuple[str, str], ...]:
+        """The local variables as `given_observation` sees them; a parameter of the same name hides one."""
+        hidden = {parameter.name for parameter in self.parameters}
+        return tuple(
+            (local.name, f"aos_locals.{local.name}") for local in self.locals if local.name not in hidden
+        )
+
 
 class Monitor(msgspec.Struct, frozen=True):
     """A monitor: its responses in the order of the mapping's rules, and the code that gives one."""
