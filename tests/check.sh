@@ -25,6 +25,9 @@ fi
 # Tests start hundreds of processes. Each would compile the same modules anew.
 unset PYTHONDONTWRITEBYTECODE
 
+# The first tests wait for this program. Checks of style leave a processor to it.
+[ $# -gt 0 ] || "$BIN/python" tests/engine_checks.py &
+
 step style "$BIN/ruff" check
 step form "$BIN/ruff" format --check
 step types "$BIN/mypy"

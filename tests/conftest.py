@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
+import gc
 from pathlib import Path
 
 import pytest
-from kept_cache import link_engines
+from kept_cache import kept_cache
 
-from aos_deploy.program import cache_dir as user_cache_dir
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text, trust_documents
 
 ROOT = Path(__file__).resolve().parents[1]
-CACHE = Path(os.environ.get("AOS_TEST_CACHE", ROOT / ".compiled"))
-"""The checkout may be another user's."""
 TESTS = ROOT / "tests"
 LONGEST = TESTS / "longest_first.txt"
 """Files of tests, by the processor time that docs/lab/checks.md tells of."""
@@ -54,11 +51,16 @@ def corpus() -> Path:
 @pytest.fixture(scope="session")
 def cache_dir() -> Path:
     """Compiled models, kept from run to run, and the engines that setup.sh has compiled."""
-    link_engines(user_cache_dir(), CACHE)
-    return CACHE
+    return kept_cache()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Puts the files that take longest first, so that processes that share the tests end together."""
     places = {name: place for place, name in enumerate(LONGEST.read_text().split())}
     items.sort(key=lambda item: places.get(item.path.relative_to(TESTS).as_posix(), len(places)))
+
+
+def pytest_collection_finish() -> None:
+    """Sets apart from garbage what stays for the whole run: thousands of tests."""
+    gc.collect()
+    gc.freeze()

@@ -9,7 +9,7 @@ import sys
 import venv
 from pathlib import Path
 
-__all__ = ["SIMULATOR", "Installation", "built_wheel", "install"]
+__all__ = ["SIMULATOR", "Installation", "built_wheel", "install", "link_packages"]
 
 SIMULATOR = ("pybullet", "PIL")
 """The beginnings of what the extra `sim` adds to the packages."""
@@ -73,18 +73,27 @@ def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
 def install(
     wheel: Path, environment: Path, *, without: tuple[str, ...] = (), only: tuple[str, ...] = ("",)
 ) -> None:
-    """Makes an environment with the wheel in it.
-
-    What it depends on is linked from the environment of the tests, which has it already: packages that begin
-    with one of `only`, and with none of `without`.
-    """
+    """Makes an environment with the wheel in it, and with `link_packages` what it depends on."""
     venv.create(environment, symlinks=True)
     pip = [sys.executable, "-m", "pip", "--python", environment / "bin" / "python", "install"]
     options = ["--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]
     subprocess.run([*pip, *options, wheel], check=True, stdin=subprocess.DEVNULL, timeout=_PATIENCE_S)
+    link_packages(environment, without=without, only=only)
+
+
+def link_packages(
+    environment: Path, *, without: tuple[str, ...] = (), only: tuple[str, ...] = ("",)
+) -> list[Path]:
+    """Links packages from the environment of the tests, which has them already; returns the links.
+
+    They are those that begin with one of `only`, and with none of `without`.
+    """
     (packages,) = environment.glob("lib/python*/site-packages")
     (available,) = Path(sys.prefix).glob("lib/python*/site-packages")
+    links = []
     for package in available.iterdir():
         ours = package.name.startswith(("aos", "__editable__", "_", *without)) or package.suffix == ".pth"
         if package.name.startswith(only) and not ours and not (packages / package.name).exists():
             (packages / package.name).symlink_to(package)
+            links.append(packages / package.name)
+    return links

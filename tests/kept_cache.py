@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from pathlib import Path
 
-__all__ = ["link_engines"]
+from aos_deploy.program import cache_dir as user_cache_dir
+
+__all__ = ["kept_cache", "link_engines"]
+
+_CACHE = Path(os.environ.get("AOS_TEST_CACHE", Path(__file__).resolve().parents[1] / ".compiled"))
+"""The checkout may be another user's."""
+
+
+def kept_cache() -> Path:
+    """The folder, with the engines that set-up has compiled."""
+    link_engines(user_cache_dir(), _CACHE)
+    return _CACHE
 
 
 def link_engines(folder: Path, cache: Path) -> None:

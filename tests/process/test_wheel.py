@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from installed import SIMULATOR, Installation, built_wheel, install
+from installed import SIMULATOR, Installation, built_wheel, install, link_packages
 
 ANY_PORT = ("--listen", "tcp/127.0.0.1:0")
 
@@ -16,20 +17,22 @@ def wheel(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def aos(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
-    """The installation with the extra `sim`."""
-    place = tmp_path_factory.mktemp("with-sim")
-    install(wheel, place / "environment")
-    (place / "empty").mkdir()
-    return Installation(place / "environment", place / "empty", cache_dir)
-
-
-@pytest.fixture(scope="module")
 def aos_without_sim(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
     place = tmp_path_factory.mktemp("without-sim")
     install(wheel, place / "environment", without=SIMULATOR)
     (place / "empty").mkdir()
     return Installation(place / "environment", place / "empty", cache_dir)
+
+
+@pytest.fixture
+def aos(aos_without_sim: Installation, tmp_path: Path, cache_dir: Path) -> Iterator[Installation]:
+    """The installation with the extra `sim`, for one test."""
+    environment = aos_without_sim.commands.parent
+    links = link_packages(environment, only=SIMULATOR)
+    assert links
+    yield Installation(environment, tmp_path, cache_dir)
+    for link in links:
+        link.unlink()
 
 
 def test_the_wheel_has_a_name_of_its_own(wheel: Path) -> None:

@@ -20,7 +20,7 @@ from aos_deploy.program import cache_dir
 from aos_protocol.errors import DeployError
 from aos_runtime.credentials import FOLDER, read_password
 
-__all__ = ["SUFFIX", "is_run_bundle", "opened_bundle", "write_bundle"]
+__all__ = ["SUFFIX", "opened_bundle", "write_bundle"]
 
 SUFFIX = ".aosrun"
 """The end of the name of such a file."""
@@ -54,14 +54,6 @@ def write_bundle(runs: Sequence[Path], target: Path) -> int:
                     archive.write(path, name)
                 count += 1
     return count
-
-
-def is_run_bundle(path: Path) -> bool:
-    """Returns whether a file is a run bundle by its look: a zip archive in which a run's record lies."""
-    if not path.is_file() or not zipfile.is_zipfile(path):
-        return False
-    with zipfile.ZipFile(path) as archive:
-        return any(len(parts) == 2 and parts[1] == "run.json" for parts in map(_parts, archive.namelist()))
 
 
 def opened_bundle(path: Path) -> list[Path]:
