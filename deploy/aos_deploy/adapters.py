@@ -86,8 +86,10 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
         if key == EVERYTHING_ELSE:
             others = name
             _check_others(name, value, named, findings)
+        elif (path := "/" + key.strip("/")) in {each for paths in bound.values() for each in paths}:
+            findings.error("AOS103", f"the path {path} is bound twice", bind.keys[key])
         else:
-            bound[name]["/" + key.strip("/")] = binding
+            bound[name][path] = binding
     everywhere = [path for paths in bound.values() for path in paths]
     plans = []
     for name, paths in bound.items():

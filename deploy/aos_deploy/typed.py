@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import types
 import typing
 from collections.abc import Iterable
@@ -108,6 +109,9 @@ def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> An
         findings.unknown(str(value), known, message, node.span, code="AOS106")
         return UNSET
     base = arguments[0] if origin is typing.Annotated else kind
+    if isinstance(value, float) and not math.isfinite(value):
+        findings.error("AOS106", f"{path} is {value}; it must be a finite number", node.span)
+        return UNSET
     try:
         return msgspec.convert(value, kind)
     except msgspec.ValidationError as error:

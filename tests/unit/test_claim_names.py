@@ -50,7 +50,6 @@ def found(folder: Path, claim: str, more: str = "") -> list[str]:
     ("claim", "mistake"),
     [
         ("never: wlak", "the skill wlak, which no document describes. Did you mean `walk`?"),
-        ("order: [light, wlak]", "the skill wlak, which"),
         ("never: 'light | wlak*'", "the skill wlak*, which"),
         (
             "never: walk(too=there)",
@@ -79,7 +78,6 @@ def test_a_name_that_no_mission_can_have_is_a_mistake_at_its_claim(
         "never: walk(to=the?e) > no observation",
         "never: 'w* | walk*there* | *(to=here) | say > anything | light > Default*'",
         "never_state: at=there, lit=tr | t=here | world_ending=goal | anything else",
-        "order: [say, light > DefaultObservation]",
     ],
 )
 def test_what_a_mission_can_have_is_none(tmp_path: Path, claim: str) -> None:

@@ -209,6 +209,12 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ("solver: {seed: -1}", "4:16 AOS106 solver.seed is -1; it must be a whole number of at least 0"),
         ("solver: {seed: true}", "4:16 AOS106 solver.seed is true; it must be a whole number"),
         ("solver: {time_s: 0}", "4:18 AOS106 solver.time_s is 0; it must be a number above 0"),
+        (
+            "mission: {stop_below_value: .nan}",
+            "4:29 AOS106 mission.stop_below_value is nan; it must be a finite",
+        ),
+        ("solver: {time_s: .inf}", "4:18 AOS106 solver.time_s is inf; it must be a finite number"),
+        ("bind: {/drive: model, drive: pybullet}", "4:23 AOS103 the path /drive is bound twice"),
         ("solver: 3", "4:9 AOS106 solver is not a mapping of keys to values"),
         (
             "solver: {impossible_observation: dance}",

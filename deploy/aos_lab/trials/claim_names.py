@@ -6,7 +6,7 @@ A claim that something never happens would hold because of them, whatever the ro
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from pathlib import Path
 
@@ -14,6 +14,7 @@ import msgspec
 
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.typed import known_names
 from aos_lab.trials.claims import Claim, When
 from aos_lab.trials.setting import Setting
 from aos_lab.trials.trial import NOTHING_OBSERVED
@@ -28,15 +29,12 @@ _WILD = re.compile(r"[*?\[]")
 _ARGUMENT = re.compile(r"(?:^|, )(\w+)=([^,()]*)")
 _BRACES = re.compile(r"\{[^{}]*\}")
 _STATE = re.compile(r"([A-Za-z_]\w*)(?:\[[^\]]*\]|\.\w+)*=(\w*)")
-_DEFAULT_RESPONSE = "DefaultObservation"
-_WORLD_ENDING = "world_ending"
 
 
 def project_of_setting(setting: Setting, folder: Path) -> Project | None:
     """The documents that missions of a setting may have, also those that are left out at first.
 
-    It is None where others may come while a mission runs, and where they have mistakes: whoever plays the
-    missions tells of these.
+    It is None where others may come, and where they have mistakes, which whoever plays them tells.
     """
     try:
         deployment = read_deploy_file(folder / setting.deploy)
@@ -77,7 +75,7 @@ class ClaimNames:
         skills = [skill for known, skill in self._skills.items() if _may_be(name, known)]
         if not skills:
             message = f"a claim names the skill {name}, which no document describes"
-            self._findings.unknown(name, self._skills, message, where, _listed(self._skills))
+            self._findings.unknown(name, self._skills, message, where, known_names(self._skills))
             return
         if has_arguments:
             self._check_arguments(skills, arguments, where)
@@ -93,12 +91,12 @@ class ClaimNames:
                 message = (
                     f"a claim names the parameter {name} of {_named(skills)}, which has none of that name"
                 )
-                self._findings.unknown(name, known, message, where, _listed(known))
+                self._findings.unknown(name, known, message, where, known_names(known))
                 continue
             values = self._values(skills, name)
             if value and values and not any(fnmatchcase(each, value) for each in values):
                 message = f"a claim names the value {value} of {name}, which it never has"
-                self._findings.unknown(value, values, message, where, _listed(values))
+                self._findings.unknown(value, values, message, where, known_names(values))
 
     def _values(self, skills: list[Skill], name: str) -> dict[str, None]:
         """All values that a parameter of these skills may have; none where code lists them."""
@@ -116,10 +114,10 @@ class ClaimNames:
         if any(skill.mapping.response_variable for skill in skills):
             return
         known = dict.fromkeys(rule.response for skill in skills for rule in skill.mapping.rules)
-        known[_DEFAULT_RESPONSE] = None
+        known["DefaultObservation"] = None
         if not any(fnmatchcase(each, response) for each in known):
             message = f"a claim names the response {response} of {_named(skills)}, which never gives it"
-            self._findings.unknown(response, known, message, where, _listed(known))
+            self._findings.unknown(response, known, message, where, known_names(known))
 
     def _check_state(self, text: str, where: Span) -> None:
         """Text of a state that begins with a name and an equals sign; the name may be the end of one."""
@@ -129,15 +127,15 @@ class ClaimNames:
         root, value = found.groups()
         types = {variable.name: variable.type for variable in self._environment.variables}
         fields = {field.name for compound in self._environment.compounds for field in compound.fields}
-        known = dict.fromkeys([*types, *sorted(fields), _WORLD_ENDING])
+        known = dict.fromkeys([*types, *sorted(fields), "world_ending"])
         if not any(name.endswith(root) for name in known):
             message = f"a claim names the state variable {root}, which no document declares"
-            self._findings.unknown(root, known, message, where, _listed(types))
+            self._findings.unknown(root, known, message, where, known_names(types))
         elif found.end(1) + 1 + len(value) == len(text) and root not in fields:
             values = self._enums.get(types.get(root, ""), ())
             if values and not any(each.startswith(value) for each in values):
                 message = f"a claim names the value {value} of {root}, which it never has"
-                self._findings.unknown(value, values, message, where, _listed(values))
+                self._findings.unknown(value, values, message, where, known_names(values))
 
 
 def _patterns(said: Claim | When) -> Iterator[str]:
@@ -161,8 +159,7 @@ def _states(claim: Claim) -> list[str]:
 
 
 def _may_be(pattern: str, skill: str) -> bool:
-    """Returns whether what stands before the bracket of a pattern may name a skill; a wildcard may stand for
-    the bracket, too."""
+    """Returns whether a pattern may name a skill; a wildcard may stand for the bracket, too."""
     wild = _WILD.search(pattern)
     if wild is None:
         return pattern == skill
@@ -172,7 +169,3 @@ def _may_be(pattern: str, skill: str) -> bool:
 
 def _named(skills: list[Skill]) -> str:
     return " or ".join(skill.model.name for skill in skills)
-
-
-def _listed(names: Collection[str]) -> str:
-    return f"There is {', '.join(names)}" if names else "There is none"

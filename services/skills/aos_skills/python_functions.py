@@ -149,7 +149,10 @@ class PythonAdapter:
         self._task = asyncio.current_task()
         kind = type(function)
         if inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(kind.__call__):
-            answer = await _awaited(function, call, fields)
+            try:
+                answer = await function(call, **fields)
+            except (SystemExit, KeyboardInterrupt) as error:
+                raise _failure(call, error) from error
         else:
             answer = await self._on_thread(function, call, fields)
         return {} if answer is None else answer
@@ -221,14 +224,6 @@ def _takes_host(kind: Any) -> bool:
     if len(parameters) != 1 or parameters[0].kind not in _POSITIONAL:
         return False
     return parameters[0].default is inspect.Parameter.empty or parameters[0].name == "host"
-
-
-async def _awaited(function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
-    """Runs an asynchronous function; what would end the event loop becomes a failure of the call."""
-    try:
-        return await function(call, **fields)
-    except (SystemExit, KeyboardInterrupt) as error:
-        raise _failure(call, error) from error
 
 
 def _failure(call: Call, error: BaseException) -> Exception:
