@@ -14,28 +14,16 @@ from pathlib import Path
 import numpy as np
 from tests.exam.summary import times_text
 
-from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
-from .inspection import inspection, inspection_rule
+from .bundles import USUAL_SIZES, write
+from .inspection import inspection_rule
 from .missions import Played, played
-from .problems import PROBLEMS, SIZES
 from .rules import RULES
-from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
+from .upkeep import UPKEEP_RULES
 
 _STEPS = 120  # at most, in a mission
 
-_BUNDLES = PROBLEMS | APART | UPKEEP | {"inspection": inspection}
-_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES | {"inspection": 16}
 _RULES = RULES | APART_RULES | UPKEEP_RULES | {"inspection": inspection_rule}
-
-
-def write(folder: Path, problem: str, size: int) -> Path:
-    """Writes the bundle of a problem into a folder of its own and returns that."""
-    bundle = folder / f"{problem}{size}"
-    bundle.mkdir(parents=True, exist_ok=True)
-    for name, text in _BUNDLES[problem](size).items():
-        (bundle / name).write_text(text)
-    return bundle
 
 
 def main() -> None:
@@ -50,11 +38,11 @@ def main() -> None:
     parser.add_argument("--planner", default="auto")
     arguments = parser.parse_args()
     if arguments.problem[:1] == ["write"]:
-        for problem, size in _SIZES.items():
+        for problem, size in USUAL_SIZES.items():
             write(Path(arguments.problem[1]), problem, arguments.size or size)
         return
-    for problem in arguments.problem or _BUNDLES:
-        size = arguments.size or _SIZES[problem]
+    for problem in arguments.problem or USUAL_SIZES:
+        size = arguments.size or USUAL_SIZES[problem]
         rule, rule_error = ruled(problem, size, 200, arguments.seed)
         seeds = range(arguments.seed, arguments.seed + arguments.runs)
         with tempfile.TemporaryDirectory() as folder:

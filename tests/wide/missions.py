@@ -12,29 +12,49 @@ from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
-__all__ = ["Played", "played"]
+__all__ = ["Decision", "Played", "played"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Decision:
+    """Who decided, and the processor time of the search, of what was prepared before it, and of the rest."""
+
+    planner: str
+    search_s: float
+    preparation_s: float
+    beside_s: float
 
 
 @dataclasses.dataclass
 class Played:
-    """Returns of missions, planners and times of their decisions, and the first decision."""
+    """Returns of missions, their decisions, and the first one as it was told."""
 
     returns: list[float] = dataclasses.field(default_factory=list)
-    times_s: list[float] = dataclasses.field(default_factory=list)
-    """The processor time of each search, which the budget counts."""
+    decisions: list[Decision] = dataclasses.field(default_factory=list)
+    updates_s: list[float] = dataclasses.field(default_factory=list)
+    """The processor time of the engine's process from one decision of a mission to the next."""
 
-    preparations_s: list[float] = dataclasses.field(default_factory=list)
-    """The processor time of the lists and values before each search, which no budget counts."""
-
-    planners: set[str] = dataclasses.field(default_factory=set)
     first: Plan | None = None
 
     def take(self, plan: Plan) -> None:
         """Adds a decision."""
         self.first = self.first or plan
-        self.times_s.append(plan.search_s)
-        self.preparations_s.append(plan.preparation_s)
-        self.planners.add(plan.planner)
+        beside_s = plan.cpu_seconds - plan.search_s - plan.preparation_s
+        self.decisions.append(Decision(plan.planner, plan.search_s, plan.preparation_s, beside_s))
+
+    @property
+    def times_s(self) -> list[float]:
+        """The processor time of each search, which the budget counts."""
+        return [decision.search_s for decision in self.decisions]
+
+    @property
+    def preparations_s(self) -> list[float]:
+        """The processor time of the lists and values before each search, which no budget counts."""
+        return [decision.preparation_s for decision in self.decisions]
+
+    @property
+    def planners(self) -> set[str]:
+        return {decision.planner for decision in self.decisions}
 
     @property
     def mean(self) -> float:
@@ -46,14 +66,24 @@ class Played:
 
 
 class _Noted(Search, frozen=True, kw_only=True):
-    """A search whose plans are noted."""
+    """A search whose plans are noted. `decided_at_s` is the processor time of the engine after the last one."""
 
     played: Played
+    decided_at_s: list[float] = []
 
     async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
+        if self.decided_at_s:
+            self.played.updates_s.append(_processor_s(engine) - self.decided_at_s.pop())
         plan = await super().run(engine, step, within)
         self.played.take(plan)
+        self.decided_at_s.append(_processor_s(engine))
         return plan
+
+
+def _processor_s(engine: Engine) -> float:
+    """The processor time that the engine's process has spent so far."""
+    threads = Path(f"/proc/{engine.pid}/task").glob("*/schedstat")
+    return sum(int(thread.read_text().split()[0]) for thread in threads) / 1e9
 
 
 async def played(bundle: Path, planner: Planner, time_s: float, seeds: range, step_limit: int) -> Played:
