@@ -4,6 +4,8 @@ import dataclasses
 from pathlib import Path
 from statistics import fmean, stdev
 
+import msgspec
+
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Planner
@@ -66,10 +68,10 @@ class Played:
 
 
 class _Noted(Search, frozen=True, kw_only=True):
-    """A search whose plans are noted. `decided_at_s` is the processor time of the engine after the last one."""
+    """A search whose plans are noted. `decided_at_s` is the processor time that the engine had spent then."""
 
     played: Played
-    decided_at_s: list[float] = []
+    decided_at_s: list[float] = msgspec.field(default_factory=list)
 
     async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
         if self.decided_at_s:

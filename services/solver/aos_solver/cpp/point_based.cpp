@@ -17,6 +17,7 @@ namespace aos::point_based {
 namespace {
 
 constexpr double share_of_bits = 0x1p-64;
+constexpr std::uint64_t between_looks = 20'000;  // at the clock, in operations
 
 }  // namespace
 
@@ -59,14 +60,24 @@ struct OnlineSarsop::Solver {
     return sarsop.graph().work() - before;
   }
 
+  // Asks a clock now and then: it takes long beside an action of a simple policy.
+  auto seldom(const IsOver& is_over) {
+    return [this, &is_over, looked = sarsop.graph().work(), is_late = is_over()]() mutable {
+      if (is_late || sarsop.graph().work() - looked < between_looks) return is_late;
+      looked = sarsop.graph().work();
+      return is_late = is_over();
+    };
+  }
+
   std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, std::uint64_t max_work, const IsOver& is_over,
                                          std::uint64_t& work) {
     const std::uint64_t before = sarsop.graph().work();
     const auto done = [&] { return sarsop.graph().work() - before; };
-    const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };
+    auto is_late = seldom(is_over);
+    const auto ends = [&] { return is_late() || (max_work > 0 && done() >= max_work); };
     std::mt19937_64 bits{1};
     const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
-    const std::optional<PolicyValue> found = sarsop.best_policy(steps, decides_anew, ends, uniform);
+    const std::optional<PolicyValue> found = sarsop.best_policy(steps, decides_anew, ends, is_late, uniform);
     work += done();
     return found;
   }
@@ -88,15 +99,15 @@ bool OnlineSarsop::move_to(const std::vector<std::pair<std::uint32_t, double>>& 
   return true;
 }
 
-std::uint64_t OnlineSarsop::improve(std::uint64_t max_work, const IsOver& is_over) {
+std::uint64_t OnlineSarsop::improve(std::uint64_t max_work, const IsOver& is_over, const IsOver& is_late) {
   return solver_->repeat(max_work, is_over, [&](const auto& is_enough) {
-    return !solver_->is_closed() && solver_->sarsop.improve(solver_->precision(), is_enough);
+    return !solver_->is_closed() && solver_->sarsop.improve(solver_->precision(), is_enough, is_late);
   });
 }
 
 std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, const IsOver& is_over) {
   return solver_->repeat(0, is_over,
-                         [&](const auto& is_enough) { return solver_->sarsop.improve_below(action, solver_->precision(), is_enough); });
+                         [&](const auto& is_enough) { return solver_->sarsop.improve_below(action, solver_->precision(), is_enough, is_over); });
 }
 
 std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work,
@@ -112,7 +123,7 @@ std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t 
   std::mt19937_64 bits{1};
   const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
   while (found.size() < missions && !ends()) {
-    found.push_back(solver_->sarsop.loss_of_mission(action, steps, precision, ends, uniform));
+    found.push_back(solver_->sarsop.loss_of_mission(action, steps, precision, ends, is_over, uniform));
   }
   work += done();
   return found;

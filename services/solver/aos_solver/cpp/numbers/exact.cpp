@@ -13,6 +13,7 @@ namespace {
 constexpr std::uint64_t per_outcome = 80;  // operations, of an outcome that is added to a posterior
 constexpr std::uint64_t per_bound = 10;    // of an action in a state
 constexpr std::uint64_t per_belief = 300;
+constexpr std::uint64_t between_looks = 20'000;  // at the clock, in operations
 
 ExactValue scaled(ExactValue value, double by) { return {by * value.value, by * value.growth}; }
 
@@ -108,7 +109,14 @@ ExactEvaluation::Posteriors ExactEvaluation::posteriors(const Weighted& belief, 
     }
   }
   if (limits_.work > 0 && work_ > limits_.work) throw NotEnumerable{"there are more outcomes than the budget"};
+  look();
   return result;
+}
+
+void ExactEvaluation::look() {
+  if (work_ - looked_ < between_looks) return;
+  looked_ = work_;
+  if (limits_.is_over()) throw NotEnumerable{"it takes longer than allowed"};
 }
 
 // What a mission loses of an action's value if it plans a whole horizon anew at each later decision. It may put off for
@@ -161,7 +169,6 @@ ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {
   if (const auto found = known.find(key); found != known.end()) return scaled(found->second, total);
   if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"more beliefs than the budget can be reached"};
   if (evaluated_ % 64 == 0) progress::tell("evaluating beliefs", evaluated_);
-  if (evaluated_ % 64 == 0 && limits_.is_over()) throw NotEnumerable{"it takes longer than allowed"};
   const ExactValue best = best_of_actions(belief, horizon);
   known.emplace(key, best);
   return scaled(best, total);
@@ -171,6 +178,7 @@ ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {
 ExactValue ExactEvaluation::best_of_actions(const Weighted& belief, int horizon) {
   std::vector<std::pair<double, std::size_t>> order;
   work_ += per_belief + per_bound * belief.size() * rows_.actions;
+  look();
   for (std::size_t action = 0; action < rows_.actions; ++action) order.emplace_back(-bound(belief, action, horizon), action);
   std::sort(order.begin(), order.end());
   ExactValue best = action_value(belief, order.front().second, horizon);

@@ -77,6 +77,8 @@ class ExactEvaluation {
   ExactValue action_value(const Weighted& belief, std::size_t action, int horizon);
   Posteriors posteriors(const Weighted& belief, std::size_t action);
   double loss_of_mission(Weighted belief, std::size_t action, int horizon, Sampler& random);
+  // Throws NotEnumerable when time is over, which is asked now and then.
+  void look();
   std::size_t best_action(const Weighted& belief, int horizon);
   ExactValue best_value(Weighted belief, int horizon);
   ExactValue best_of_actions(const Weighted& belief, int horizon);
@@ -88,6 +90,7 @@ class ExactEvaluation {
   ExactLimits limits_;
   std::uint64_t evaluated_ = 0;
   std::uint64_t work_ = 0;
+  std::uint64_t looked_ = 0;  // the work at the last look at the clock
   std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, BeliefKey::Hash>> values_;
 };
 

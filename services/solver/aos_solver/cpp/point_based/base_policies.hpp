@@ -35,9 +35,11 @@ class BasePolicies {
   }
 
   // The policy that returns most from a node's belief over `steps` decisions, and what it returns; none if too few missions
-  // were played when `is_over()` came. Where it `decides_anew`, each decision has the whole horizon to go. `uniform()` draws.
-  template <class IsOver, class Uniform>
-  std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, IsOver&& is_over, Uniform&& uniform) {
+  // were played when `is_over()` came. `is_late()` also breaks off the last one. Where it `decides_anew`, each decision has the
+  // whole horizon to go. `uniform()` draws.
+  template <class IsOver, class IsLate, class Uniform>
+  std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, IsOver&& is_over, IsLate&& is_late,
+                                  Uniform&& uniform) {
     decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     std::vector<Candidate> candidates;
@@ -45,7 +47,7 @@ class BasePolicies {
     std::size_t missions = fewest_missions;
     while (true) {
       for (Candidate& candidate : candidates) {
-        for (std::size_t i = 0; i < missions && !is_over(); ++i) play(node, candidate, steps, uniform);
+        for (std::size_t i = 0; i < missions && !is_over(); ++i) play(node, candidate, steps, is_late, uniform);
       }
       std::stable_sort(candidates.begin(), candidates.end(),
                        [](const Candidate& one, const Candidate& other) { return one.returns.mean() > other.returns.mean(); });
@@ -81,9 +83,10 @@ class BasePolicies {
     return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count, returns.error()};
   }
 
-  // Plays a mission. What comes after its steps counts as the lower bound there, where the search has no horizon.
-  template <class Uniform>
-  void play(const Node& start, Candidate& candidate, std::size_t steps, Uniform&& uniform) {
+  // Plays a mission, which counts if it ends before `is_late()`. What comes after its steps counts as the lower bound there, where
+  // the search has no horizon.
+  template <class IsLate, class Uniform>
+  void play(const Node& start, Candidate& candidate, std::size_t steps, IsLate&& is_late, Uniform&& uniform) {
     Belief belief = start.belief;
     std::uint32_t region = start.region;
     std::uint32_t action = candidate.first;
@@ -91,7 +94,8 @@ class BasePolicies {
     for (std::size_t step = 0; step < steps; ++step) {
       const std::uint32_t passed = graph_.is_endless() || decides_anew_ ? 0 : static_cast<std::uint32_t>(step);
       const std::uint32_t left = start.left - passed;
-      if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate.policy);
+      if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate.policy, is_late);
+      if (is_late()) return;
       if (step == 0) candidate.first = action;
       const Move& move = regions_.all[region].moves[action];
       earned += discount * expected(move.rewards, belief);
@@ -122,12 +126,14 @@ class BasePolicies {
     return nullptr;
   }
 
-  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Policy& policy) {
+  // The action that a policy takes; any one if `is_late()` comes first.
+  template <class IsLate>
+  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Policy& policy, IsLate&& is_late) {
     const std::vector<double> informed = graph_.informed_values(region, left, belief);
     graph_.count_work(model_.actions * belief.size());
     std::uint32_t best = 0;
     double highest = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+    for (std::uint32_t action = 0; action < model_.actions && !is_late(); ++action) {
       const Move& move = regions_.all[region].moves[action];
       const double reward = expected(move.rewards, belief);
       double merit = reward + policy.share * (informed[action] - reward);

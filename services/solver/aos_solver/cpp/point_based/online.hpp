@@ -63,14 +63,15 @@ class OnlineSarsop {
   // and the missing part is worth nothing. Returns whether the model's starts can lead to this belief.
   bool move_to(const std::vector<std::pair<std::uint32_t, double>>& belief);
 
-  // Runs trials until `is_over()`, until `max_work` is done (0: no limit), or until nothing is left to find out. The
-  // last trial may be cut short. Returns the work in operations (belief_graph.hpp).
-  std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
+  // Runs trials until `is_over()`, until `max_work` is done (0: no limit), or until nothing is left to find out. The last trial
+  // may be cut short, and `is_late()` cuts what it has found, too. Returns the work in operations (belief_graph.hpp).
+  std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over, const IsOver& is_late);
+  std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over) { return improve(max_work, is_over, is_over); }
   // Runs trials below an action that is being carried out, without a limit of the work. Returns the work.
   std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);
 
   // What `steps` decisions of missions earn less than the lower bound, which begin with an action and decide anew with the
-  // whole horizon at each step; at most 30 missions. The last one may exceed the work and `is_over()` a little. With a
+  // whole horizon at each step; at most 30 missions. The last one may exceed the work a little. With a
   // horizon there are none before the bounds of the belief have nearly met. Adds the work to `work`.
   std::vector<MissionLoss> losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
                                   std::uint64_t& work);

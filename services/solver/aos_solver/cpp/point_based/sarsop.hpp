@@ -72,25 +72,26 @@ class Sarsop {
     add_start(start);
   }
 
-  // Runs one trial with its backups; `is_over()` cuts it short. Returns whether there may be more to find out.
-  template <class IsOver>
-  bool improve(double precision, IsOver&& is_over) {
+  // Runs one trial with its backups. `is_over()` cuts the trial short, and `is_late()` its backups, too. Returns whether there may be
+  // more to find out.
+  template <class IsOver, class IsLate>
+  bool improve(double precision, IsOver&& is_over, IsLate&& is_late) {
     const Root* widest = nullptr;
     for (const Root& root : roots_) {
       if (widest == nullptr || weighted_gap(root) > weighted_gap(*widest)) widest = &root;
     }
-    return widest != nullptr && improve_from(widest->node, precision, is_over);
+    return widest != nullptr && improve_from(widest->node, precision, is_over, is_late);
   }
 
   // Runs one trial below an action that is being carried out at the only start.
-  template <class IsOver>
-  bool improve_below(std::uint32_t action, double precision, IsOver&& is_over) {
+  template <class IsOver, class IsLate>
+  bool improve_below(std::uint32_t action, double precision, IsOver&& is_over, IsLate&& is_late) {
     if (roots_.empty()) return false;
     const Branch& branch = root_branch(action);
     backups_.refreshed_lower(branch);
     backups_.refreshed_upper(branch);
     const Successor* next = trial_.widest_of(branch.successors, precision);
-    return next != nullptr && improve_from(next->node, precision, is_over);
+    return next != nullptr && improve_from(next->node, precision, is_over, is_late);
   }
 
   // The bounds of all actions at the only start.
@@ -111,8 +112,9 @@ class Sarsop {
   // best at the end of a horizon, and without a horizon the bound counts what comes after these decisions, too. Most luck is
   // left out, since a step counts by what it is expected to change of the lower bound. At `is_over()` the mission breaks off, since
   // decisions without a search would be others: what is left of it loses as much as what was played. `uniform()` draws.
-  template <class IsOver, class Uniform>
-  MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, IsOver&& is_over, Uniform&& uniform) {
+  template <class IsOver, class IsLate, class Uniform>
+  MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, IsOver&& is_over, IsLate&& is_late,
+                              Uniform&& uniform) {
     const std::vector<std::uint32_t> begun = trial_.begun();
     std::uint32_t number = roots_.front().node;
     graph_.refresh_lower(graph_[number]);
@@ -123,7 +125,7 @@ class Sarsop {
     const double all_promised = std::abs(discount * promised);
     std::size_t step = 0;
     for (; step < steps; ++step) {
-      if (step > 0) std::tie(action, is_settled) = decided_anew(anew_of(number), precision, is_over);
+      if (step > 0) std::tie(action, is_settled) = decided_anew(anew_of(number), precision, is_over, is_late);
       if (step > 0 && is_over()) break;
       const Branch branch = opened(number, action);
       const double lost = discount * (promised - branch.lower);
@@ -154,9 +156,9 @@ class Sarsop {
   }
 
   // What the best of some simple policies returns from the only start (base_policies.hpp).
-  template <class IsOver, class Uniform>
-  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, IsOver&& is_over, Uniform&& uniform) {
-    const auto found = policies_.best(graph_[roots_.front().node], steps, decides_anew, is_over, uniform);
+  template <class IsOver, class IsLate, class Uniform>
+  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, IsOver&& is_over, IsLate&& is_late, Uniform&& uniform) {
+    const auto found = policies_.best(graph_[roots_.front().node], steps, decides_anew, is_over, is_late, uniform);
     if (!found) return found;
     const double weight = roots_.front().weight;
     return PolicyValue{found->action, weight * found->value, weight * found->within, weight * found->standard_error};
@@ -248,9 +250,9 @@ class Sarsop {
   }
 
   // The action with the highest lower bound at a belief, after a search for a gap of at most `precision`, and whether it is
-  // proven to be the best.
-  template <class IsOver>
-  std::pair<std::uint32_t, bool> decided_anew(std::uint32_t number, double precision, IsOver&& is_over) {
+  // proven to be the best. Any action if `is_late()` comes first.
+  template <class IsOver, class IsLate>
+  std::pair<std::uint32_t, bool> decided_anew(std::uint32_t number, double precision, IsOver&& is_over, IsLate&& is_late) {
     const auto is_closed = [&] {
       Node& node = graph_[number];
       graph_.refresh_lower(node);
@@ -259,13 +261,14 @@ class Sarsop {
     };
     const std::uint32_t persisted = std::exchange(persisted_, static_cast<std::uint32_t>(model_.actions));
     idle_ = 0;
-    while (!is_over() && !is_closed() && improve_from(number, precision, is_over)) {}
+    while (!is_over() && !is_closed() && improve_from(number, precision, is_over, is_late)) {}
     persisted_ = persisted;
     idle_ = 0;
     std::uint32_t best = graph_.lower(graph_[number].region)[graph_[number].vector].action;
     double highest = -std::numeric_limits<double>::infinity();
     std::vector<double> uppers;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      if (is_late()) return {best, false};
       const Branch branch = opened(number, action);
       uppers.push_back(branch.upper);
       if (branch.lower <= highest) continue;
@@ -277,11 +280,11 @@ class Sarsop {
   }
 
   // Runs one trial. Returns false after three in a row, one of them by the lower bound, that learnt nothing.
-  template <class IsOver>
-  bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
+  template <class IsOver, class IsLate>
+  bool improve_from(std::uint32_t number, double precision, IsOver&& is_over, IsLate&& is_late) {
     const bool persists = switches::repeated_trials && persisted_ < model_.actions;
     bool has_learnt = persists ? trial_.persist(number, persisted_++, is_over) : trial_.sample(number, precision, is_over);
-    for (auto step = trial_.path().rbegin(); step != trial_.path().rend(); ++step) {
+    for (auto step = trial_.path().rbegin(); step != trial_.path().rend() && !is_late(); ++step) {
       if (backups_.backup(*step)) has_learnt = true;
     }
     if (backups_.vectors_added > std::max<std::size_t>(200, vectors() / 4)) prune();

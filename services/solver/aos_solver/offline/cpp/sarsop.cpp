@@ -47,6 +47,7 @@ void report(Sarsop& solver, const char* ending) {
 
 const char* improve(Sarsop& solver, double precision, double seconds, std::size_t memory_bytes) {
   double next_line = 0;
+  const auto never = [] { return false; };
   for (;;) {
     if (const double now = cpu_seconds(); now >= next_line) {
       report(solver, "");
@@ -57,7 +58,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
     if (cpu_seconds() >= seconds) return "time";
     if (solver.graph().bytes() >= memory_bytes) return "memory";
     if (is_told_to_stop()) return "stopped";
-    if (!solver.improve(precision, [] { return false; })) return "settled";
+    if (!solver.improve(precision, never, never)) return "settled";
   }
 }
 

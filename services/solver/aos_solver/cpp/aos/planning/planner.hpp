@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
@@ -29,11 +30,30 @@ struct Question {
   bool is_listed = false;   // whether the states that the belief can lead to are listed
 };
 
-// What is told of the choice of a planner: why it decides, and what was spent on it that is not preparation.
+// What is told of the choice of a planner: why it decides, and what was spent on it that is not preparation, in processor time of
+// this thread and by the clock of budgets.
 struct Choosing {
   std::string why;
   std::chrono::nanoseconds searching{};
+  std::chrono::nanoseconds spent{};
   std::uint64_t simulations = 0;
+};
+
+// Counts what is done in its scope as search, and not as preparation.
+class SearchTime {
+ public:
+  explicit SearchTime(Choosing& choosing) : choosing_(choosing) {}
+  ~SearchTime() {
+    choosing_.searching += thread_time() - thread_start_;
+    choosing_.spent += PlanningClock::now() - start_;
+  }
+  SearchTime(const SearchTime&) = delete;
+  SearchTime& operator=(const SearchTime&) = delete;
+
+ private:
+  Choosing& choosing_;
+  std::chrono::nanoseconds thread_start_ = thread_time();
+  PlanningClock::time_point start_ = PlanningClock::now();
 };
 
 template <class Model>

@@ -64,7 +64,8 @@ class Planners {
     const auto& order = order_[static_cast<std::size_t>(kind)];
     used_ = *std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); });
     const auto prepared = thread_time();
-    const std::uint64_t simulations = used_->search(question, random, choosing.why);
+    const Question<Model> left{belief, left_of(budget, choosing.spent), horizon, barred_, is_by_name, question.is_listed};
+    const std::uint64_t simulations = used_->search(left, random, choosing.why);
     why_ = std::move(choosing.why);
     preparing_ = prepared - start - choosing.searching;
     searching_ = choosing.searching + thread_time() - prepared;
@@ -138,6 +139,12 @@ class Planners {
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const List order_[std::size(planner_names)] = {
       {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};
+  // What is left of a budget in time after so much of it.
+  static Budget left_of(Budget budget, std::chrono::nanoseconds spent) {
+    if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - std::chrono::duration<double>(spent).count(), 1e-6);
+    return budget;
+  }
+
   Planner<Model>* used_ = &pomcp_;
   int horizon_ = 1;       // of the last search
   BarredActions barred_;  // in the last search

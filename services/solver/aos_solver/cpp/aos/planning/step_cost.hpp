@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -73,7 +74,8 @@ Operations cost_of_step() {
   return static_cast<Operations>(steps == 0 ? per_step : cost / steps);
 }
 
-// How many steps of the model a planner may take that counts its work by them.
+// How many steps of the model a planner may take that counts its work by them. What a step costs is counted at first. With a
+// budget in time it is measured: a planner notes what it has taken.
 template <class Model>
 class AffordableSteps {
  public:
@@ -81,13 +83,24 @@ class AffordableSteps {
     constexpr double operations_of_second = 1e9;
     if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least);
     if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
-    return std::max(budget.seconds * operations_of_second / static_cast<double>(step_cost_), least);
+    const double affordable = budget.seconds * operations_of_second / static_cast<double>(step_cost_);
+    const double measured = seconds_ > 0 ? budget.seconds * steps_ / seconds_ : affordable;
+    return std::max(std::min(affordable, measured), least_in_time);
+  }
+  // So many steps took so long. Later ones count more.
+  void note(double steps, std::chrono::duration<double> time) {
+    steps_ = kept * steps_ + steps;
+    seconds_ = kept * seconds_ + time.count();
   }
 
  private:
   static constexpr double least = 100'000;
+  static constexpr double least_in_time = 10'000;
+  static constexpr double kept = 0.8;
 
   Operations step_cost_ = 0;  // 0: not known yet
+  double steps_ = 0;          // of some decisions, and the time that they took
+  double seconds_ = 0;
 };
 
 }  // namespace aos

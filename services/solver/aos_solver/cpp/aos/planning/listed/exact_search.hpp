@@ -39,9 +39,8 @@ class ExactSearch final : public Planner<Model> {
       return false;
     }
     observable_.prepare(space_.rows(), space_.numbering(), question.horizon);
-    const auto start = thread_time();
+    const SearchTime time{choosing};
     const bool fits = evaluate(question.belief, question.budget, question.horizon);
-    choosing.searching += thread_time() - start;
     if (fits) choosing.why += ", and every observation of " + std::to_string(question.horizon) + " decisions fits the budget";
     else choosing.simulations += simulations();
     return fits;

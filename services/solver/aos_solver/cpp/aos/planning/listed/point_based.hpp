@@ -102,12 +102,13 @@ class PointBased {
       return until(part, never);
     };
     const auto trials_are_over = over_after(share_of_trials), policies_are_over = over_after(1 - share_of_missions);
+    const auto anew_is_over = over_after(1 - share_of_missions + share_of_anew);
     const auto is_over = over_after(1);
     Operations searched = 0, work = 0;
     // Runs trials until a share of the budget is spent.
     const auto try_until = [&](double share, const auto& is_spent) {
       if ((most > 0 && work >= work_of(share)) || is_spent()) return;
-      const Operations trials = search_->improve(most == 0 ? 0 : work_of(share) - work, is_spent);
+      const Operations trials = search_->improve(most == 0 ? 0 : work_of(share) - work, is_spent, is_over);
       searched += trials;
       work += trials;
     };
@@ -117,7 +118,7 @@ class PointBased {
     else try_policies(most_of_policies, policies_are_over, work);
     if (!policy_) try_until(1 - share_of_missions, policies_are_over);
     const Operations most_of_anew = std::max<Operations>(work_of(share_of_anew), most > 0);
-    anew_ = search_->best_policy_anew(static_cast<std::size_t>(horizon_), most_of_anew, over_after(1 - share_of_missions + share_of_anew), work);
+    anew_ = search_->best_policy_anew(static_cast<std::size_t>(horizon_), most_of_anew, anew_is_over, work);
     if (!policy_ && (most == 0 || work < most) && !is_over()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
     try_until(1, is_over);
     const std::uint64_t simulations = Budget::simulations_of(searched, horizon_);

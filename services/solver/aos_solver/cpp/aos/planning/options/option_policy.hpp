@@ -34,7 +34,6 @@
 #include "aos/planning/options/option_values.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
-#include "aos/planning/step_cost.hpp"
 
 namespace aos {
 
@@ -44,13 +43,14 @@ class OptionPolicy {
   using State = typename Model::State;
   static constexpr double of_options = 0.4;  // of the affordable steps: to find options and what they earn
 
-  // Draws states and finds options. Returns why this policy cannot decide; empty if it can.
-  std::string prepare(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
+  // Draws states and finds options within so many steps of the model. Returns why this policy cannot decide; empty if it can.
+  std::string prepare(const Belief<Model>& belief, double affordable, Sampler random) {
+    taken_ = 0;
     if (belief.probability_of(Ending::running) <= 0) return "the mission is over";
     if (!obstacle_.empty()) return obstacle_;
     const ForgottenTexts forgotten;
     if (!is_prepared_) library_.prepare(belief, random);
-    affordable_ = affordable_steps_.of(budget, horizon);
+    affordable_ = affordable;
     const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, 64);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
     library_.drop_unused(gains_);
@@ -59,7 +59,7 @@ class OptionPolicy {
     if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
     const double found = library_.extend(belief_, left, random);
     gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, left, random);
-    steps_ = of_options * affordable_ - left;
+    taken_ = of_options * affordable_ - left;
     std::string obstacle = found < enough_found ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
     is_prepared_ = is_prepared_ || obstacle.empty();
@@ -72,7 +72,7 @@ class OptionPolicy {
     candidates_.clear();
     choose_moves(barred);
     regret_.begin();
-    double left = affordable_ - steps_;
+    double left = affordable_ - taken_;
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
@@ -81,7 +81,8 @@ class OptionPolicy {
     for (const OptionCandidate& candidate : candidates_) gained = std::max(gained, candidate.value - candidate.discount * blind);
     for (const std::size_t option : likely) add_option(option, gained);
     settle(belief.probability_of(Ending::running));
-    return 1 + static_cast<std::uint64_t>((affordable_ - left) / horizon);
+    taken_ = affordable_ - left;
+    return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
 
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
@@ -89,6 +90,8 @@ class OptionPolicy {
   bool knows_ways() const { return !library_.options().empty(); }
   // Whether rewards come by themselves, so that a way to one tells nothing.
   bool earns_anyway() const { return changes_.earns_anyway(); }
+  // The steps of the model that were taken since `prepare` began.
+  double taken() const { return taken_; }
   // What decided, for a plan's `why`.
   const char* reason() const { return reason_; }
 
@@ -108,7 +111,7 @@ class OptionPolicy {
   std::string obstacle_of_model(Sampler& random) {
     double left = 0;
     tests_.observe_all({}, left, random);
-    steps_ -= left;
+    taken_ -= left;
     const bool only_changes = tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
     return only_changes ? "nothing is observed but by what changes the state" : "";
   }
@@ -187,8 +190,7 @@ class OptionPolicy {
   OptionLibrary<Model> library_;
   OptionGains<Model> gains_;
   double affordable_ = 0;  // steps of the model
-  double steps_ = 0;       // that `prepare` took
-  AffordableSteps<Model> affordable_steps_;
+  double taken_ = 0;       // of them, so far
   // Of the last decision:
   SampledBelief<Model> belief_;
   OptionRegret<Model> regret_{belief_, gains_};

@@ -12,6 +12,7 @@
 #include "aos/planning/options/option_policy.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
+#include "aos/planning/step_cost.hpp"
 
 namespace aos {
 
@@ -36,9 +37,7 @@ class OptionsPlanner final : public Planner<Model> {
       return false;
     }
     has_looked_ = true;
-    const auto start = thread_time();
-    const std::string obstacle = policy_.prepare(belief, budget, horizon, Sampler{Sampler{random}.bits()});
-    choosing.searching += thread_time() - start;
+    const std::string obstacle = look(question, Sampler{Sampler{random}.bits()}, choosing);
     if (!obstacle.empty()) choosing.why += "; " + obstacle;
     // Where no way at all is known, the next look is put off, each time for longer.
     vain_ = policy_.knows_ways() && !policy_.earns_anyway() ? 0 : std::min(vain_ + 1, most_vain);
@@ -52,7 +51,10 @@ class OptionsPlanner final : public Planner<Model> {
   bool has_looked() const { return has_looked_; }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
+    const auto start = PlanningClock::now();
+    const double before = policy_.taken();
     const std::uint64_t simulations = policy_.search(question.belief, question.horizon, random, question.barred);
+    affordable_.note(policy_.taken() - before, PlanningClock::now() - start);
     why += "; ways to rewards are found by search, and " + std::string{policy_.reason()} + " decides";
     return simulations;
   }
@@ -67,8 +69,18 @@ class OptionsPlanner final : public Planner<Model> {
  private:
   static constexpr int most_vain = 4;  // 15 decisions are put off then, as those of simple policies are
 
+  // Looks for ways. Returns why these cannot decide; empty if they can.
+  std::string look(const Question<Model>& question, Sampler random, Choosing& choosing) {
+    const SearchTime time{choosing};
+    const auto start = PlanningClock::now();
+    std::string obstacle = policy_.prepare(question.belief, affordable_.of(question.budget, question.horizon), random);
+    affordable_.note(policy_.taken(), PlanningClock::now() - start);
+    return obstacle;
+  }
+
   Pomcp<Model>& pomcp_;
   OptionPolicy<Model> policy_;
+  AffordableSteps<Model> affordable_;
   int vain_ = 0;     // looks in a row that found no way
   int put_off_ = 0;  // decisions without a look
   bool has_looked_ = false;

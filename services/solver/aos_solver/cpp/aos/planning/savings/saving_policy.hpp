@@ -83,6 +83,8 @@ class SavingPolicy {
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
 
+  // The steps of the model that `prepare` took.
+  double taken() const { return taken_; }
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
   // What the belief of the last decision is worth to a robot that does not plan.
   double resting() const { return resting_; }

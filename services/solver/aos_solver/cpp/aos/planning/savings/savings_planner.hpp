@@ -36,11 +36,12 @@ class SavingsPlanner final : public Planner<Model> {
     const ForgottenTexts forgotten;
     Sampler own{Sampler{random}.bits()};
     if (!policy_.learn(belief, horizon, own)) return false;
-    const auto start = thread_time();
+    const SearchTime time{choosing};
+    const auto start = PlanningClock::now();
     // A look for options has taken its share of the budget.
     const double share = options_.has_looked() ? 1 - OptionPolicy<Model>::of_options : 1;
     policy_.prepare(belief, share * affordable_steps_.of(budget, horizon), barred, own);
-    choosing.searching += thread_time() - start;
+    affordable_steps_.note(policy_.taken(), PlanningClock::now() - start);
     return true;
   }
 
