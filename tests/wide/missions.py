@@ -19,7 +19,7 @@ __all__ = ["Decision", "Played", "played"]
 
 @dataclasses.dataclass(frozen=True)
 class Decision:
-    """Who decided, and the processor time of the search, of what was prepared before it, and of the rest."""
+    """A decision: its planner, and the processor time of the search, of preparations and of the rest."""
 
     planner: str
     search_s: float
