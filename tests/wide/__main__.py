@@ -2,7 +2,12 @@
 
 python -m tests.wide                      # all problems, 8 missions each, 0.1 s of processor time a decision
 python -m tests.wide clutter --size 60 --runs 30
+python -m tests.wide shared/bench/kitchen12    # a bundle in a folder
 python -m tests.wide write FOLDER         # writes the bundles
+
+Times are processor time of the engine's process: half of them are within the first number, 95 % within the
+second, and the third is the longest. The budget is for the *search*; lists and values before it are
+*preparation*. An *update* is all that the process does between two decisions.
 """
 
 import argparse
@@ -12,18 +17,29 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from tests.exam.summary import times_text
 
+from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
-from .bundles import USUAL_SIZES, write
-from .inspection import inspection_rule
+from .inspection import inspection, inspection_rule
 from .missions import Played, played
+from .problems import PROBLEMS, SIZES
 from .rules import RULES
-from .upkeep import UPKEEP_RULES
+from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
 
+_BUNDLES = PROBLEMS | APART | UPKEEP | {"inspection": inspection}
+_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES | {"inspection": 16}
 _RULES = RULES | APART_RULES | UPKEEP_RULES | {"inspection": inspection_rule}
+
+
+def write(folder: Path, problem: str, size: int) -> Path:
+    """Writes the bundle of a problem into a folder of its own and returns that."""
+    bundle = folder / f"{problem}{size}"
+    bundle.mkdir(parents=True, exist_ok=True)
+    for name, text in _BUNDLES[problem](size).items():
+        (bundle / name).write_text(text)
+    return bundle
 
 
 def main() -> None:
@@ -38,17 +54,19 @@ def main() -> None:
     parser.add_argument("--planner", default="auto")
     arguments = parser.parse_args()
     if arguments.problem[:1] == ["write"]:
-        for problem, size in USUAL_SIZES.items():
+        for problem, size in _SIZES.items():
             write(Path(arguments.problem[1]), problem, arguments.size or size)
         return
-    for problem in arguments.problem or USUAL_SIZES:
-        size = arguments.size or USUAL_SIZES[problem]
-        rule, rule_error = ruled(problem, size, 200, arguments.seed)
+    for problem in arguments.problem or _BUNDLES:
         seeds = range(arguments.seed, arguments.seed + arguments.runs)
         with tempfile.TemporaryDirectory() as folder:
-            bundle = write(Path(folder), problem, size)
+            bundle, rule = Path(problem), ""
+            if problem in _BUNDLES:
+                size = arguments.size or _SIZES[problem]
+                mean, error = ruled(problem, size, 200, arguments.seed)
+                bundle, rule = write(Path(folder), problem, size), f"rule {mean:.1f} +- {error:.1f}, "
             found = asyncio.run(played(bundle, arguments.planner, arguments.time, seeds, _STEPS))
-        print(f"{problem} {size}: rule {rule:.1f} +- {rule_error:.1f}, {_text(found)}", flush=True)
+        print(f"{bundle.name}: {rule}{_text(found)}", flush=True)
 
 
 def ruled(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
@@ -60,11 +78,22 @@ def ruled(problem: str, size: int, missions: int, seed: int) -> tuple[float, flo
 def _text(found: Played) -> str:
     assert found.first is not None
     told = found.first.best
-    return (
-        f"{' and '.join(sorted(found.planners))} {found.mean:.1f} +- {found.error:.1f} "
-        f"(told {told.q:.1f} +- {told.stderr:.1f}); {times_text(found.times_s)}; "
-        f"preparations took {max(found.preparations_s):.1f} s at most"
-    )
+    returns = " ".join(f"{value:.1f}" for value in found.returns)
+    lines = [f"{found.mean:.1f} +- {found.error:.1f} (told {told.q:.1f} +- {told.stderr:.1f}): {returns}"]
+    for planner in sorted({decision.planner for decision in found.decisions}):
+        decisions = [decision for decision in found.decisions if decision.planner == planner]
+        searches = _times([decision.search_s for decision in decisions])
+        preparations = _times([decision.preparation_s for decision in decisions])
+        lines.append(f"{len(decisions)} by {planner}: search {searches}, preparation {preparations}")
+    searches = _times([decision.search_s for decision in found.decisions])
+    lines.append(f"all: search {searches}; updates {_times(found.updates_s)}")
+    return "\n  ".join(lines)
+
+
+def _times(times_s: list[float]) -> str:
+    ranked = sorted(1000 * time_s for time_s in times_s) or [0.0]
+    half, most = (ranked[int(share * (len(ranked) - 1))] for share in (0.5, 0.95))
+    return f"{half:.0f} {most:.0f} {ranked[-1]:.0f} ms"
 
 
 if __name__ == "__main__":

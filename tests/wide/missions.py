@@ -14,17 +14,16 @@ from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
-__all__ = ["Decision", "Played", "played"]
+__all__ = ["Played", "played"]
 
 
 @dataclasses.dataclass(frozen=True)
 class Decision:
-    """A decision: its planner, and the processor time of the search, of preparations and of the rest."""
+    """A decision: its planner, and the processor time of the search and of what was prepared before it."""
 
     planner: str
     search_s: float
     preparation_s: float
-    beside_s: float
 
 
 @dataclasses.dataclass
@@ -41,22 +40,7 @@ class Played:
     def take(self, plan: Plan) -> None:
         """Adds a decision."""
         self.first = self.first or plan
-        beside_s = plan.cpu_seconds - plan.search_s - plan.preparation_s
-        self.decisions.append(Decision(plan.planner, plan.search_s, plan.preparation_s, beside_s))
-
-    @property
-    def times_s(self) -> list[float]:
-        """The processor time of each search, which the budget counts."""
-        return [decision.search_s for decision in self.decisions]
-
-    @property
-    def preparations_s(self) -> list[float]:
-        """The processor time of the lists and values before each search, which no budget counts."""
-        return [decision.preparation_s for decision in self.decisions]
-
-    @property
-    def planners(self) -> set[str]:
-        return {decision.planner for decision in self.decisions}
+        self.decisions.append(Decision(plan.planner, plan.search_s, plan.preparation_s))
 
     @property
     def mean(self) -> float:

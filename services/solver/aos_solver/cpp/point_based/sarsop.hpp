@@ -59,6 +59,7 @@ class Sarsop {
     forget_roots();
     graph_.start_over();
     backups_.vectors_added = 0;
+    patience_ = 1;
     trial_.start_over();
   }
 
@@ -164,9 +165,16 @@ class Sarsop {
     return PolicyValue{found->action, weight * found->value, weight * found->within, weight * found->standard_error};
   }
 
-  // Gives up the alpha vectors that are best at no belief that the remaining actions reach.
   void prune() {
+    prune([] { return false; });
+  }
+  // Gives up the alpha vectors that are best at no belief that the remaining actions reach. If `is_late()` comes first, all are kept,
+  // and more are added before the next try.
+  template <class IsLate>
+  void prune(IsLate&& is_late) {
+    constexpr std::size_t between_looks = 64;  // at the clock, in beliefs
     backups_.vectors_added = 0;
+    patience_ *= 2;
     std::vector<std::vector<bool>> is_best(regions_.all.size());
     for (std::uint32_t region = 0; region < is_best.size(); ++region) {
       is_best[region].resize(graph_.lower(region).size());
@@ -179,7 +187,8 @@ class Sarsop {
       waiting.push_back(number);
     };
     for (const Root& root : roots_) reach(root.node);
-    while (!waiting.empty()) {
+    for (std::size_t reached = 0; !waiting.empty(); ++reached) {
+      if (reached % between_looks == 0 && is_late()) return;
       Node& node = graph_[waiting.back()];
       waiting.pop_back();
       graph_.refresh_lower(node);
@@ -194,6 +203,7 @@ class Sarsop {
         if (!is_best[region][number] && !bound[number].is_gone()) bound.give_up(number);
       }
     }
+    patience_ = 1;
   }
 
  private:
@@ -287,7 +297,7 @@ class Sarsop {
     for (auto step = trial_.path().rbegin(); step != trial_.path().rend() && !is_late(); ++step) {
       if (backups_.backup(*step)) has_learnt = true;
     }
-    if (backups_.vectors_added > std::max<std::size_t>(200, vectors() / 4)) prune();
+    if (backups_.vectors_added > patience_ * std::max<std::size_t>(200, vectors() / 4) && !is_late()) prune(is_late);
     idle_ = has_learnt || persists ? 0 : idle_ + 1;
     return idle_ < 3;
   }
@@ -335,6 +345,7 @@ class Sarsop {
   Trial trial_{model_, graph_, backups_};
   std::vector<Root> roots_;
   std::uint32_t persisted_ = 0;  // how many actions were repeated from the current roots
+  std::size_t patience_ = 1;     // how many times as many vectors are added before they are pruned
   int idle_ = 0;                 // how many trials in a row have learnt nothing
   std::deque<Branch> dropped_at_root_;
 };
