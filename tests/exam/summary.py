@@ -9,7 +9,7 @@ from typing import Any
 
 from .problem import Problem
 
-__all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets", "times_text"]
+__all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets"]
 
 MEAN_TARGET, WORST_TARGET = 0.01, 0.10
 """A planner may lose this much more of the range than exact look-ahead."""
@@ -183,7 +183,7 @@ class Regrets:
                 f"its decisions by themselves lose {100 * fmean(self.by_decisions[name]):.2f} %",
                 f"    where look-ahead is near the optimum ({len(self.sound[name])} models): "
                 f"{_mean_and_worst(self.sound[name])}",
-                f"    {times_text(self.times[name])}; began with {began}",
+                f"    {_times_text(self.times[name])}; began with {began}",
             ]
         lines += [f"  {count} models left out: {why}" for why, count in self.rejected.items()]
         lines += [f"  crashed: {', '.join(self.crashes)}"] if self.crashes else []
@@ -207,7 +207,7 @@ class Regrets:
         }
 
 
-def times_text(times_s: list[float]) -> str:
+def _times_text(times_s: list[float]) -> str:
     """Percentiles of decision times, for people."""
     ranked = sorted(1000 * time_s for time_s in times_s)
     half, most = (ranked[int(share * (len(ranked) - 1))] for share in (0.5, 0.95))
