@@ -68,6 +68,20 @@ def test_a_name_that_documents_cannot_have_is_refused(aos: typer.Typer, name: st
     assert not list(Path().iterdir())
 
 
+def test_a_skill_has_no_name_of_cpp(aos: typer.Typer) -> None:
+    run(aos, "new project fetch")
+    assert "means something else in C++" in str(run(aos, "new skill double --in fetch").exception)
+    assert not Path("fetch/double.sd").exists()
+
+
+def test_a_reader_that_has_gone_leaves_a_whole_project(
+    aos: typer.Typer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(typer, "echo", lambda text: 1 / 0)
+    run(aos, "new project fetch")
+    assert len(list(Path("fetch").iterdir())) == 5
+
+
 def test_a_skill_needs_a_bundle(aos: typer.Typer) -> None:
     assert "aos new project" in str(run(aos, "new skill wipe").exception)
 

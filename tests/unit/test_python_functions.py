@@ -1,4 +1,4 @@
-"""Functions of a robot's file that would end its process, and classes that cannot be made."""
+"""A robot's functions that would end its process, and classes that cannot be made."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def adapter_of(folder: Path, **bound: str) -> PythonAdapter:
 
 
 async def end(adapter: PythonAdapter) -> None:
-    """Closes the adapter, and its event loop, which in a process of its own ends with the process."""
+    """Closes the adapter, and its event loop, which else ends with the process."""
     await adapter.close()
     adapter._thread.join()
     adapter._loop.close()

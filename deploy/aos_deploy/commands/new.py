@@ -17,6 +17,7 @@ from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files, shipped
 from aos_deploy.systemd_unit import unit_name, unit_of
 from aos_language.convert import Dialect, convert
+from aos_language.cpp.keywords import CPP_KEYWORDS
 from aos_language.load import load_bundle, read_bundle_files
 from aos_language.merge import pushed_project
 from aos_protocol.errors import DocumentError
@@ -180,6 +181,8 @@ def _check_name(name: str, kind: str) -> None:
     if not _NAME.fullmatch(name):
         hint = "It starts with a small letter; small letters, digits and _ follow"
         raise DocumentError(f"{name!r} is no name for a {kind}", code="AOS126", hint=hint)
+    if kind == "skill" and name in CPP_KEYWORDS:
+        raise DocumentError(f"{name} means something else in C++", code="AOS126", hint="Choose another name")
 
 
 def _filled(kind: str, **names: str) -> dict[str, str]:
@@ -209,6 +212,8 @@ def _write(folder: Path, texts: dict[str, str]) -> None:
         for file, text in sorted(texts.items()):
             (folder / file).parent.mkdir(parents=True, exist_ok=True)
             (folder / file).write_text(text, encoding="utf-8")
-            typer.echo(f"wrote {folder / file}")
     except OSError as error:
         raise DocumentError(f"{folder} cannot be written: {error.strerror}", code="AOS101") from error
+    # Last: whoever reads this may have gone.
+    for file in sorted(texts):
+        typer.echo(f"wrote {folder / file}")
