@@ -14,8 +14,6 @@ namespace aos::point_based {
 inline constexpr double share_of_missions = 0.2;
 inline constexpr double share_of_anew = 0.05;
 inline constexpr double share_of_trials = 0.5;
-// Tries in a row by which no policy decides, that put off longer; after four, 15 decisions pass. Nobody has varied it.
-inline constexpr int max_failures = 4;
 
 // --- the horizon -------------------------------------------------------------------------------------
 

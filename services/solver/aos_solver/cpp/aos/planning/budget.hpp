@@ -20,6 +20,7 @@ inline constexpr int max_search_threads = 32;
 using Operations = std::uint64_t;
 
 inline constexpr Operations operations_of_step = 100;  // of the model, with what a search does for it
+inline constexpr double operations_of_second = 1e9;
 
 // A simulation is the work of a path from the belief of `horizon` steps of the model, in all planners. Where POMCP values
 // new histories by rollouts, it is one descent with its rollout.
@@ -31,6 +32,10 @@ struct Budget {
   Operations operations(int horizon) const { return simulations * operations_of_simulation(horizon); }
   static Operations operations_of_simulation(int horizon) {
     return operations_of_step * static_cast<Operations>(horizon > 0 ? horizon : 1);
+  }
+  // What may be worked in all, also within a budget in time.
+  double work(int horizon) const {
+    return simulations > 0 ? static_cast<double>(operations(horizon)) : seconds * operations_of_second;
   }
   // How many simulations were begun by so much work.
   static std::uint64_t simulations_of(Operations work, int horizon) {

@@ -80,7 +80,6 @@ template <class Model>
 class AffordableSteps {
  public:
   double of(Budget budget, int horizon) {
-    constexpr double operations_of_second = 1e9;
     if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least);
     if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
     const double affordable = budget.seconds * operations_of_second / static_cast<double>(step_cost_);

@@ -19,9 +19,9 @@
 #include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
+#include "aos/planning/belief_tree/observation_tables.hpp"
 #include "aos/planning/belief_tree/sensed_path.hpp"
 #include "aos/planning/belief_tree/sensing_runs.hpp"
-#include "aos/planning/listed/observation_tables.hpp"
 #include "aos/planning/listed/state_space.hpp"
 
 namespace aos {

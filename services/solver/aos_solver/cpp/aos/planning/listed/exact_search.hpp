@@ -13,6 +13,7 @@
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/action_values.hpp"
+#include "aos/planning/backoff.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/planner.hpp"
@@ -34,10 +35,7 @@ class ExactSearch final : public Planner<Model> {
   bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& choosing) override {
     const bool is_possible = question.is_listed && space_.lists_observations() && question.belief.is_exact();
     if (!switches::exact || !is_possible) return false;
-    if (put_off_ > 0) {
-      --put_off_;
-      return false;
-    }
+    if (!tries_.is_due()) return false;
     observable_.prepare(space_.rows(), space_.numbering(), question.horizon);
     const SearchTime time{choosing};
     const bool fits = evaluate(question.belief, question.budget, question.horizon);
@@ -77,12 +75,11 @@ class ExactSearch final : public Planner<Model> {
     }
     return estimates;
   }
-  void start_over() override { put_off_ = failures_ = 0; }
+  void start_over() override { tries_ = Backoff{1}; }
 
  private:
   static constexpr double share_of_budget = 0.25;
   static constexpr std::uint64_t max_beliefs = 1'000'000;
-  static constexpr int max_failures = 4;
 
   // Tries to compute the values with a share of the budget.
   bool evaluate(const Belief<Model>& belief, Budget budget, int horizon) {
@@ -91,10 +88,10 @@ class ExactSearch final : public Planner<Model> {
     try {
       values_ = evaluation_->action_values(space_.weights_of(belief), horizon);
       error_ = evaluation_->error(horizon);
-      failures_ = 0;
+      tries_.succeed();
       return true;
     } catch (const NotEnumerable&) {
-      put_off_ = failures_ < max_failures ? (1 << failures_++) - 1 : 1 << max_failures;
+      tries_.fail();
       return false;
     }
   }
@@ -131,8 +128,7 @@ class ExactSearch final : public Planner<Model> {
   double loss_error_ = 0;
   std::optional<ExactEvaluation> evaluation_;  // between `prepare` and `search`
   int horizon_ = 1;
-  int put_off_ = 0;  // how many decisions make no try
-  int failures_ = 0;
+  Backoff tries_{1};
 };
 
 }  // namespace aos

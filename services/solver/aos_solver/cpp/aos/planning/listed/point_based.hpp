@@ -21,6 +21,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
+#include "aos/planning/backoff.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/number_cells.hpp"
 #include "aos/planning/listed/state_space.hpp"
@@ -78,7 +79,7 @@ class PointBased {
   // Forgets what searches have found out, so that a mission does not depend on those before it.
   void start_over() {
     if (search_) search_->start_over();
-    put_off_ = failures_ = 0;
+    policy_tries_ = Backoff{};
     known_ = 0;
   }
 
@@ -114,8 +115,7 @@ class PointBased {
     };
     try_until(share_of_trials, trials_are_over);
     const Operations most_of_policies = std::max<Operations>(work_of(1 - share_of_missions - share_of_trials), most > 0);
-    if (put_off_ > 0) --put_off_;
-    else try_policies(most_of_policies, policies_are_over, work);
+    if (policy_tries_.is_due()) try_policies(most_of_policies, policies_are_over, work);
     if (!policy_) try_until(1 - share_of_missions, policies_are_over);
     const Operations most_of_anew = std::max<Operations>(work_of(share_of_anew), most > 0);
     anew_ = search_->best_policy_anew(static_cast<std::size_t>(horizon_), most_of_anew, anew_is_over, work);
@@ -184,8 +184,8 @@ class PointBased {
     const Operations before = work;
     policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most, is_over, work);
     if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
-    if (policy_) failures_ = 0;
-    else if (work > before) put_off_ = (1 << std::min(++failures_, point_based::max_failures)) - 1;
+    if (policy_) policy_tries_.succeed();
+    else if (work > before) policy_tries_.fail();
   }
 
   // Finds what missions lose that begin with an action and plan anew at each step. Returns the work.
@@ -289,8 +289,7 @@ class PointBased {
   NumberCells cells_;
   double error_ = 0;  // of bounds
   double running_ = 0;
-  int put_off_ = 0;   // how many decisions do not try policies
-  int failures_ = 0;  // tries in a row by which no policy decides
+  Backoff policy_tries_;
   std::optional<point_based::PolicyValue> policy_;  // that decides, since it returns more than is proven
   std::optional<point_based::PolicyValue> anew_;    // that decides anew with the whole horizon at each step
   std::size_t missions_ = 0;  // that were played from this belief

@@ -46,10 +46,7 @@ class GroupMissions {
 
   // Saves up a share of a decision's budget. Returns whether it is time to play.
   bool is_due(Budget budget, int horizon) {
-    constexpr double operations_of_second = 1e9;
-    const double of_decision = budget.simulations > 0 ? static_cast<double>(budget.operations(horizon))
-                                                      : budget.seconds * operations_of_second;
-    saved_ += share_of_groups * of_decision * (is_first_ ? horizon : 1);
+    saved_ += share_of_groups * budget.work(horizon) * (is_first_ ? horizon : 1);
     return is_first_ || saved_ >= fewest_later_followers * cost_;
   }
 
