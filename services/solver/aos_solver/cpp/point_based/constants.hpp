@@ -1,5 +1,5 @@
-// The constants by which SARSOP decides, each with its evidence. What the operations cost that a budget counts stands where they
-// are counted; docs/lab/budgets.md has measured it.
+// The constants by which SARSOP decides, each with its evidence; where none is named, nobody has varied it. What the
+// operations cost that a budget counts stands where they are counted; docs/lab/budgets.md has measured it.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,6 @@ namespace aos::point_based {
 
 // Of the budget: missions that tell the value, and of these missions by simple policies that decide anew. Trials have 0.5 at
 // least, and policies what is left, which cost 36 in lightdark where they decided nothing (docs/lab/simple-policies.md).
-// Nobody has varied the shares.
 inline constexpr double share_of_missions = 0.2;
 inline constexpr double share_of_anew = 0.05;
 inline constexpr double share_of_trials = 0.5;
@@ -21,26 +20,26 @@ inline constexpr double share_of_trials = 0.5;
 // observations. Where the line is drawn hardly matters: docs/lab/horizons.md.
 inline constexpr double much = 0.5;
 inline constexpr double next_to_nothing = 0.01;
-inline constexpr double max_likelihoods_in_layers = 2e6;  // times decisions; nobody has varied it
+inline constexpr double max_likelihoods_in_layers = 2e6;  // times decisions
 
 // --- trials ------------------------------------------------------------------------------------------
 
-// A trial aims below this share of the root's gap. Nobody has varied it.
+// A trial aims below this share of the root's gap.
 inline constexpr double share_of_gap = 0.1;
 inline constexpr std::size_t longest_trial = 1000;
-// Of the first trials, which repeat one action. Nobody has varied it.
+// Of the first trials, which repeat one action.
 inline constexpr std::size_t longest_detour = 30;
 
 // --- the end of a search -----------------------------------------------------------------------------
 
-// A gap of this share of the value matters to no decision. Nobody has varied it.
+// A gap of this share of the value matters to no decision.
 inline constexpr double closed_share = 1e-5;
-// A gap of this share is small enough to ask what missions lose of the value, and for no policy to be tried. Nobody has varied it.
+// A gap of this share is small enough to ask what missions lose of the value, and for no policy to be tried.
 inline constexpr double nearly_closed_share = 0.05;
 
 // --- simple policies ---------------------------------------------------------------------------------
 
-// Missions by each policy, and by the last one that is left. Nobody has varied them.
+// Missions by each policy, and by the last one that is left.
 inline constexpr std::size_t fewest_missions = 4;
 inline constexpr std::size_t most_missions = 32;
 
