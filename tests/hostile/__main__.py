@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import shutil
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -27,6 +28,7 @@ def main() -> int:
     options = _options()
     adopt_orphans()
     import_commands()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended"))
     log = Log(options.log, who_plays())
     # Not a TemporaryDirectory: the first command that is forked from here would remove it at its exit.
     folder = Path(tempfile.mkdtemp(prefix="aos-hostile-"))
@@ -38,7 +40,7 @@ def main() -> int:
                 is_asked = way in options.ways and options.only in f"{kind} {name}"
                 return is_asked and not log.has(number, kind, name, way)
 
-            for attempt in playground.round(number, wanted):
+            for attempt in playground.round(f"{who_plays()} {number}", wanted):
                 log.add(number, attempt)
     finally:
         shutil.rmtree(folder, ignore_errors=True)

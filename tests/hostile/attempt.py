@@ -75,11 +75,12 @@ class Playground:
         (folder / "tmp").mkdir()
         self._empty_cache()
 
-    def round(self, number: int, wanted: Wanted) -> Iterator[Attempt]:
-        """Plays the wanted attempts of a round. Every process that one started must have ended with it."""
+    def round(self, order: str, wanted: Wanted) -> Iterator[Attempt]:
+        """Plays the wanted attempts of a round; `order` decides about that of the pushes. Every process that
+        an attempt started must have ended with it."""
         yield from self._lints(wanted)
         yield from self._missions(wanted)
-        yield from self._pushes(wanted, random.Random(number))
+        yield from self._pushes(wanted, random.Random(order))
 
     def _lints(self, wanted: Wanted) -> Iterator[Attempt]:
         for kind, name in _named("model", "compiler"):

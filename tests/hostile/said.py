@@ -160,6 +160,7 @@ def _become(words: Sequence[str], folder: Path, environment: dict[str, str], out
         for stream in (1, 2):
             os.dup2(output, stream)
         signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         sys.argv = list(words)
         _COMMANDS[words[0]]()

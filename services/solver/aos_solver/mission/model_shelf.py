@@ -39,6 +39,8 @@ SYSTEM_CLOCK = SystemClock()
 _TRIED_S = 0.1
 _TRIED_CPU_S = 4.0
 """One step of a model that takes so much processor time does not end, for all that a mission can wait."""
+_STEP_CPU_S = 0.1
+"""A decision makes hundreds of steps at least, and ends the mission where it takes 120 s."""
 
 
 class ModelShelf:
@@ -274,14 +276,15 @@ class ModelShelf:
             hint = "Mend the initial belief, or end the mission and start it with the new documents"
             return (Diagnostic(Severity.ERROR, "AOS112", message, place, hint),)
         try:
-            await engine.rate(_TRIED_S, seed=1, max_seconds=_TRIED_CPU_S)
+            tried = await engine.rate(_TRIED_S, seed=1, max_seconds=_TRIED_CPU_S)
         except CodeFaultError as error:
             return tuple(map(_reached, error.diagnostics)) or (
                 Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),
             )
         finally:
             await engine.close()  # It is stopped at once, also where nobody waits for its end.
-        return ()
+        step_s = tried.cpu_seconds / max(tried.samples, 1)
+        return () if step_s < _STEP_CPU_S else (_slow(step_s, span),)
 
     async def close(self) -> None:
         """Ends what is being built, and all engines."""
@@ -299,6 +302,11 @@ class ModelShelf:
         """Returns once all engines have ended that nobody asks any more."""
         while ending := self._ending | (self._thorough.tasks if self._is_closed else set()):
             await asyncio.wait(ending)
+
+
+def _slow(step_s: float, span: Span) -> Diagnostic:
+    message = f"a step of this model takes {step_s:.1f} s of processor time, and a decision makes hundreds"
+    return Diagnostic(Severity.ERROR, "AOS211", message, span, "Compute less in a step, and print less")
 
 
 def _reached(found: Diagnostic) -> Diagnostic:
