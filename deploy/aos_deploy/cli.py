@@ -15,7 +15,8 @@ from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, Version
 from aos_deploy.terminal import write_what_fits
-from aos_protocol.errors import AosError
+from aos_protocol.codec import UNREADABLE
+from aos_protocol.errors import AosError, StorageError
 
 __all__ = ["aos_app", "main", "up_main"]
 
@@ -112,8 +113,10 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
             if sys.stdout is not None:
                 sys.stdout.flush()
     except AosError as error:
-        print_fault(name, error)
-        sys.exit(exit_code_of_error(error))
+        _end(name, error)
+    except UNREADABLE as error:
+        # A record of a run that somebody has sent may be anything, and many commands read it.
+        _end(name, StorageError(f"a record cannot be read: {error}", code="AOS702"))
     except OSError as error:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
             raise
@@ -121,3 +124,8 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
         sys.stderr.flush()
         os._exit(ExitCode.NOT_STARTED)  # Python would write the rest once more.
     sys.exit(0)
+
+
+def _end(name: str, error: AosError) -> NoReturn:
+    print_fault(name, error)
+    sys.exit(exit_code_of_error(error))

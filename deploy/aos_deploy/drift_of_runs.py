@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, DriftTest, DriftTests
 from aos_solver.mission.drift import DRIFT, after_use
@@ -50,7 +51,7 @@ def _fold(models: dict[str, ModelTests], mission: KeptMission) -> None:
             if row.kind != "decision":
                 continue
             record = msgspec.json.decode(row.payload, type=DecisionRecord)
-        except msgspec.MsgspecError as error:
+        except UNREADABLE as error:
             raise StorageError(f"row {row.seq} of {mission.journal}: {error}", code="AOS702") from error
         if record.outcome is None:
             decision = record

@@ -16,6 +16,7 @@ from urllib.request import Request, urlopen
 import msgspec
 
 from aos_deploy.program import cache_dir
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 
 __all__ = ["GatewayNote", "gateway_folder", "page_address"]
@@ -57,7 +58,7 @@ def _found() -> str | None:
         note = msgspec.json.decode((gateway_folder() / "gateway.json").read_bytes(), type=GatewayNote)
         with urlopen(_asked(note.address, "v1/openapi.json"), timeout=_ANSWER_S):
             return note.address
-    except (OSError, URLError, msgspec.MsgspecError):
+    except (OSError, URLError, *UNREADABLE):
         return None
 
 

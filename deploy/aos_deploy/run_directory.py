@@ -28,6 +28,7 @@ from typing import Any, BinaryIO
 import msgspec
 
 from aos_deploy.bus_socket import place_of_socket, remove_socket
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_runtime.failpoints import reach
@@ -231,7 +232,7 @@ class RunDirectory:
         """The fault a service has left, if it has."""
         try:
             return msgspec.json.decode(fault_path(self.path, service).read_bytes(), type=Fault)
-        except (OSError, msgspec.MsgspecError):
+        except (OSError, *UNREADABLE):
             return None
 
     def forget_fault(self, service: str) -> None:
@@ -265,7 +266,7 @@ class RunDirectory:
                 code="AOS801",
                 hint="`aos runs` lists the runs",
             ) from error
-        except msgspec.MsgspecError as error:
+        except UNREADABLE as error:
             raise DeployError(f"{path}: {error}", code="AOS801") from error
 
     def write_summary(self, summary: Summary) -> None:
@@ -284,7 +285,7 @@ class RunDirectory:
         folder = mission_folder(self.path, number) if number else self.path
         try:
             return msgspec.json.decode((folder / "summary.json").read_bytes(), type=Summary)
-        except (OSError, msgspec.MsgspecError):
+        except (OSError, *UNREADABLE):
             return None
 
     @property

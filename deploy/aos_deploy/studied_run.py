@@ -11,6 +11,7 @@ import msgspec
 from aos_deploy.program import cache_dir
 from aos_deploy.run_directory import RunDirectory
 from aos_language.load import load_files
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError, StudyError
 from aos_registry.catalogue import Catalogue
@@ -59,7 +60,7 @@ class StudiedRun:
         try:
             text = (run / "settings" / "solver.json").read_bytes()
             settings = msgspec.json.decode(text, type=Settings)
-        except (OSError, msgspec.MsgspecError) as error:
+        except (OSError, *UNREADABLE) as error:
             raise StorageError(
                 f"the settings of the solver in {run} cannot be read: {error}", code="AOS702"
             ) from error

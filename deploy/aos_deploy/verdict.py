@@ -11,6 +11,7 @@ from collections.abc import Iterable
 import msgspec
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionState
 from aos_runtime.journal import JournalRow
@@ -121,5 +122,5 @@ def message_of_row(row: JournalRow) -> DecisionRecord | MissionState | None:
         return None
     try:
         return msgspec.json.decode(row.payload, type=kind)
-    except msgspec.MsgspecError as error:
+    except UNREADABLE as error:
         raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error

@@ -18,7 +18,7 @@ import msgspec
 from aos_language.reading.files import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 
-__all__ = ["ARCHIVE_SUFFIXES", "is_archive_name", "read_archive"]
+__all__ = ["ARCHIVE_SUFFIXES", "UNREADABLE_ARCHIVE", "is_archive_name", "read_archive"]
 
 ARCHIVE_SUFFIXES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip")
 MAX_UNPACKED_BYTES = 4 * MAX_BUNDLE_BYTES
@@ -36,7 +36,7 @@ _TAR_RECORDS = (
     tarfile.GNUTYPE_LONGLINK,
 )
 
-_UNREADABLE = (
+UNREADABLE_ARCHIVE = (
     OSError,
     EOFError,
     LookupError,
@@ -113,7 +113,7 @@ def read_archive(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
         return _in_one_folder(files, path), remarks
     except _RefusedError as refused:
         return {}, [refused.diagnostic]
-    except _UNREADABLE as error:
+    except UNREADABLE_ARCHIVE as error:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         message = f"the archive cannot be read: {reason}"
         hint = f"A bundle is a directory, or an archive in {', '.join(ARCHIVE_SUFFIXES)}"

@@ -17,6 +17,7 @@ from aos_protocol.messages import Envelope, Fault, Message
 __all__ = [
     "MAX_BYTES",
     "PROTOCOL_VERSION",
+    "UNREADABLE",
     "decode",
     "decode_fault",
     "encode",
@@ -26,6 +27,9 @@ __all__ = [
 
 PROTOCOL_VERSION = "1.0"
 MAX_BYTES = 16 * 1024 * 1024
+
+UNREADABLE = (msgspec.MsgspecError, RecursionError, UnicodeDecodeError)
+"""The errors of msgspec's decoders. The last two come of nested values, and of text that is no UTF-8."""
 
 M = TypeVar("M", bound=Message)
 
@@ -84,6 +88,6 @@ def _decoder(kind: type[Any]) -> msgspec.msgpack.Decoder[Any]:
 def _checked_decode(payload: bytes | msgspec.Raw, kind: type[M]) -> M:
     try:
         message: M = _decoder(kind).decode(payload)
-    except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
+    except UNREADABLE as error:
         raise BusError(f"not a {kind.__name__}: {error}", code="AOS602") from error
     return message

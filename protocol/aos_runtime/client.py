@@ -17,6 +17,7 @@ from typing import Any, Literal
 import msgspec
 
 from aos_protocol.access import OPERATOR, WATCHER, Party
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import (
     BusError,
     LateAnswerError,
@@ -329,7 +330,7 @@ def _place_of(run: Path, user: str) -> tuple[_Place, Credential | None]:
     run = run.resolve()
     try:
         place = msgspec.json.decode((run / "run.json").read_bytes(), type=_Place)
-    except (OSError, msgspec.MsgspecError) as error:
+    except (OSError, *UNREADABLE) as error:
         raise BusError(f"{run} is no run directory: {error}", code="AOS605") from error
     return place, credential_of_run(run, user)
 

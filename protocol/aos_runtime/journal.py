@@ -21,6 +21,7 @@ from aos_protocol.errors import StorageError
 from aos_protocol.messages import Message
 from aos_runtime import failpoints
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.plain_tables import require_plain_tables
 
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
@@ -175,6 +176,8 @@ class Journal:
             ):
                 if self._has_checksums and check != _checksum(stamp_ns, of_kind, text):
                     raise self._damaged(f"row {seq} is damaged")
+                if not isinstance(text, str):
+                    raise self._damaged(f"row {seq} has no text")
                 if kind is None and seq != number + 1:
                     raise self._damaged(f"row {seq} follows row {number}")
                 number = seq
@@ -199,6 +202,7 @@ def _checksum(stamp_ns: int, kind: str, payload: str) -> int:
 
 def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: bool) -> int:
     """Returns the version of the schema; StorageError AOS702 for one that this program does not know."""
+    require_plain_tables(connection)
     version = int(connection.execute("PRAGMA user_version").fetchone()[0])
     is_new = version == 0 and not connection.execute("SELECT 1 FROM sqlite_schema").fetchone()
     is_known = is_new if is_to_write else version == _WITHOUT_CHECKSUMS

@@ -22,6 +22,7 @@ from typing import Any, Generic, NoReturn, TypeVar
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, DeployError, StorageError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
@@ -178,7 +179,7 @@ def _read_settings(settings_type: type[S]) -> S:
     path = Path(sys.argv[1])
     try:
         return msgspec.json.decode(path.read_bytes(), type=settings_type)
-    except (OSError, msgspec.MsgspecError) as error:
+    except (OSError, *UNREADABLE) as error:
         sys.exit(f"{path}: {error}")
 
 

@@ -109,8 +109,11 @@ class Playground:
         started_s, before_s = time.monotonic(), processor_s()
         command = self._start(words, way)
         is_harmless = way == "mission" and name in _HARMLESS
-        told_s = command.listen(_STEP if is_harmless else place_of(kind, HOSTILE), _HEARD_S)
-        faults = [*self._broken(command.end()), *_untold(name, told_s, command)]
+        words, heard_s = (_STEP, TOLD_S) if is_harmless else (place_of(kind, HOSTILE), _HEARD_S)
+        told_s = command.listen(words, heard_s)
+        # The lint of what nobody is told of ends by itself.
+        said = command.end(_HEARD_S if way == "lint" else 0.0)
+        faults = [*self._broken(said), *_untold(name, told_s, command)]
         spent_s = processor_s() - before_s
         told_s = None if told_s is None or is_harmless else told_s - started_s
         return Attempt(kind, name, way, told_s, spent_s, tuple(faults))

@@ -90,6 +90,14 @@ async def test_documents_whose_code_would_end_a_running_mission_are_refused(
     assert (refusal.code, refusal.span.file) == (fault, file)
 
 
+async def test_a_response_that_is_no_text_is_an_answer_that_makes_no_sense(cache_dir: Path) -> None:
+    files = counting("lamp", "press", code='__moduleResponseStr = "\\xff";', steps="3")
+    files["press.sd"] = files["press.sd"].replace("__moduleResponse = done;\n", "")
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        with pytest.raises(ModelError, match="the engine's answer makes no sense"):
+            await engine.plan(seed=1, simulations=20)
+
+
 async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:
     built = await built_text(LAMP, cache_dir)
     command = [str(built.executable), "-1", "-1", "1", "widen", "12"]

@@ -235,3 +235,25 @@ def test_a_worker_whose_middleware_was_killed_ends_without_a_word() -> None:
     )
     os.close(answers)
     assert (worker.returncode, worker.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        r"b'\x93\xa8Observed\xa1\xff\x80'",
+        r"b'\x82\xa4type\xa8Observed\xa8response' + b'\x91' * 100000",
+        r"b'\x82\xa4type\xa8Observed\xa8response\xa1\xff'",
+    ],
+)
+async def test_code_that_answers_in_the_place_of_its_worker_is_a_fault_of_the_mapping(
+    evaluator: Start, answer: str
+) -> None:
+    code = f"""import os
+frame = {answer}
+for pipe in range(3, 16):
+    try: os.write(pipe, len(frame).to_bytes(4, 'big') + frame)
+    except OSError: pass
+value = 1
+"""
+    fault = await fault_of(evaluator(RESULT + code))
+    assert "the worker sent no message" in fault.message

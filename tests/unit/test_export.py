@@ -5,7 +5,12 @@ from __future__ import annotations
 import base64
 import csv
 import json
+import random
+import sqlite3
+import sys
 import zipfile
+import zlib
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -15,6 +20,7 @@ import msgspec
 import pytest
 from decision_records import decision_record
 
+from aos_deploy.cli import main
 from aos_deploy.commands.export import export
 from aos_deploy.export.kept_missions import kept_missions
 from aos_deploy.export.layouts import curves_of, foxglove_layout, plotjuggler_layout
@@ -27,6 +33,7 @@ from aos_protocol.messages import (
     Activate,
     ActivationId,
     BeliefSummary,
+    Cancel,
     DecisionRecord,
     Marginal,
     MissionState,
@@ -289,3 +296,43 @@ def test_a_run_that_is_named_twice_is_taken_once(tmp_path: Path) -> None:
     (tmp_path / "latest").symlink_to(runs[1])
     assert chosen_runs([*runs, tmp_path / "latest"], None) == runs
     assert chosen_runs([tmp_path / "latest", *runs], None) == [tmp_path / "latest", runs[0]]
+
+
+def test_a_file_that_was_damaged_on_its_way_is_opened_or_refused(run: Path, tmp_path: Path) -> None:
+    target = tmp_path / "sent.aosrun"
+    write_bundle([run], target)
+    good = target.read_bytes()
+    chance = random.Random(20261126)
+    refused = 0
+    for _ in range(150):
+        raw = bytearray(good)
+        for _ in range(chance.randint(1, 6)):
+            place = chance.choice((chance.randrange(len(raw)), len(raw) - chance.randint(1, 600)))
+            raw[place] = chance.randrange(256)
+        target.write_bytes(raw)
+        try:
+            opened_bundle(target)
+        except DeployError:
+            refused += 1
+    assert refused > 50
+
+
+def test_a_record_that_is_nested_without_end_is_told_as_unreadable(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with Journal.open(run / "journal.db") as journal:
+        journal.append("decision", Cancel("x"))
+    with closing(sqlite3.connect(run / "journal.db")) as connection:
+        (seq, stamp_ns) = connection.execute("SELECT max(seq), max(stamp_ns) FROM entries").fetchone()
+        text = '{"x":' + "[" * 200_000 + "]" * 200_000 + "}"
+        connection.execute("DROP TRIGGER entries_stay")
+        checksum = zlib.crc32(f"{stamp_ns} decision {text}".encode())
+        values = (stamp_ns, text, checksum, seq)
+        connection.execute("UPDATE entries SET stamp_ns = ?, payload = ?, checksum = ? WHERE seq = ?", values)
+        connection.commit()
+    monkeypatch.setattr(
+        sys, "argv", ["aos", "export", str(run), "-o", str(tmp_path / "x"), "--format", "csv"]
+    )
+    with pytest.raises(SystemExit):
+        main()
+    assert "AOS702" in capsys.readouterr().err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 import msgspec
@@ -193,3 +194,30 @@ def rows_of(path: Path) -> list[JournalRow] | None:
             return journal.rows()
     except StorageError as error:
         return None if error.code == "AOS702" else []
+
+
+@pytest.mark.parametrize(
+    "entries",
+    [
+        "CREATE VIEW entries AS WITH RECURSIVE n(seq) AS (SELECT 1 UNION ALL SELECT seq + 1 FROM n) "
+        "SELECT seq, 1 AS stamp_ns, 'x' AS kind, '{}' AS payload FROM n",
+        "CREATE TABLE entries (seq INTEGER PRIMARY KEY, stamp_ns, kind, payload AS (hex(zeroblob(1e8))))",
+    ],
+)
+def test_a_journal_that_computes_its_rows_is_refused(entries: str, tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    with closing(sqlite3.connect(path)) as connection:
+        connection.executescript(f"{entries}; PRAGMA user_version = 1;")
+    with pytest.raises(StorageError, match="entries is no plain table"):
+        Journal.read(path)
+
+
+def test_a_row_that_is_no_text_is_an_error(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    with closing(sqlite3.connect(path)) as connection:
+        connection.executescript(
+            "CREATE TABLE entries (seq INTEGER PRIMARY KEY AUTOINCREMENT, stamp_ns, kind, payload);"
+            "INSERT INTO entries VALUES (1, 1, 'x', x'00'); PRAGMA user_version = 1;"
+        )
+    with Journal.read(path) as journal, pytest.raises(StorageError, match="row 1 has no text"):
+        journal.rows()

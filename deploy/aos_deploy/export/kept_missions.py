@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import (
     ActionRefused,
@@ -56,7 +57,7 @@ class KeptMission(NamedTuple):
             for row in journal.walk("decision"):
                 try:
                     yield msgspec.json.decode(row.payload, type=DecisionRecord)
-                except msgspec.MsgspecError as error:
+                except UNREADABLE as error:
                     raise StorageError(f"row {row.seq} of {self.journal}: {error}", code="AOS702") from error
 
 

@@ -17,6 +17,7 @@ from contextlib import closing
 from pathlib import Path, PurePosixPath
 
 from aos_deploy.program import cache_dir
+from aos_language.archive import UNREADABLE_ARCHIVE
 from aos_protocol.errors import DeployError
 from aos_runtime.credentials import FOLDER, read_password
 
@@ -66,7 +67,7 @@ def opened_bundle(path: Path) -> list[Path]:
         folder = cache_dir() / "opened" / digest
         if not folder.is_dir():
             _unpack(path, folder)
-    except (OSError, zipfile.BadZipFile, RuntimeError) as error:
+    except UNREADABLE_ARCHIVE as error:
         raise DeployError(f"{path} cannot be opened: {error}", code="AOS801") from error
     runs = sorted(record.parent for record in folder.glob("*/run.json"))
     if not runs:

@@ -11,6 +11,7 @@ from aos_deploy.history_check.journal_rules import KINDS, Found, JournalRules
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS, LedgerRules, Motions
 from aos_deploy.history_check.rules import Violation
 from aos_deploy.verdict import Verdict
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_runtime.journal import JournalRow
 
@@ -115,7 +116,7 @@ def _go_through(
                 continue
             try:
                 message = msgspec.json.decode(row.payload, type=kind)
-            except msgspec.MsgspecError as error:
+            except UNREADABLE as error:
                 found("rows", f"it cannot be read: {error}")
             else:
                 rules.take(row, message, found)

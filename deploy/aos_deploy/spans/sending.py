@@ -14,6 +14,7 @@ import msgspec
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_deploy.spans.otlp import Collector
 from aos_deploy.spans.spans import Span, span_of_mission, spans_of_record
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_runtime.journal import Journal, JournalRow
@@ -35,7 +36,7 @@ class Sender:
         if self._file is not None and self._file.is_file():
             try:
                 self._next_rows = msgspec.json.decode(self._file.read_bytes(), type=dict[str, int])
-            except msgspec.MsgspecError:
+            except UNREADABLE:
                 self._next_rows = {}  # It was cut off: all are sent again, with the ids that they had.
 
     def send(self) -> tuple[int, bool]:
@@ -85,5 +86,5 @@ def _spans_of_row(row: JournalRow, begun_ns: int) -> Iterator[Span]:
             state = msgspec.json.decode(row.payload, type=MissionState)
             if state.phase == "ended":
                 yield span_of_mission(state, begun_ns, row.stamp_ns)
-    except msgspec.MsgspecError as error:
+    except UNREADABLE as error:
         raise StorageError(f"row {row.seq}: {error}", code="AOS702") from error

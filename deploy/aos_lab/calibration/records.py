@@ -12,6 +12,7 @@ import msgspec
 from aos_deploy.printing import from_here
 from aos_deploy.run_end import beginning_of
 from aos_lab.trials.trial import Trial
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
 from aos_runtime.journal import Journal
@@ -83,7 +84,7 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
     for line in path.read_bytes().splitlines():
         try:
             trial = msgspec.json.decode(line, type=_Kept).trial
-        except msgspec.MsgspecError:
+        except UNREADABLE:
             continue
         if not trial.fault:
             trials[trial.seed] = trial

@@ -19,6 +19,7 @@ from aos_lab.trials.setting import Setting, deployment_of, world_deployment_of
 from aos_lab.trials.system_player import SystemPlayer
 from aos_lab.trials.trial import Trial
 from aos_protocol import __version__
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import MissionValue
 from aos_runtime.lifecycle import root_cause
 
@@ -141,7 +142,7 @@ def _kept(records: Path, digest: str) -> list[Trial]:
     for line in records.read_bytes().splitlines() if records.is_file() else ():
         try:
             kept = msgspec.json.decode(line, type=_Kept)
-        except msgspec.MsgspecError:
+        except UNREADABLE:
             continue
         if kept.digest == digest and not kept.trial.fault:
             trials.append(kept.trial)

@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_runtime.adapters.settings import AdapterSettings
 from aos_runtime.credentials import PASSWORD_FILE_VARIABLE
 
@@ -67,7 +68,7 @@ def _bound(environment: Mapping[str, str]) -> AdapterSettings:
         return AdapterSettings(robot="", service="", endpoint="", run_dir="", adapter="", serves_others=True)
     try:
         return msgspec.json.decode(Path(path).read_bytes(), type=AdapterSettings)
-    except (OSError, msgspec.MsgspecError) as error:
+    except (OSError, *UNREADABLE) as error:
         _end(f"{path}: {error}")
 
 
@@ -105,5 +106,5 @@ def _value(text: str) -> Any:
     """Numbers and truth values as such, all else as text."""
     try:
         return msgspec.json.decode(text)
-    except msgspec.MsgspecError:
+    except UNREADABLE:
         return text

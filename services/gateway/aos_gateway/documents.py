@@ -17,6 +17,7 @@ from aos_protocol.documents import Project, Snippet
 from aos_protocol.errors import AosError, GatewayError, StorageError
 from aos_protocol.messages import Catalogue, CatalogueEntry, CatalogueQuery
 from aos_registry.catalogue import Catalogue as KeptCatalogue
+from aos_runtime.plain_tables import require_plain_tables
 
 __all__ = ["bundles", "documents", "draws_state", "picture_of"]
 
@@ -81,6 +82,7 @@ def _catalogue(run: KeptRun) -> KeptCatalogue:
     try:
         connection = sqlite3.connect(path, isolation_level=None)
         connection.execute("PRAGMA query_only = ON")
+        require_plain_tables(connection)
     except sqlite3.Error as error:
         raise StorageError(f"the catalogue {path}: {error}", code="AOS702") from error
     return KeptCatalogue(connection)

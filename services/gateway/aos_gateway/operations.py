@@ -18,6 +18,7 @@ from starlette.routing import Route
 
 from aos_gateway.problems import PROBLEM_TYPE, problem_of
 from aos_gateway.shared import Gateway
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, GatewayError
 
 __all__ = ["JSON", "Content", "Operation", "operation", "response_of", "route_of"]
@@ -142,7 +143,7 @@ async def _body(request: Request, max_bytes: int) -> bytes:
 def _decoded(data: bytes, kind: type[msgspec.Struct]) -> Any:
     try:
         return msgspec.json.decode(data or b"{}", type=kind)
-    except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
+    except UNREADABLE as error:
         raise GatewayError(f"the body is no {kind.__name__}: {error}", code="AOS901") from error
 
 
@@ -152,5 +153,5 @@ def _structure(given: dict[str, str], kind: type[msgspec.Struct]) -> Any:
         raise GatewayError(f"unknown parameter {sorted(unknown)[0]}", code="AOS901")
     try:
         return msgspec.convert(given, kind, strict=False)
-    except msgspec.MsgspecError as error:
+    except UNREADABLE as error:
         raise GatewayError(f"the parameters are wrong: {error}", code="AOS901") from error

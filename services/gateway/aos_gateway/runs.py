@@ -16,6 +16,7 @@ from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, DeployError, GatewayError, StorageError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
 from aos_runtime.client import AosClient
@@ -215,7 +216,7 @@ class KeptRun(Run):
             return {}
         try:
             return msgspec.json.decode(last.payload, type=MissionBegun).mission_parameters
-        except msgspec.MsgspecError as error:
+        except UNREADABLE as error:
             raise StorageError(f"row {last.seq} of the journal: {error}", code="AOS702") from error
 
     def folder(self, mission: str) -> Path:

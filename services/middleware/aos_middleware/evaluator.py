@@ -34,6 +34,7 @@ from aos_middleware.frames import (
     pack,
     read_answer,
 )
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import MappingError, StorageError
@@ -200,7 +201,7 @@ class Evaluator:
         except (asyncio.IncompleteReadError, BrokenPipeError, ConnectionResetError):
             limit_s = self._limits.load_s if isinstance(question, Load) else self._limits.evaluation_s
             raise await self._why_it_ended(child, limit_s) from None
-        except msgspec.MsgspecError as error:
+        except UNREADABLE as error:
             raise self._fault("AOS401", f"the worker sent no message: {error}", None) from None
         finally:
             if not is_answered:

@@ -8,6 +8,8 @@ from typing import Any
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
+
 __all__ = ["observed_numbers"]
 
 
@@ -24,7 +26,7 @@ def _decoded(text: str) -> Any:
     """Plain data from JSON; other objects are told by their `repr`, and are no numbers."""
     try:
         return msgspec.json.decode(text)
-    except msgspec.DecodeError:
+    except UNREADABLE:
         return None
 
 

@@ -14,6 +14,7 @@ import msgspec
 
 from aos_middleware.evaluator import worker_confinement
 from aos_middleware.picture_worker import FILE_NAME, MOST_BYTES, Drawn, NotDrawn, Subject
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
 from aos_protocol.messages import BeliefSummary, Marginal
@@ -101,7 +102,7 @@ async def _answer(child: Child, asked: bytes) -> Drawn | NotDrawn:
             raise _fault(f"it has written more than {MOST_BYTES:,} bytes")
     try:
         return msgspec.msgpack.decode(bytes(said), type=Drawn | NotDrawn)
-    except msgspec.MsgspecError:
+    except UNREADABLE:
         pass
     try:
         async with asyncio.timeout(_END_S):

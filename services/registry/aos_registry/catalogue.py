@@ -18,6 +18,7 @@ import msgspec
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import CatalogueEntry, RevisionEntry
+from aos_runtime.plain_tables import require_plain_tables
 
 __all__ = ["Catalogue", "Revision"]
 
@@ -66,6 +67,7 @@ class Catalogue:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             connection = sqlite3.connect(path, isolation_level=None, timeout=_BUSY_TIMEOUT_S)
+            require_plain_tables(connection)
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute("PRAGMA synchronous = FULL")
             version = connection.execute("PRAGMA user_version").fetchone()[0]

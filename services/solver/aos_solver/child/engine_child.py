@@ -14,6 +14,7 @@ from typing import Literal, Self, TypeVar
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity
 from aos_protocol.errors import (
     AosError,
@@ -226,7 +227,7 @@ class EngineChild:
             fault = msgspec.json.decode(line, type=_FaultAnswer).fault
             if fault is None:
                 return msgspec.json.decode(line, type=kind)
-        except msgspec.MsgspecError as error:
+        except UNREADABLE as error:
             raise ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
         raise self.fault(fault.code, fault.text, fault.piece)
 

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_solver.emission.program import Local
 
 __all__ = ["UnusableLocals", "local_values_line"]
@@ -40,7 +41,7 @@ def local_values_line(wanted: Iterable[Local], texts: Mapping[str, str]) -> str:
         text = texts.get(local.name, "null")
         try:
             value = msgspec.json.decode(text, type=_TYPES[local.kind.element][local.kind.is_array])
-        except msgspec.DecodeError:
+        except UNREADABLE:
             reasons.append(_reason(local, text))
         else:
             numbers += _numbers(value)

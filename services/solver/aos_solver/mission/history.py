@@ -10,6 +10,7 @@ from typing import TypeVar
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery
 from aos_runtime.journal import Journal, JournalRow
@@ -105,5 +106,5 @@ def _rows_since(journal: Journal, sequence: int) -> Iterator[JournalRow]:
 def _decoded(row: JournalRow, kind: type[T]) -> T:
     try:
         return msgspec.json.decode(row.payload, type=kind)
-    except msgspec.MsgspecError as error:
+    except UNREADABLE as error:
         raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error

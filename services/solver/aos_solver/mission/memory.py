@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import (
     ActionRefused,
@@ -183,7 +184,7 @@ def _without_search(decision: DecisionRecord) -> DecisionRecord:
 def _decoded(row: JournalRow) -> Any:
     try:
         return msgspec.json.decode(row.payload, type=_KINDS[row.kind])
-    except msgspec.MsgspecError as error:
+    except UNREADABLE as error:
         raise StorageError(f"row {row.seq} of the journal is damaged: {error}", code="AOS702") from error
 
 

@@ -19,7 +19,7 @@ import msgspec
 from aos_language.mission_parameters import ParameterLeaf, usable_values
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Constraint, MissionValue, Project
-from aos_protocol.errors import AosError, CodeFaultError
+from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.clock import Clock, SystemClock
 from aos_solver.building.build import BuiltModel
@@ -39,6 +39,7 @@ SYSTEM_CLOCK = SystemClock()
 _TRIED_S = 0.1
 _TRIED_CPU_S = 4.0
 """One step of a model that takes so much processor time does not end, for all that a mission can wait."""
+_TRIED_SIMULATIONS = 20
 _STEP_CPU_S = 0.1
 """A decision makes hundreds of steps at least, and ends the mission where it takes 120 s."""
 
@@ -277,14 +278,17 @@ class ModelShelf:
             return (Diagnostic(Severity.ERROR, "AOS112", message, place, hint),)
         try:
             tried = await engine.rate(_TRIED_S, seed=1, max_seconds=_TRIED_CPU_S)
-        except CodeFaultError as error:
+            if (step_s := tried.cpu_seconds / max(tried.samples, 1)) >= _STEP_CPU_S:
+                return (_slow(step_s, span),)
+            # What a decision tells has to be readable.
+            await engine.plan(seed=1, simulations=_TRIED_SIMULATIONS, planner="pomcp")
+        except ModelError as error:
             return tuple(map(_reached, error.diagnostics)) or (
                 Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),
             )
         finally:
             await engine.close()  # It is stopped at once, also where nobody waits for its end.
-        step_s = tried.cpu_seconds / max(tried.samples, 1)
-        return () if step_s < _STEP_CPU_S else (_slow(step_s, span),)
+        return ()
 
     async def close(self) -> None:
         """Ends what is being built, and all engines."""

@@ -13,6 +13,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ChosenBy
 from aos_solver.child.answers import Plan
@@ -75,7 +76,7 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
             return cls(header, AlphaVectors.of_bytes(len(header.actions), header.regions, data))
         except OSError as error:
             raise PlanningError(f"cannot read {path}: {error.strerror}", code="AOS321") from error
-        except (msgspec.MsgspecError, ValueError) as error:
+        except (*UNREADABLE, ValueError) as error:
             raise PlanningError(
                 f"{path} is no policy of this version: {error}", code="AOS321", hint="Make it with aos solve"
             ) from error

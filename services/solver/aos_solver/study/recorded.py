@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import SkillError, StorageError
 from aos_protocol.messages import BeliefRow, DecisionRecord, MissionBegun, ModelAdopted
 from aos_runtime.journal import JournalRow
@@ -80,5 +81,5 @@ def _events(rows: Iterable[JournalRow]) -> Iterator[RecordedEvent]:
             continue
         try:
             yield RecordedEvent(row.seq, msgspec.json.decode(row.payload, type=_KINDS[row.kind]))
-        except msgspec.MsgspecError as error:
+        except UNREADABLE as error:
             raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error
