@@ -1,7 +1,7 @@
 """The look at a database that a stranger may have sent: is it made of plain tables?
 
-A view or a computed column is a program: SQLite runs it whenever somebody reads, and one without an end keeps
-the reader for ever, out of reach of Ctrl-C.
+A view or a computed column is a program. SQLite runs it for whoever reads, who waits for ever, out of reach
+of Ctrl-C, where it has no end.
 """
 
 from __future__ import annotations

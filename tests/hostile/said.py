@@ -30,12 +30,7 @@ _IMPORTED = (
     "aos_deploy.commands.documents",
     "aos_deploy.commands.up",
     "aos_deploy.mission_run",
-    "aos_deploy.picture_findings",
-    "aos_deploy.reachability",
-    "aos_deploy.serve_run",
     "aos_deploy.system_run",
-    "aos_deploy.taking_up",
-    "aos_deploy.views",
     "aos_runtime.client",
     "aos_solver.building.project_build",
 )
