@@ -10,6 +10,7 @@ import pytest
 from decision_records import decision_record
 from rich.console import Console
 
+from aos_deploy.commands import decisions
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
 from aos_deploy.terminal import console
@@ -128,6 +129,8 @@ def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(
     lost = Outcome(OUTCOME.id, "pick", "failed", fault=Fault("AOS510", "no\nmap \x1b[31m"))
     PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
     assert "pick -> failed (no map  [31m)" in capsys.readouterr().out
+    (reason,) = decisions._reason(msgspec.structs.replace(DECISION, why="\x1b[2J", planner="pomcp"))
+    assert reason.isprintable()
 
 
 def test_an_empty_text_as_a_response_is_seen(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,7 @@ import typer
 from aos_deploy.living_runs import chosen_run
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
-from aos_deploy.views.lines import lines_of
+from aos_deploy.views.lines import lines_of, on_one_line
 from aos_protocol.access import WATCHER
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_runtime.mission_folders import mission_folder, mission_folders
@@ -82,7 +82,7 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
         return []
     if not event.planner:
         return []  # The line of the decision says who has asked for it.
-    return [f"         {event.planner}: {event.why}"]
+    return [on_one_line(f"         {event.planner}: {event.why}")]
 
 
 def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord | MissionState]:

@@ -28,6 +28,7 @@ __all__ = [
     "effort_text",
     "endings_text",
     "lines_of",
+    "on_one_line",
     "risk_text",
 ]
 
@@ -89,10 +90,10 @@ class JsonView:
 
 def lines_of(event: Event) -> list[str]:
     """An event as text for people."""
-    return [line if isinstance(event, Told | BundleReport) else _on_one_line(line) for line in _lines(event)]
+    return [line if isinstance(event, Told | BundleReport) else on_one_line(line) for line in _lines(event)]
 
 
-def _on_one_line(text: str) -> str:
+def on_one_line(text: str) -> str:
     """The text without line ends, and without letters that a terminal takes for commands: robots say both."""
     if text.isprintable():
         return text
