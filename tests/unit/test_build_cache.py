@@ -116,7 +116,8 @@ async def test_who_waits_for_a_failure_tries_by_itself(tmp_path: Path) -> None:
 
 async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path: Path) -> None:
     async def make_large(staging: Path) -> None:
-        (staging / "part").write_bytes(bytes(100_000))
+        (staging / "headers").mkdir()
+        (staging / "headers" / "part").write_bytes(bytes(100_000))
 
     cache = BuildCache(tmp_path, size_bytes=250_000)
     for age_s, name in (

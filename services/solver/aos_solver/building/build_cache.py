@@ -117,7 +117,10 @@ class BuildCache:
 
 
 def _size_bytes(folder: Path) -> int:
-    """The space that the files of a folder take; 0 if it has just gone."""
-    with contextlib.suppress(OSError):
-        return sum(path.lstat().st_blocks * 512 for path in folder.iterdir())
-    return 0
+    """The space that a folder takes with all below it, as far as it is still there."""
+    size_bytes = 0
+    for parent, _, names in os.walk(folder):  # What has just gone is left out.
+        for name in names:
+            with contextlib.suppress(OSError):
+                size_bytes += Path(parent, name).lstat().st_blocks * 512
+    return size_bytes
