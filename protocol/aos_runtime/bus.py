@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections import Counter
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from functools import partial
@@ -233,42 +232,21 @@ class Bus(Closing):
 
         async def declare(subscription: Subscription[tuple[str, bool]]) -> Undeclare:
             present: set[str] = set()
-            departures: Counter[str] = Counter()
 
-            def take(key: str, is_alive: bool) -> None:
-                if is_alive is (key in present):
+            def on_change(key: str, is_alive: bool) -> None:
+                if is_alive is (key in present):  # Zenoh may repeat what it said.
                     return
                 (present.add if is_alive else present.discard)(key)
                 subscription.push((key, is_alive))
 
-            def on_left(key: str) -> None:
-                departures[key] += 1
-                take(key, False)
-
-            # Zenoh tells a new watch what its session knows from another one, and also what has just gone,
-            # for good. So that a key is there is only believed where the router says so, too; and what the
-            # router said of a key that has gone meanwhile may be older than its going.
-            def look_at(key: str) -> None:
-                if key not in present and not self._is_closed:
-                    self._look(key, partial(on_seen, key, departures[key]))
-
-            def on_seen(asked: str, departed: int, reply: zenoh.Reply) -> None:
-                if reply.ok is not None:
-                    self._inbox.put(partial(on_found, str(reply.ok.key_expr), departed))
-                elif asked:  # The answer was late.
-                    self._inbox.put(partial(look_at, asked))
-
-            def on_found(key: str, departed: int) -> None:
-                look_at(key) if departures[key] != departed else take(key, True)
-
             def on_sample(sample: zenoh.Sample) -> None:
-                key = str(sample.key_expr)
-                self._inbox.put(partial(look_at if sample.kind == zenoh.SampleKind.PUT else on_left, key))
+                is_alive = sample.kind == zenoh.SampleKind.PUT
+                self._inbox.put(partial(on_change, str(sample.key_expr), is_alive))
 
             subscriber = self._session.liveliness().declare_subscriber(
                 key_expression, Callback(on_sample, indirect=False), history=True
             )
-            await self._wait_for_router(key_expression, partial(on_seen, "", 0))
+            await self._wait_for_router()
             self._subscriptions.add(subscription)
             return partial(self._end, subscription, subscriber)
 
@@ -305,43 +283,30 @@ class Bus(Closing):
         if not self._is_closed:
             subscriber.undeclare()
 
-    async def _wait_for_router(
-        self, key_expression: str = ROUND_TRIP, on_found: Callable[[zenoh.Reply], None] | None = None
-    ) -> None:
-        """Returns when the router has taken in everything declared so far, and has told of these keys.
+    async def _wait_for_router(self) -> None:
+        """Returns when the router has taken in everything declared so far.
 
         A declaration returns before the router knows of it, and what another client sends meanwhile is lost;
         a round trip on the same link comes back after it.
         """
         for _ in range(_ROUND_TRIPS):
-            if await self._has_gone_round(key_expression, on_found):
+            if await self._has_gone_round():
                 return
         raise BusError("the bus router does not answer", code="AOS605")
 
-    async def _has_gone_round(
-        self, key_expression: str = ROUND_TRIP, on_found: Callable[[zenoh.Reply], None] | None = None
-    ) -> bool:
+    async def _has_gone_round(self) -> bool:
         done = self._loop.create_future()
-        self._look(key_expression, on_found, partial(self._inbox.put, partial(_settle, done)))
+        self._session.liveliness().get(
+            ROUND_TRIP,
+            Callback(_ignore, partial(self._inbox.put, partial(_settle, done)), indirect=False),
+            timeout=_ROUND_TRIP_S,
+        )
         try:
             async with timeout(_ROUND_TRIP_S + _LATE_S):
                 await done
         except TimeoutError:
             return False
         return True
-
-    def _look(
-        self,
-        key_expression: str,
-        on_found: Callable[[zenoh.Reply], None] | None,
-        on_end: Callable[[], None] | None = None,
-    ) -> None:
-        """Asks the router which of these keys are present; `on_found` and `on_end` run on Zenoh's thread."""
-        self._session.liveliness().get(
-            key_expression,
-            Callback(on_found or _ignore, on_end or _ignore, indirect=False),
-            timeout=_ROUND_TRIP_S,
-        )
 
     async def _wait_while_served(
         self, watch: ServerWatch, answer: asyncio.Future[tuple[bool, bytes] | None], router: str
@@ -426,8 +391,8 @@ def _cannot_connect(endpoint: str, credential: Credential | None) -> BusError:
     return BusError(f"no bus router answers at {endpoint}, {refused}", code="AOS605", hint=hint)
 
 
-def _ignore(*_: object) -> None:
-    """Takes replies whose end alone matters, and ends that do not."""
+def _ignore(_: object) -> None:
+    """Takes replies whose end alone matters."""
 
 
 def _settle(future: asyncio.Future[None]) -> None:
