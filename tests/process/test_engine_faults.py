@@ -14,6 +14,7 @@ from models import built_text, engine_of
 from processes import HANG_S
 
 from aos_language.load import load_files
+from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import EngineDefectError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
@@ -72,22 +73,46 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
     [
         ("if (state.count > 0) *(volatile int*)nullptr = 1;", "AOS210", "press.sd"),
         ("while (state.count > 0) { state__.count = 1; }", "AOS211", "press.sd"),
-        ("for (volatile int left = 1000000000; left > 0; --left) {}", "AOS211", "lamp.ef"),
     ],
 )
 async def test_documents_whose_code_would_end_a_running_mission_are_refused(
     code: str, fault: str, file: str, cache_dir: Path
 ) -> None:
-    def documents(code: str) -> dict[str, str]:
-        return counting("lamp", "press", code=code, steps="1000")
+    refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
+    assert (refusal.code, refusal.span.file) == (fault, file)
 
+
+async def refused(documents: dict[str, str], cache_dir: Path) -> Diagnostic:
+    """The one reason for which documents are not taken into a mission."""
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
-    project = load_files({name: text.encode() for name, text in documents(code).items()}).project
+    project = load_files({name: text.encode() for name, text in documents.items()}).project
     assert project is not None
-    async with engine_of(await built_text(documents(""), cache_dir)) as engine:
+    good = counting("lamp", "press", steps="1000")
+    async with engine_of(await built_text(good, cache_dir)) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
-    assert (refusal.code, refusal.span.file) == (fault, file)
+    return refusal
+
+
+SLOW = "double root = 1; for (int i = 0; i < 50000000; ++i) root = std::sqrt(root + 1); COUNT += root > 9;"
+
+
+async def test_code_that_makes_steps_slow_is_told_at_its_statement(cache_dir: Path) -> None:
+    code = f"int quick = 1;\nquick += 2;\n{SLOW.replace('COUNT', 'state__.count')}"
+    refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
+    assert (refusal.code, str(refusal.span)) == ("AOS211", "press.sd:7:53")
+    assert "of that here" in refusal.message
+
+
+async def test_of_slow_code_in_many_places_the_environment_document_is_told(cache_dir: Path) -> None:
+    changes, moves, earns = (
+        SLOW.replace("COUNT", name) for name in ("state_.count", "state__.count", "__reward")
+    )
+    documents = counting("lamp", "press", code=moves, steps="1000")
+    documents["lamp.ef"] += f"{earns}\n\nextrinsic_code:\n{changes}\n"
+    refusal = await refused(documents, cache_dir)
+    assert (refusal.code, refusal.span.file) == ("AOS211", "lamp.ef")
+    assert "no one place" in refusal.message
 
 
 async def test_a_response_that_is_no_text_is_an_answer_that_makes_no_sense(cache_dir: Path) -> None:

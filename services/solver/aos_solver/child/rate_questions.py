@@ -6,6 +6,7 @@ from typing import Literal
 
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
 from aos_solver.child.command_line import command_line
+from aos_solver.child.slow_code import SlowCode, slow_code
 from aos_solver.child.world_answers import SampleCount
 
 __all__ = ["RateQuestions", "Stepping"]
@@ -25,3 +26,9 @@ class RateQuestions(Asking):
         name = "rate" if stepping == "code" else "rate_by_table"
         command = command_line(name, seconds=seconds, seed=seed, max_seconds=max_seconds)
         return await self._ask(command, SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S)
+
+    async def slow_code(self) -> SlowCode | None:
+        """The code in which random steps spend half of their time or more, of another child; None where no
+        place is such.
+        """
+        return await slow_code(self._built, self._start)

@@ -19,7 +19,7 @@ import msgspec
 from aos_language.mission_parameters import ParameterLeaf, usable_values
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Constraint, MissionValue, Project
-from aos_protocol.errors import AosError, ModelError
+from aos_protocol.errors import AosError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.clock import Clock, SystemClock
 from aos_solver.building.build import BuiltModel
@@ -28,6 +28,7 @@ from aos_solver.building.thorough_builds import ThoroughBuilds
 from aos_solver.child.engine import Engine
 from aos_solver.mission.mission_values import NOWHERE, MissionValues
 from aos_solver.mission.past import Past
+from aos_solver.mission.push_trial import faults_in_trial
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover
 
 __all__ = ["ModelShelf"]
@@ -35,13 +36,6 @@ __all__ = ["ModelShelf"]
 log = logging.getLogger(__name__)
 
 SYSTEM_CLOCK = SystemClock()
-
-_TRIED_S = 0.1
-_TRIED_CPU_S = 4.0
-"""One step of a model that takes so much processor time does not end, for all that a mission can wait."""
-_TRIED_SIMULATIONS = 20
-_STEP_CPU_S = 0.1
-"""A decision makes hundreds of steps at least, and ends the mission where it takes 120 s."""
 
 
 class ModelShelf:
@@ -258,8 +252,7 @@ class ModelShelf:
 
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
         """Returns what keeps these documents from being used now: mistakes, no belief for the mission that
-        runs, or code that fails or does not end, which would end it. The code is tried by random actions for
-        `_TRIED_S`."""
+        runs, or code that would end it."""
         span = project.environment.span
         try:
             built = await self._built(project)
@@ -277,18 +270,9 @@ class ModelShelf:
             hint = "Mend the initial belief, or end the mission and start it with the new documents"
             return (Diagnostic(Severity.ERROR, "AOS112", message, place, hint),)
         try:
-            tried = await engine.rate(_TRIED_S, seed=1, max_seconds=_TRIED_CPU_S)
-            if (step_s := tried.cpu_seconds / max(tried.samples, 1)) >= _STEP_CPU_S:
-                return (_slow(step_s, span),)
-            # What a decision tells has to be readable.
-            await engine.plan(seed=1, simulations=_TRIED_SIMULATIONS, planner="pomcp")
-        except ModelError as error:
-            return tuple(map(_reached, error.diagnostics)) or (
-                Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),
-            )
+            return await faults_in_trial(engine, span)
         finally:
             await engine.close()  # It is stopped at once, also where nobody waits for its end.
-        return ()
 
     async def close(self) -> None:
         """Ends what is being built, and all engines."""
@@ -306,12 +290,3 @@ class ModelShelf:
         """Returns once all engines have ended that nobody asks any more."""
         while ending := self._ending | (self._thorough.tasks if self._is_closed else set()):
             await asyncio.wait(ending)
-
-
-def _slow(step_s: float, span: Span) -> Diagnostic:
-    message = f"a step of this model takes {step_s:.1f} s of processor time, and a decision makes hundreds"
-    return Diagnostic(Severity.ERROR, "AOS211", message, span, "Compute less in a step, and print less")
-
-
-def _reached(found: Diagnostic) -> Diagnostic:
-    return msgspec.structs.replace(found, message=f"in a state that can be reached: {found.message}")
