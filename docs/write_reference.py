@@ -155,15 +155,16 @@ def _roles(roles: tuple[str, ...]) -> str:
 
 
 def message_sections() -> str:
-    """Every message with its fields, under the conversations of the source files.
+    """Every message with the names of its fields, under the conversations of the source files.
 
-    Of a docstring only the first sentence is here: the whole of it stands once, in the source that is linked.
+    Of a docstring only the first sentence is here. Types, defaults and meanings stand once, in the source that
+    is linked.
     """
     parts: list[str] = []
     for title, module in MESSAGES.items():
         source = Path(inspect.getfile(module)).name
         link = f"[`{source}`](../protocol/aos_protocol/messages/{source})"
-        parts.append(f"### {title.capitalize()}\n\n{link} says what each field means.\n")
+        parts.append(f"### {title.capitalize()}\n\n{link} has the fields' types, defaults and meanings.\n")
         nodes = ast.parse(inspect.getsource(module)).body
         classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
         parts += [_message(node) for node in classes if node.name != "Message"]
@@ -171,12 +172,13 @@ def message_sections() -> str:
 
 
 def _message(node: ast.ClassDef) -> str:
-    told = re.match(r".*?\.(?= |$)", " ".join((ast.get_docstring(node) or "").split()))
-    lines = [f"#### {node.name}", "", told[0] if told else "", ""]
-    fields = [ast.unparse(field).replace("'", '"') for field in node.body if isinstance(field, ast.AnnAssign)]
-    if fields:
-        lines += ["```python", *fields, "```"]
-    return "\n".join(lines).rstrip() + "\n"
+    """Returns a message's section; fields without a default are marked as required."""
+    told = re.match(r".*?[.?](?= |$)", " ".join((ast.get_docstring(node) or "").split()))
+    fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+    required = [f"**`{ast.unparse(field.target)}`**" for field in fields if field.value is None]
+    others = [f"`{ast.unparse(field.target)}`" for field in fields if field.value is not None]
+    lines = [f"#### {node.name}", "", told[0] if told else "", "", ", ".join(required + others)]
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).rstrip() + "\n"
 
 
 # --- words ---------------------------------------------------------------------------------------------
