@@ -157,8 +157,8 @@ def _roles(roles: tuple[str, ...]) -> str:
 def message_sections() -> str:
     """Every message with the names of its fields, under the conversations of the source files.
 
-    Of a docstring only the first sentence is here. Types, defaults and meanings stand once, in the source that
-    is linked.
+    Of a docstring only the first sentence is here. Types, defaults and meanings stand once, in the
+    source that is linked.
     """
     parts: list[str] = []
     for title, module in MESSAGES.items():
