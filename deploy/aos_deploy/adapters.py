@@ -73,6 +73,7 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
     wrong = adapters.entries.keys() - named.keys() if isinstance(adapters, YamlMap) else set()
     bind = node.entries.get("bind")
     bound: dict[str, dict[str, Binding]] = {}
+    taken: dict[str, str] = {}
     others = ""
     for key, value in bind.entries.items() if isinstance(bind, YamlMap) else ():
         assert isinstance(bind, YamlMap)
@@ -86,11 +87,11 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
         if key == EVERYTHING_ELSE:
             others = name
             _check_others(name, value, named, findings)
-        elif (path := "/" + key.strip("/")) in {each for paths in bound.values() for each in paths}:
+        elif (path := "/" + key.strip("/")) in taken:
             findings.error("AOS103", f"the path {path} is bound twice", bind.keys[key])
         else:
+            taken[path] = name
             bound[name][path] = binding
-    everywhere = [path for paths in bound.values() for path in paths]
     plans = []
     for name, paths in bound.items():
         plan = named.get(name) or AdapterPlan(name=name, kind_name=name, kind=adapter_kinds()[name])
@@ -99,7 +100,7 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
         if plan.kind_name == COMMAND and "command" not in plan.options:
             findings.error("AOS105", f"the adapter {name} has no command", node.span, _HOW_TO_NAME)
             continue
-        elsewhere = tuple(path for path in everywhere if path not in paths)
+        elsewhere = tuple(path for path, of in taken.items() if of != name)
         plans.append(
             msgspec.structs.replace(plan, bind=paths, serves_others=name == others, elsewhere=elsewhere)
         )

@@ -17,6 +17,7 @@ from aos_deploy.adapters import TAKEN, AdapterPlan, played_by_model, read_adapte
 from aos_deploy.constraints import snippet_of
 from aos_deploy.deploy_folder import deploy_file_at
 from aos_deploy.mission_values import values_of_node
+from aos_deploy.named_paths import absolute, is_file, is_folder, named
 from aos_deploy.own_programs import ProgramPart, check_programs
 from aos_deploy.spans.otlp import is_collector_address
 from aos_deploy.typed import known_names, read_structure
@@ -44,12 +45,13 @@ __all__ = [
 ]
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
-Seconds = Annotated[float, msgspec.Meta(gt=0)]
-Count = Annotated[int, msgspec.Meta(ge=1)]
+Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
+Count = Annotated[int, msgspec.Meta(ge=1, le=2**31 - 1)]
 Seed = Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)]
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
-_ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):\d{1,5}")
+_ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d{1,5})")
+_LAST_PORT = 65535
 
 
 class BusPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -204,7 +206,7 @@ def read_deploy_file(path: Path) -> Deployment:
     if node is not None:
         file = read_structure(node, DeployFile, findings)
         if file is not None:
-            deployment = _resolve(path.resolve(), file, node, findings)
+            deployment = _resolve(absolute(path), file, node, findings)
     if deployment is None or findings.has_errors:
         raise DeployError(
             f"the deploy file {named} has errors",
@@ -241,7 +243,8 @@ def _text(path: Path | None) -> str | None:
 def check_endpoint(endpoint: str) -> None:
     """Raises DeployError AOS801 unless it is one of this machine alone: everything else needs protection
     first."""
-    if not _ENDPOINT.fullmatch(endpoint):
+    match = _ENDPOINT.fullmatch(endpoint)
+    if match is None or int(match[2]) > _LAST_PORT:
         raise DeployError(
             f"{endpoint!r} is not an endpoint of this machine",
             code="AOS801",
@@ -270,12 +273,12 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         findings.error("AOS106", "solver has both simulations and time_s", where, "Keep one of them")
     bundles = _bundles(folder, file, node, findings)
     world = folder / file.world if file.world is not None else None
-    if world is not None and not world.is_file():
-        findings.error("AOS101", f"there is no world file {world}", _place(node, "world"))
+    if world is not None and not is_file(world):
+        findings.error("AOS101", f"there is no world file {named(world)}", _place(node, "world"))
     policy = folder / file.solver.policy if file.solver.policy is not None else None
-    if policy is not None and not policy.is_file():
-        hint = "Write it with aos solve"
-        findings.error("AOS101", f"there is no policy file {policy}", _place(node, "solver", "policy"), hint)
+    if policy is not None and not is_file(policy):
+        hint, where = "Write it with aos solve", _place(node, "solver", "policy")
+        findings.error("AOS101", f"there is no policy file {named(policy)}", where, hint)
     adapters = read_adapters(node, findings, str(world) if world else "")
     check_programs(file.programs, node, findings, (*TAKEN, *file.adapters, *(plan.name for plan in adapters)))
     return Deployment(
@@ -289,7 +292,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         constraints=_constraints(path, file, node),
         mission_values=_mission_values(path, node, findings),
         watch=folder / file.watch if file.watch is not None else None,
-        runs=(folder / file.runs).resolve(),
+        runs=absolute(folder / file.runs),
     )
 
 
@@ -328,12 +331,14 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
     if not file.bundles:
         findings.error("AOS105", "bundles names none", _place(node, "bundles"), "Name a bundle's folder")
     for name, where in _texts(node, "bundles"):
-        if not (folder / name).is_dir() and not _is_archive(folder / name):
-            findings.error("AOS101", f"there is no bundle folder {folder / name}", where)
-    bundles = tuple((folder / name).resolve() for name in file.bundles)
-    is_there = [bundle for bundle in bundles if bundle.is_dir() or _is_archive(bundle)]
-    named = is_there if file.leave_out else []
-    skills = {skill for bundle in named for skill in skills_of_files(read_bundle_files(bundle)[0]).values()}
+        if not _is_bundle(folder / name):
+            findings.error("AOS101", f"there is no bundle folder {named(folder / name)}", where)
+    bundles = tuple(absolute(folder / name) for name in file.bundles)
+    is_there = [bundle for bundle in bundles if _is_bundle(bundle)]
+    looked_at = is_there if file.leave_out else []
+    skills = {
+        skill for bundle in looked_at for skill in skills_of_files(read_bundle_files(bundle)[0]).values()
+    }
     for skill, where in _texts(node, "leave_out"):
         if skill not in skills:
             message = f"no bundle has a skill {skill}"
@@ -341,8 +346,8 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
     return bundles
 
 
-def _is_archive(path: Path) -> bool:
-    return is_archive_name(path.name) and path.is_file()
+def _is_bundle(path: Path) -> bool:
+    return is_folder(path) or (is_archive_name(path.name) and is_file(path))
 
 
 def _texts(node: YamlMap, key: str) -> Iterator[tuple[str, Span]]:

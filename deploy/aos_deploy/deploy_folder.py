@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from aos_deploy.named_paths import absolute
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
@@ -48,7 +49,7 @@ def deploy_files_in(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
             given = node.entries["bundles"]
             items = given.items if isinstance(given, YamlList) else ()
             names = [str(item.value) for item in items if isinstance(item, YamlScalar)]
-            yield file, [(folder / name).resolve() for name in names]
+            yield file, [absolute(folder / name) for name in names]
 
 
 def _named(files: list[Path]) -> str:

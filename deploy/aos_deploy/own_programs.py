@@ -16,7 +16,7 @@ from aos_protocol.diagnostics import Span
 
 __all__ = ["ProgramPart", "ReadyPart", "check_programs"]
 
-Seconds = Annotated[float, msgspec.Meta(gt=0)]
+Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 Port = Annotated[int, msgspec.Meta(ge=1, le=65535)]
 Status = Annotated[int, msgspec.Meta(ge=0, le=255)]
 
@@ -111,7 +111,7 @@ def _check_ready(
     if ready.line is not None:
         try:
             re.compile(ready.line)
-        except re.error as error:
+        except (re.error, RecursionError, OverflowError) as error:
             message = f"programs.{name}.ready.line is no regular expression: {error}"
             findings.error("AOS106", message, where, "In YAML put it into single quotes: '...'")
     is_seen_there = kinds == ["file"] or (kinds == ["port"] and ready.address == "localhost")

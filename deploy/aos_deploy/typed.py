@@ -126,7 +126,7 @@ def _limit_text(limit: str) -> str:
     """A limit as msgspec writes it, in words: `<= 1.0` as `of at most 1`."""
     sign, _, number = limit.partition(" ")
     words = {"<=": "of at most", ">=": "of at least", ">": "above", "<": "below"}
-    return f"{words[sign]} {float(number):g}" if sign in words and abs(float(number)) < 1e6 else limit
+    return f"{words[sign]} {number.removesuffix('.0')}" if sign in words else limit
 
 
 def _shown(value: Any) -> str:

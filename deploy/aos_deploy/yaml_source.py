@@ -1,23 +1,32 @@
 """A YAML file as plain values that know their place in it.
 
-Only what a configuration needs: mappings with text keys, lists, scalars. A key given twice, anchors, aliases
-and tags are findings, not features.
+Only what a configuration needs: mappings with text keys, lists, scalars. A key given twice, anchors, aliases,
+tags, characters that no text shows and numbers beyond 64 bits are findings, not features.
 """
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import msgspec
 from ruamel.yaml import YAML
+from ruamel.yaml.composer import MaxDepthExceededError
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.reader import ReaderError
 
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 
 __all__ = ["YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 32
+_LONGEST_NUMBER = 100
+_INTEGERS = range(-(2**63), 2**63)
+_LARGE = 2**31 - 1
 
 
 class YamlScalar(msgspec.Struct, frozen=True):
@@ -54,12 +63,21 @@ class YamlMap(msgspec.Struct, frozen=True):
 
 YamlNode = YamlScalar | YamlList | YamlMap
 
+_NO_TEXT = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+"""Control characters, those that turn the direction of writing, and halves of a character."""
+_NO_KEY = re.compile(rf"{_NO_TEXT.pattern}|[\t\n\r\u2028\u2029]")
+
 
 def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
     """The mapping a file holds, None if it cannot be read as one. `file` names it in the findings."""
     findings = Findings()
     try:
-        text = path.read_text(encoding="utf-8")
+        with path.open("rb") as source:
+            data = source.read(MAX_BYTES + 1)
+        if len(data) > MAX_BYTES:
+            findings.error("AOS104", f"the file has more than {MAX_BYTES} bytes", Span(file))
+            return None, findings
+        text = data.decode("utf-8")
     except OSError as error:
         findings.error("AOS101", f"the file cannot be read: {error.strerror}", Span(file))
         return None, findings
@@ -67,8 +85,18 @@ def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
         findings.error("AOS101", f"the file is not UTF-8 text (byte {error.start})", Span(file))
         return None, findings
     findings.add_source(file, text.splitlines())
+    yaml = YAML(typ="safe", pure=True)
+    yaml.max_depth = MAX_DEPTH
     try:
-        root = YAML(typ="safe", pure=True).compose(text)
+        root = yaml.compose(text)
+    except MaxDepthExceededError as error:
+        where = _span(file, error.problem_mark)
+        findings.error("AOS104", f"nested in more than {MAX_DEPTH} lists and mappings", where)
+        return None, findings
+    except ReaderError as error:
+        where = Span(file, text.count("\n", 0, error.position) + 1)
+        findings.error("AOS104", f"a text cannot have the character U+{error.character:04X}", where)
+        return None, findings
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = _span(file, mark) if mark else Span(file)
@@ -90,6 +118,8 @@ class _Reader:
     def __init__(self, file: str, findings: Findings) -> None:
         self._file = file
         self._findings = findings
+        self._met: set[int] = set()
+        """The ids of the nodes that have been read: an alias leads to one again, or into itself."""
 
     def map(self, node: MappingNode) -> YamlMap:
         entries: dict[str, YamlNode] = {}
@@ -99,7 +129,7 @@ class _Reader:
             if not isinstance(key_node, ScalarNode):
                 self._findings.error("AOS104", "a key is not a text", where)
                 continue
-            key = str(key_node.value)
+            key = self._text(str(key_node.value), where, _NO_KEY)
             if key in entries:
                 hint = f"First in line {keys[key].line}"
                 self._findings.error("AOS103", f"the key {key} is given twice", where, hint)
@@ -112,6 +142,9 @@ class _Reader:
         where = self._place(node)
         if node.anchor:
             self._findings.error("AOS104", "anchors and aliases are not used here", where)
+        if id(node) in self._met:
+            return YamlScalar(None, where)
+        self._met.add(id(node))
         if isinstance(node, MappingNode):
             return self.map(node)
         if isinstance(node, SequenceNode):
@@ -122,15 +155,28 @@ class _Reader:
     def _scalar(self, text: str, tag: str, where: Span, style: str) -> YamlScalar:
         match tag.rpartition(":")[2]:
             case "str":
-                return YamlScalar(text, where, style)
+                return YamlScalar(self._text(text, where, _NO_TEXT), where, style)
             case "null":
                 return YamlScalar(None, where)
             case "bool":
                 return YamlScalar(text.lower() == "true", where)
             case "int" | "float":
-                return YamlScalar(_number(text), where)
+                return YamlScalar(self._number(text, where), where)
         self._findings.error("AOS104", f"the tag {tag} is not used here", where)
         return YamlScalar(None, where)
+
+    def _text(self, text: str, where: Span, unwanted: re.Pattern[str]) -> str:
+        """The text; a finding where it has a character that nothing is named by."""
+        if found := unwanted.search(text):
+            self._findings.error("AOS104", f"a text cannot have the character U+{ord(found[0]):04X}", where)
+        return unwanted.sub("\ufffd", text)
+
+    def _number(self, text: str, where: Span) -> int | float | str:
+        number = _number(text) if len(text) <= _LONGEST_NUMBER else _INTEGERS.stop
+        if isinstance(number, int) and number not in _INTEGERS:
+            self._findings.error("AOS104", "the number is beyond 64 bits", where)
+            return _LARGE if number > 0 else -_LARGE  # Nobody is told twice.
+        return number
 
     def _place(self, node: Node) -> Span:
         return _span(self._file, node.start_mark)

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 import msgspec
 
 from aos_protocol.older_python import StrEnum
+from aos_protocol.spelling import printable
 
 __all__ = ["Diagnostic", "Mend", "Severity", "Span", "has_errors", "render"]
 
@@ -75,15 +76,21 @@ def render(diagnostic: Diagnostic) -> str:
     head = f"{diagnostic.span}: {diagnostic.severity}[{diagnostic.code}]: {diagnostic.message}"
     if diagnostic.hint:
         head = f"{head.rstrip('.')}. {diagnostic.hint}"
+    head = printable(head)
     if not diagnostic.excerpt:
         return head
     number = str(diagnostic.span.line)
     excerpt, column = _window(diagnostic.excerpt, diagnostic.span.column)
-    lines = [head, f"  {number} | {excerpt}"]
+    shown = "".join(character if _is_shown(character) else "\ufffd" for character in excerpt)
+    lines = [head, f"  {number} | {shown}"]
     if column:
         padding = "".join("\t" if character == "\t" else " " for character in excerpt[: column - 1])
         lines.append(f"  {' ' * len(number)} | {padding}^")
     return "\n".join(lines)
+
+
+def _is_shown(character: str) -> bool:
+    return character.isprintable() or character == "\t"
 
 
 def _window(excerpt: str, column: int) -> tuple[str, int]:

@@ -1,11 +1,11 @@
-"""Names that were probably meant: what a message suggests for a name that does not exist."""
+"""Names in messages: what was probably meant by one that does not exist, and what a terminal shows."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["did_you_mean", "nearest", "quoted"]
+__all__ = ["did_you_mean", "nearest", "printable", "quoted"]
 
 _ALIKE = 0.65
 """The share of two names that has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
@@ -27,3 +27,16 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 def quoted(names: Iterable[str]) -> str:
     """Names for a message, in order: `a`, `b`."""
     return ", ".join(f"`{name}`" for name in names)
+
+
+def printable(text: str) -> str:
+    """The text for a terminal: what commands it is spelt out, and lines after the first are set in."""
+    if text.isprintable():
+        return text
+    return "".join(map(_printable, text))
+
+
+def _printable(character: str) -> str:
+    if character.isprintable() or character == "\t":
+        return character
+    return "\n    " if character == "\n" else character.encode("unicode_escape").decode()

@@ -1,0 +1,37 @@
+"""Paths that files name: what stands there, also of names that no file system takes and links in a circle."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+__all__ = ["absolute", "is_file", "is_folder", "named"]
+
+_LONGEST = 200
+
+
+def is_file(path: Path) -> bool:
+    """Returns whether there is a file; False where there cannot be one."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
+def is_folder(path: Path) -> bool:
+    """Returns whether there is a folder; False where there cannot be one."""
+    try:
+        return path.is_dir()
+    except OSError:
+        return False
+
+
+def absolute(path: Path) -> Path:
+    """The whole path without links; of a link in a circle the path to it."""
+    return Path(os.path.realpath(path))
+
+
+def named(path: Path) -> str:
+    """The path as a message names it, of a very long one the beginning."""
+    text = str(path)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
