@@ -15,8 +15,7 @@ from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, Version
 from aos_deploy.terminal import write_what_fits
-from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import AosError, StorageError
+from aos_protocol.errors import AosError
 
 __all__ = ["aos_app", "main", "up_main"]
 
@@ -114,9 +113,6 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
                 sys.stdout.flush()
     except AosError as error:
         _end(name, error)
-    except UNREADABLE as error:
-        # A record of a run that somebody has sent may be anything, and many commands read it.
-        _end(name, StorageError(f"a record cannot be read: {error}", code="AOS702"))
     except OSError as error:
         if error.errno not in (errno.ENOSPC, errno.EDQUOT):
             raise

@@ -8,8 +8,6 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
-from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, DriftTest, DriftTests
 from aos_solver.mission.drift import DRIFT, after_use
 
@@ -45,14 +43,11 @@ def _fold(models: dict[str, ModelTests], mission: KeptMission) -> None:
     decision: DecisionRecord | None = None
     known: set[str] = set()
     for row in mission.rows():
-        try:
-            if row.kind == DRIFT:
-                _begin(models, msgspec.json.decode(row.payload, type=DriftTests))
-            if row.kind != "decision":
-                continue
-            record = msgspec.json.decode(row.payload, type=DecisionRecord)
-        except UNREADABLE as error:
-            raise StorageError(f"row {row.seq} of {mission.journal}: {error}", code="AOS702") from error
+        if row.kind == DRIFT:
+            _begin(models, row.read_as(DriftTests))
+        if row.kind != "decision":
+            continue
+        record = row.read_as(DecisionRecord)
         if record.outcome is None:
             decision = record
         model = models.get(record.model_digest)

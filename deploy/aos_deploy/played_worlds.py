@@ -13,8 +13,10 @@ import msgspec
 
 from aos_deploy.played_faults import FAILED_CALL
 from aos_language.mission_parameters import OPTION, usable_values
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
+from aos_protocol.errors import StorageError
 from aos_protocol.messages import MissionEntry
 from aos_runtime.mission_folders import mission_folder
 from aos_solver.child.engine import Engine
@@ -57,10 +59,20 @@ class PlayedWorld(msgspec.Struct, frozen=True):
 
 
 def steps_in(file: Path) -> tuple[str, ...]:
-    """The actions that were done, as the file of the steps has them; none if it is not there."""
+    """The actions that were done, as the file of the steps has them; none if it is not there.
+
+    StorageError AOS702 for a line that is no step.
+    """
     lines = file.read_bytes().splitlines() if file.exists() else []
-    steps = [msgspec.json.decode(line, type=PlayedStep) for line in lines]
+    steps = [_step(file, number, line) for number, line in enumerate(lines, 1)]
     return tuple(step.action for step in steps if step.fault != FAILED_CALL)
+
+
+def _step(file: Path, number: int, line: bytes) -> PlayedStep:
+    try:
+        return msgspec.json.decode(line, type=PlayedStep)
+    except UNREADABLE as error:
+        raise StorageError(f"{file}, line {number} is no step: {error}", code="AOS702") from error
 
 
 def worlds_of(

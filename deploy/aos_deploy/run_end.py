@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
-
 from aos_deploy.verdict import Account, Verdict, message_of_row
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import MissionBegun
 from aos_runtime.journal import Journal
@@ -37,8 +34,8 @@ def beginning_of(run: Path) -> MissionBegun | None:
     try:
         with Journal.read(path) as journal:
             row = next(journal.walk("begun"), None)
-            return None if row is None else msgspec.json.decode(row.payload, type=MissionBegun)
-    except (StorageError, *UNREADABLE):
+            return None if row is None else row.read_as(MissionBegun)
+    except StorageError:
         return None
 
 

@@ -11,7 +11,6 @@ from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
 from aos_deploy.history_check.check import MIDDLEWARE
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS
 from aos_deploy.run_directory import RunDirectory, RunRecord
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError, StorageError
 from aos_protocol.messages import ActivationId
 from aos_runtime.journal import Journal, JournalRow
@@ -116,10 +115,7 @@ def _check_that_all_was_intended(run: Path, journal: Path, memory: MissionMemory
 
 
 def _id_in(row: JournalRow, kind: type[Any]) -> ActivationId:
-    try:
-        id: ActivationId = msgspec.json.decode(row.payload, type=kind).id
-    except UNREADABLE as error:
-        raise StorageError(f"row {row.seq} of a ledger is damaged: {error}", code="AOS702") from error
+    id: ActivationId = row.read_as(kind).id
     return id
 
 

@@ -11,8 +11,7 @@ from collections.abc import Iterable
 import msgspec
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
-from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import AosError, StorageError
+from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionState
 from aos_runtime.journal import JournalRow
 
@@ -118,9 +117,4 @@ class Account:
 def message_of_row(row: JournalRow) -> DecisionRecord | MissionState | None:
     """The decision or state in a row, None in those of other kinds; StorageError AOS702 if it is damaged."""
     kind = MISSION_KINDS.get(row.kind)
-    if kind is None:
-        return None
-    try:
-        return msgspec.json.decode(row.payload, type=kind)
-    except UNREADABLE as error:
-        raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error
+    return None if kind is None else row.read_as(kind)

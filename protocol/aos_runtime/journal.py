@@ -13,10 +13,11 @@ import sqlite3
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import msgspec
 
+from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Message
 from aos_runtime import failpoints
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
 __all__ = ["Journal", "JournalRow"]
+
+T = TypeVar("T")
 
 _SCHEMA_VERSION = 2
 _WITHOUT_CHECKSUMS = 1
@@ -57,12 +60,23 @@ long one."""
 
 
 class JournalRow(NamedTuple):
-    """One entry: `seq` counts from 1 without gaps, `payload` is JSON."""
+    """One entry: `seq` counts from 1 without gaps, `payload` is JSON, `journal` is the file that has it."""
 
     seq: int
     stamp_ns: int
     kind: str
     payload: bytes
+    journal: Path = Path()
+
+    def read_as(self, kind: type[T]) -> T:
+        """The payload as this type; StorageError AOS702 where it is something else."""
+        try:
+            return msgspec.json.decode(self.payload, type=kind)
+        except UNREADABLE as error:
+            raise StorageError(
+                f"the journal {self.journal}: row {self.seq}, {self.kind}, cannot be read: {error}",
+                code="AOS702",
+            ) from error
 
 
 class Journal:
@@ -181,7 +195,7 @@ class Journal:
                 if kind is None and seq != number + 1:
                     raise self._damaged(f"row {seq} follows row {number}")
                 number = seq
-                yield JournalRow(seq, stamp_ns, of_kind, text.encode())
+                yield JournalRow(seq, stamp_ns, of_kind, text.encode(), self._path)
         except _REFUSALS as error:
             raise _fault("AOS702", self._path, error) from error
         if number < last:

@@ -119,7 +119,7 @@ def test_an_empty_journal_folds_to_the_start() -> None:
 
 
 def test_a_damaged_row_is_named() -> None:
-    with pytest.raises(StorageError, match="row 3 of the journal is damaged") as error:
+    with pytest.raises(StorageError, match="row 3, decision, cannot be read") as error:
         folded([JournalRow(3, 0, "decision", b"{")])
     assert error.value.code == "AOS702"
 

@@ -7,7 +7,6 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-import msgspec
 import pytest
 
 from aos_protocol.errors import StorageError
@@ -28,11 +27,23 @@ def test_rows_come_back_as_they_were_appended(tmp_path: Path) -> None:
         assert [journal.append("cancel", Cancel(reason)) for reason in ("first", "second")] == [1, 2]
         rows = journal.rows()
 
-    assert [msgspec.json.decode(row.payload, type=Cancel).reason for row in rows] == ["first", "second"]
+    assert [row.read_as(Cancel).reason for row in rows] == ["first", "second"]
     assert [(row.seq, row.kind, row.stamp_ns) for row in rows] == [
         (1, "cancel", 1_700_000_000_000_000_000),
         (2, "cancel", 1_700_000_000_000_000_000),
     ]
+
+
+@pytest.mark.parametrize("payload", ["{", '{"reason": 1}', "[" * 100_000, "[1, 2]"])
+def test_a_row_that_is_something_else_than_is_asked_for_is_told_with_its_place(
+    payload: str, tmp_path: Path
+) -> None:
+    row = JournalRow(7, 0, "steered", payload.encode(), tmp_path / "journal.db")
+
+    with pytest.raises(StorageError, match=r"journal\.db: row 7, steered, cannot be read") as error:
+        row.read_as(Cancel)
+
+    assert error.value.code == "AOS702"
 
 
 def test_rows_can_be_asked_by_kind_and_from_a_number(tmp_path: Path) -> None:

@@ -6,10 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import msgspec
-
-from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import StorageError
 from aos_protocol.messages import (
     ActionRefused,
     Activate,
@@ -55,10 +51,7 @@ class KeptMission(NamedTuple):
         """The decision records in their order; StorageError AOS702 at a row that is damaged."""
         with Journal.read(self.journal) as journal:
             for row in journal.walk("decision"):
-                try:
-                    yield msgspec.json.decode(row.payload, type=DecisionRecord)
-                except UNREADABLE as error:
-                    raise StorageError(f"row {row.seq} of {self.journal}: {error}", code="AOS702") from error
+                yield row.read_as(DecisionRecord)
 
 
 def kept_missions(run: Path) -> list[KeptMission]:

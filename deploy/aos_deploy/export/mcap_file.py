@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import msgspec
 from mcap.writer import Writer
 
 from aos_deploy.export.kept_missions import KINDS, KeptMission, kept_missions
@@ -82,11 +81,11 @@ class _File:
         kind = KINDS.get(row.kind)
         schema = {"type": "object"} if kind is None else plain_schema(kind)
         name = "aos.Row" if kind is None else f"aos.{kind.__name__}"
-        content = without_nulls(json.loads(row.payload))
+        content = without_nulls(row.read_as(dict[str, Any]))
         self._add(f"/aos/{row.kind}", name, schema, content, row.stamp_ns, row.seq)
         if kind is not DecisionRecord:
             return
-        record = msgspec.json.decode(row.payload, type=DecisionRecord)
+        record = row.read_as(DecisionRecord)
         self._plot(BELIEF, belief_of(record), row)
         if record.outcome is None:
             self._plot(VALUES, values_of(record), row)

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple, Protocol
 
-import msgspec
-
 from aos_deploy.history_check.journal_rules import KINDS, Found, JournalRules
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS, LedgerRules, Motions
 from aos_deploy.history_check.rules import Violation
 from aos_deploy.verdict import Verdict
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_runtime.journal import JournalRow
 
@@ -115,9 +112,9 @@ def _go_through(
             if kind is None:
                 continue
             try:
-                message = msgspec.json.decode(row.payload, type=kind)
-            except UNREADABLE as error:
-                found("rows", f"it cannot be read: {error}")
+                message = row.read_as(kind)
+            except StorageError as error:
+                found("rows", error.message)
             else:
                 rules.take(row, message, found)
     except StorageError as error:

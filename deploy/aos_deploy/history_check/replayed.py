@@ -11,7 +11,6 @@ import msgspec
 from aos_deploy.history_check.check import JOURNAL
 from aos_deploy.history_check.rules import Violation
 from aos_deploy.studied_run import StudiedRun
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_runtime.mission_folders import mission_folders
@@ -39,7 +38,7 @@ async def replayed(run: Path, on_progress: Callable[[str], None]) -> Replay:
         replay.remark = ""
         try:
             await _replay(run, file, replay, on_progress)
-        except (AosError, OSError, *UNREADABLE) as error:
+        except (AosError, OSError) as error:
             replay.remark = error.message if isinstance(error, AosError) else str(error)
         remarks[replay.remark] += 1
     if folders:

@@ -15,7 +15,6 @@ from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_deploy.spans.otlp import Collector
 from aos_deploy.spans.spans import Span, span_of_mission, spans_of_record
 from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_runtime.journal import Journal, JournalRow
 
@@ -79,12 +78,9 @@ class Sender:
 
 
 def _spans_of_row(row: JournalRow, begun_ns: int) -> Iterator[Span]:
-    try:
-        if row.kind == "decision":
-            yield from spans_of_record(msgspec.json.decode(row.payload, type=DecisionRecord))
-        elif row.kind == "mission":
-            state = msgspec.json.decode(row.payload, type=MissionState)
-            if state.phase == "ended":
-                yield span_of_mission(state, begun_ns, row.stamp_ns)
-    except UNREADABLE as error:
-        raise StorageError(f"row {row.seq}: {error}", code="AOS702") from error
+    if row.kind == "decision":
+        yield from spans_of_record(row.read_as(DecisionRecord))
+    elif row.kind == "mission":
+        state = row.read_as(MissionState)
+        if state.phase == "ended":
+            yield span_of_mission(state, begun_ns, row.stamp_ns)

@@ -106,7 +106,7 @@ def _of_run(run: Path) -> RecordedMission:
         return RecordedMission(name, (), "the mission did not begin with the initial belief")
     journal = Journal.read(run / "journal.db")
     try:
-        rows = [msgspec.json.decode(row.payload, type=DecisionRecord) for row in journal.rows("decision")]
+        rows = [row.read_as(DecisionRecord) for row in journal.rows("decision")]
     finally:
         journal.close()
     recorded: list[tuple[str, str, dict[str, Any]]] = []

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
-
 from aos_protocol.errors import AosError, SkillError, error_from_code
 from aos_protocol.messages import ActivationId, Fault, Message, SkillCall, SkillResult
 from aos_runtime.journal import Journal
@@ -34,12 +32,12 @@ class Ledger:
         self._mission = ""
         for row in self._journal.rows():
             if row.kind == "started":
-                self._take(msgspec.json.decode(row.payload, type=SkillCall))
+                self._take(row.read_as(SkillCall))
             elif row.kind == "ended":
-                result = msgspec.json.decode(row.payload, type=SkillResult)
+                result = row.read_as(SkillResult)
                 self._ended[result.id] = result
             elif row.kind == "failed":
-                failure = msgspec.json.decode(row.payload, type=_Failure)
+                failure = row.read_as(_Failure)
                 self._ended[failure.id] = failure.fault
 
     def stored(self, id: ActivationId) -> SkillResult | None:

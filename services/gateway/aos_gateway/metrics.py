@@ -12,8 +12,6 @@ import logging
 import time
 from collections import Counter as Multiset
 
-import msgspec
-
 from aos_deploy.consequence import STARTED_AGAIN
 from aos_gateway.exposition import exposition
 from aos_gateway.metric_families import Families
@@ -130,7 +128,7 @@ class Metrics:
         with Journal.read(journal) as rows:
             for row in rows.walk("mission", place.next_row):
                 place.next_row = row.seq + 1
-                state = msgspec.json.decode(row.payload, type=MissionState)
+                state = row.read_as(MissionState)
                 is_holding = state.phase == "holding"
                 if is_holding and not place.is_holding:
                     by = "operator" if state.held_by else "skill"

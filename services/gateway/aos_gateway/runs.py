@@ -16,8 +16,7 @@ from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
-from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import AosError, DeployError, GatewayError, StorageError
+from aos_protocol.errors import AosError, DeployError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
@@ -212,12 +211,7 @@ class KeptRun(Run):
             return {}
         with Journal.read(journal) as rows:
             last = next(iter(rows.rows("begun")[-1:]), None)
-        if last is None:
-            return {}
-        try:
-            return msgspec.json.decode(last.payload, type=MissionBegun).mission_parameters
-        except UNREADABLE as error:
-            raise StorageError(f"row {last.seq} of the journal: {error}", code="AOS702") from error
+        return {} if last is None else last.read_as(MissionBegun).mission_parameters
 
     def folder(self, mission: str) -> Path:
         """The folder of a mission's journal and summary."""

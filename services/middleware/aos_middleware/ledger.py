@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Self
 
-import msgspec
-
 from aos_protocol.messages import Activate, ActivationId, Outcome, Stray
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import is_before
@@ -28,9 +26,9 @@ class OutcomeLedger:
         self._mission = ""
         for row in journal.rows():
             if row.kind == _STARTED:
-                self._take(msgspec.json.decode(row.payload, type=Activate))
+                self._take(row.read_as(Activate))
             elif row.kind == _ENDED:
-                outcome = msgspec.json.decode(row.payload, type=Outcome)
+                outcome = row.read_as(Outcome)
                 self._outcomes[outcome.id] = outcome
 
     @classmethod

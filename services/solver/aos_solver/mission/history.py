@@ -6,11 +6,9 @@ import asyncio
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import TypeVar
 
 import msgspec
 
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery
 from aos_runtime.journal import Journal, JournalRow
@@ -20,9 +18,6 @@ __all__ = ["PAGE_BYTES", "PAGE_RECORDS", "HistoryReader", "history_page"]
 PAGE_BYTES = 2**20
 """A page ends with the record that exceeds it. As objects it takes some ten times the memory."""
 PAGE_RECORDS = 1000
-
-
-T = TypeVar("T")
 
 
 class _Numbered(msgspec.Struct, frozen=True):
@@ -85,7 +80,7 @@ def _page_of(journal: Journal, mission: str, query: HistoryQuery) -> History:
     for row in _rows_since(journal, query.since):
         if len(records) == limit or size_bytes >= PAGE_BYTES:
             return History(mission, tuple(records), has_more=True)
-        records.append(_decoded(row, DecisionRecord))
+        records.append(row.read_as(DecisionRecord))
         size_bytes += len(row.payload)
     return History(mission, tuple(records))
 
@@ -96,15 +91,8 @@ def _rows_since(journal: Journal, sequence: int) -> Iterator[JournalRow]:
     while low < high:
         middle = (low + high) // 2
         row = next(journal.walk("decision", middle), None)
-        if row is None or _decoded(row, _Numbered).sequence >= sequence:
+        if row is None or row.read_as(_Numbered).sequence >= sequence:
             high = middle
         else:
             low = row.seq + 1
     return journal.walk("decision", low)
-
-
-def _decoded(row: JournalRow, kind: type[T]) -> T:
-    try:
-        return msgspec.json.decode(row.payload, type=kind)
-    except UNREADABLE as error:
-        raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error

@@ -157,7 +157,7 @@ def _entry(path: Path, number: int) -> list[MissionEntry]:
         states = journal.rows("mission")
     if first is None:
         return []
-    begun = msgspec.json.decode(first.payload, type=MissionBegun)
+    begun = first.read_as(MissionBegun)
     start = begun.start or StartMission()
     entry = MissionEntry(
         begun.mission,
@@ -171,7 +171,7 @@ def _entry(path: Path, number: int) -> list[MissionEntry]:
     )
     if not states:
         return [entry]
-    state = msgspec.json.decode(states[-1].payload, type=MissionState)
+    state = states[-1].read_as(MissionState)
     ended_ns = states[-1].stamp_ns if state.phase == "ended" else 0
     return [
         msgspec.structs.replace(

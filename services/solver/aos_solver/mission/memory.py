@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import (
     ActionRefused,
@@ -114,7 +113,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     for row in rows:
         if row.kind not in _KINDS:
             continue
-        said = _decoded(row)
+        said: Any = row.read_as(_KINDS[row.kind])
         steering = _steered(steering, said, state)
         if isinstance(said, MissionBegun | ModelAdopted):
             stretches = after(stretches, said, len(steps))
@@ -179,13 +178,6 @@ def _is_holding(state: MissionState | None) -> bool:
 
 def _without_search(decision: DecisionRecord) -> DecisionRecord:
     return msgspec.structs.replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="", searches=())
-
-
-def _decoded(row: JournalRow) -> Any:
-    try:
-        return msgspec.json.decode(row.payload, type=_KINDS[row.kind])
-    except UNREADABLE as error:
-        raise StorageError(f"row {row.seq} of the journal is damaged: {error}", code="AOS702") from error
 
 
 def _of(pending: Pending | None, row: JournalRow) -> Pending:

@@ -7,8 +7,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from aos_protocol.codec import UNREADABLE
-from aos_protocol.errors import SkillError, StorageError
+from aos_protocol.errors import SkillError
 from aos_protocol.messages import BeliefRow, DecisionRecord, MissionBegun, ModelAdopted
 from aos_runtime.journal import JournalRow
 from aos_solver.mission.belief_rows import BELIEF
@@ -77,9 +76,5 @@ def recorded(rows: Iterable[JournalRow]) -> RecordedMission:
 
 def _events(rows: Iterable[JournalRow]) -> Iterator[RecordedEvent]:
     for row in rows:
-        if row.kind not in _KINDS:
-            continue
-        try:
-            yield RecordedEvent(row.seq, msgspec.json.decode(row.payload, type=_KINDS[row.kind]))
-        except UNREADABLE as error:
-            raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error
+        if row.kind in _KINDS:
+            yield RecordedEvent(row.seq, row.read_as(_KINDS[row.kind]))
