@@ -26,14 +26,18 @@ class Access:
         self._party = party
         self._known: dict[tuple[Act, str], bool] = {}
 
-    def check(self, act: Act, key: str) -> None:
-        """Raises BusError AOS608 where the router would say nothing and deny it."""
+    def allows(self, act: Act, key: str) -> bool:
+        """Says whether the router lets it through."""
         is_allowed = self._known.get((act, key))
         if is_allowed is None:
             is_allowed = may(self._robot, self._party, act, key)
             if is_allowed:
                 self._known[act, key] = True
-        if not is_allowed:
+        return is_allowed
+
+    def check(self, act: Act, key: str) -> None:
+        """Raises BusError AOS608 where the router would say nothing and deny it."""
+        if not self.allows(act, key):
             raise BusError(
                 f"{self._party.name} may not {_WORDS[act]} {key}",
                 code="AOS608",

@@ -28,6 +28,7 @@ from aos_runtime.closing import Closing
 from aos_runtime.credentials import Credential
 from aos_runtime.inbox import Inbox
 from aos_runtime.older_python import timeout
+from aos_runtime.presence import Presence
 from aos_runtime.question import RECEIPT, STRAYS_S, Question
 from aos_runtime.recurring import Recurring
 from aos_runtime.server_watch import ServerWatch
@@ -72,6 +73,7 @@ class Bus(Closing):
         self._subscriptions: set[Subscription[Any]] = set()
         self._queryables: list[zenoh.Queryable[None]] = []
         self._tokens: dict[str, zenoh.LivelinessToken] = {}
+        self._presences: list[Presence] = []
         # `session.is_closed()` takes a lock of Zenoh's without letting the interpreter go, while a callback
         # holds that lock and waits for the interpreter: asked on a busy session, it hangs both for ever.
         self._is_closed = False
@@ -231,24 +233,11 @@ class Bus(Closing):
         self._check("watches", key_expression)
 
         async def declare(subscription: Subscription[tuple[str, bool]]) -> Undeclare:
-            present: set[str] = set()
-
-            def on_change(key: str, is_alive: bool) -> None:
-                if is_alive is (key in present):  # Zenoh may repeat what it said.
-                    return
-                (present.add if is_alive else present.discard)(key)
-                subscription.push((key, is_alive))
-
-            def on_sample(sample: zenoh.Sample) -> None:
-                is_alive = sample.kind == zenoh.SampleKind.PUT
-                self._inbox.put(partial(on_change, str(sample.key_expr), is_alive))
-
-            subscriber = self._session.liveliness().declare_subscriber(
-                key_expression, Callback(on_sample, indirect=False), history=True
-            )
+            presence = self._presence_of(key_expression)
             await self._wait_for_router()
+            presence.follow(key_expression, subscription)
             self._subscriptions.add(subscription)
-            return partial(self._end, subscription, subscriber)
+            return partial(self._leave, subscription, presence)
 
         return Subscription(declare, 1000)
 
@@ -274,6 +263,18 @@ class Bus(Closing):
         if self._access is not None:
             self._access.check(act, key)
 
+    def _presence_of(self, key_expression: str) -> Presence:
+        """The presence of these keys. Who asks for one key hears of its siblings, and so do all others who
+        ask for one of them."""
+        for presence in self._presences:
+            if presence.includes(key_expression):
+                return presence
+        siblings = f"{key_expression.rpartition('/')[0]}/*"
+        is_allowed = self._access is None or self._access.allows("watches", siblings)
+        widest = siblings if "*" not in key_expression and is_allowed else key_expression
+        self._presences.append(Presence(self._session, self._inbox, widest))
+        return self._presences[-1]
+
     def _check_open(self) -> None:
         if self._is_closed:
             raise BusError(f"{self.sender} has left the bus", code="AOS605")
@@ -282,6 +283,10 @@ class Bus(Closing):
         self._subscriptions.discard(subscription)
         if not self._is_closed:
             subscriber.undeclare()
+
+    def _leave(self, subscription: Subscription[tuple[str, bool]], presence: Presence) -> None:
+        self._subscriptions.discard(subscription)
+        presence.leave(subscription)
 
     async def _wait_for_router(self) -> None:
         """Returns when the router has taken in everything declared so far.

@@ -19,15 +19,9 @@ async def until_present(bus: Bus, key: str) -> AsyncIterator[None]:
 
     A process that was killed may be present for a moment longer: it goes first.
     """
-    async with asyncio.timeout(HANG_S):
-        while await _is_there(bus, key):
-            pass
-        async with bus.presence(key) as present:
-            yield
+    async with asyncio.timeout(HANG_S), bus.presence(key) as present:
+        if present.has_items:
             assert await anext(present) == (key, True)
-
-
-async def _is_there(bus: Bus, key: str) -> bool:
-    # A watch that begins while the key goes may never hear of that.
-    async with bus.presence(key) as present:
-        return present.has_items
+            assert await anext(present) == (key, False)
+        yield
+        assert await anext(present) == (key, True)

@@ -25,6 +25,37 @@ async def test_no_router_is_a_clear_error(unused_tcp_port: int) -> None:
     assert caught.value.code == "AOS605"
 
 
+async def test_a_key_that_goes_in_the_moment_in_which_a_watch_begins_is_not_there_for_ever(
+    bus: Bus, other: Bus, keys: Keys
+) -> None:
+    key = keys.live("leaving")
+    async with bus.presence(keys.all_live):  # So its session knows the key.
+        for _ in range(100):
+            await other.announce(key)
+            other.withdraw(key)
+            async with bus.presence(key) as present:
+                await other.announce(keys.live("later"))  # The router has heard of the withdrawal.
+                other.withdraw(keys.live("later"))
+                async with bus.presence(keys.live("later")):  # So has the watch.
+                    is_there = False
+                    while present.has_items:
+                        _, is_there = await anext(present)
+                    assert not is_there
+
+
+async def test_a_key_that_came_while_a_watch_ended_and_went_is_not_there_for_the_next_watch(
+    bus: Bus, other: Bus, keys: Keys
+) -> None:
+    key = keys.live("passing")
+    for _ in range(300):
+        async with bus.presence(key) as present:
+            assert not present.has_items
+        await other.announce(key)
+        other.withdraw(key)
+        await other.announce(keys.live("later"))  # The router has heard of the withdrawal.
+        other.withdraw(keys.live("later"))
+
+
 async def test_an_endpoint_that_is_none_is_refused_before_anything_is_opened() -> None:
     with pytest.raises(BusError, match="is not a bus endpoint"):
         await Bus.open("127.0.0.1:7447", sender="lost")

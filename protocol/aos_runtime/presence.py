@@ -1,0 +1,65 @@
+"""Which keys are present on the bus, as one session hears it."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import zenoh
+from zenoh.handlers import Callback
+
+from aos_runtime.inbox import Inbox
+from aos_runtime.subscription import Subscription
+
+__all__ = ["Presence"]
+
+Changes = Subscription[tuple[str, bool]]
+
+
+class Presence:
+    """The keys that match an expression and are present, for as long as the session lasts.
+
+    Zenoh tells a second watch of a session what the session has heard, beside the order in which it hears: a
+    key that goes in that moment, or that went when a watch ended, stays present for the second one. So a
+    session watches once, never ends it, and tells all who ask out of what it has heard.
+    """
+
+    def __init__(self, session: zenoh.Session, inbox: Inbox, key_expression: str) -> None:
+        self._expression = zenoh.KeyExpr(key_expression)
+        self._present: dict[str, None] = {}
+        self._followers: dict[Changes, zenoh.KeyExpr] = {}
+
+        def on_sample(sample: zenoh.Sample) -> None:
+            is_alive = sample.kind == zenoh.SampleKind.PUT
+            inbox.put(partial(self._take, str(sample.key_expr), is_alive))
+
+        # A round trip on the session comes back after the keys that are present now.
+        self._subscriber = session.liveliness().declare_subscriber(
+            key_expression, Callback(on_sample, indirect=False), history=True
+        )
+
+    def includes(self, key_expression: str) -> bool:
+        """Says whether all that match `key_expression` are heard of here."""
+        return self._expression.includes(zenoh.KeyExpr(key_expression))
+
+    def follow(self, key_expression: str, changes: Changes) -> None:
+        """Pushes the keys of `key_expression` that are present, and then each change, until `leave`."""
+        expression = zenoh.KeyExpr(key_expression)
+        for key in self._present:
+            if expression.intersects(zenoh.KeyExpr(key)):
+                changes.push((key, True))
+        self._followers[changes] = expression
+
+    def leave(self, changes: Changes) -> None:
+        """Pushes nothing more; leaving twice does nothing."""
+        self._followers.pop(changes, None)
+
+    def _take(self, key: str, is_alive: bool) -> None:
+        if is_alive is (key in self._present):  # Zenoh may repeat what it said.
+            return
+        if is_alive:
+            self._present[key] = None
+        else:
+            del self._present[key]
+        for changes, expression in tuple(self._followers.items()):
+            if expression.intersects(zenoh.KeyExpr(key)):
+                changes.push((key, is_alive))
