@@ -1,4 +1,4 @@
-"""Which keys are present on the bus, as one session hears it."""
+"""Presence: the keys that are there on the bus, as one session hears it."""
 
 from __future__ import annotations
 
