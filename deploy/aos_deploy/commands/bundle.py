@@ -38,7 +38,11 @@ ANSWER_TIMEOUT_S = 5.0
 PUSH_TIMEOUT_S = 200.0
 """The registry lets the solver compile a new model before it accepts it."""
 
-bundle_app = typer.Typer(no_args_is_help=True, help="Send documents to a running system, or list them.")
+bundle_app = typer.Typer(
+    no_args_is_help=True,
+    help="Send documents to a running system, or list them.",
+    epilog="Example: aos bundle push deploy/bundles/armadillo-finer",
+)
 
 
 OneProject = Annotated[str, typer.Argument(help="The project; may be left out if there is one only")]

@@ -36,7 +36,7 @@ def check(
     ] = True,
     as_json: AsJson = False,
 ) -> None:
-    """Check that journal and ledgers of a run tell a history that can be.
+    """Check a run's journal and ledgers against each other.
 
     An id moved at most once, each decision follows its journalled belief, each outcome belongs to its
     intention, and so on. A replay of the outcomes gives the journalled beliefs again; for that the run's

@@ -30,7 +30,7 @@ def drift(
     runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
-    """Test whether skills do what their documents say, over several runs.
+    """Test whether skills do what their documents say.
 
     The sequential tests of a mission go on from one run to the next here, for each model of its own. Where
     a model is right, the probability that any alarm of it ever comes is 1 % at most. Exit code 1: there is an

@@ -53,9 +53,10 @@ def doctor(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
-    """Say what this machine has and lacks, for AOS and for a deploy file, and what to do.
+    """Say what this machine has and lacks.
 
-    Exit code 0: a mission can run here. 3: something is missing.
+    With a deploy file also what its robot needs; each lack comes with what to do. Exit code 0: a mission can
+    run here. 3: something is missing.
     """
     findings = examine_machine()
     if deploy is not None:

@@ -24,7 +24,7 @@ __all__ = ["register"]
 
 mission_app = typer.Typer(
     no_args_is_help=True,
-    help="Start, stop and list the missions of a system that `aos-up --stay` has started, and steer them.",
+    help="Start, stop, list and steer missions. Further missions need `aos-up --stay`.",
     epilog="Example: aos mission start --set target=bob --belief keep --given 'state.robot_at == Kitchen'",
 )
 
@@ -95,9 +95,9 @@ def start(
 @mission_app.command(epilog="Example: aos mission stop")
 @on_system
 def stop(system: System, as_json: AsJson = False) -> None:
-    """Cancel what moves, and end the mission that runs as `cancelled`.
+    """Cancel what moves, and end the mission.
 
-    It returns when the mission has ended. Where none runs, nothing changes.
+    Its ending is `cancelled`. It returns when the mission has ended. Where none runs, nothing changes.
     """
 
     async def work(aos: AosClient) -> tuple[MissionState, MissionState]:

@@ -28,7 +28,9 @@ __all__ = ["register"]
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 new_app = typer.Typer(
-    no_args_is_help=True, help="Write documents, an adapter or a whole example to start from."
+    no_args_is_help=True,
+    help="Write documents, an adapter or a whole example.",
+    epilog="Example: aos new project fetch, then aos plan fetch",
 )
 
 
@@ -92,7 +94,7 @@ def adapter(
     bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")],
     folder: Annotated[Path, typer.Option("--to", help="Where the files are made")] = Path(),
 ) -> None:
-    """Write a deploy file for a bundle, and the program that serves its paths.
+    """Write a deploy file and an adapter for a bundle.
 
     The program has a function for each path, with its fields and its result. It moves nothing yet.
     """
@@ -119,9 +121,9 @@ def example(
     name: Annotated[str, typer.Argument(help=f"Of {', '.join(deploy_files())}")],
     folder: Annotated[Path | None, typer.Option("--in", help="A new directory; without it NAME here")] = None,
 ) -> None:
-    """Write a system that runs: a deploy file with its bundles and its world.
+    """Write a system that runs.
 
-    They are copies, to be run and to be changed.
+    The deploy file, its bundles and its world are copies, to be run and to be changed.
     """
     if name not in deploy_files():
         hint = did_you_mean(name, deploy_files()) or f"There are {', '.join(deploy_files())}"
@@ -140,7 +142,7 @@ def unit(
     folder: Annotated[Path, typer.Option("--to", help="Where the file is made")] = Path(),
     user: Annotated[str, typer.Option(help="Who runs it; else who you are")] = "",
 ) -> None:
-    """Write a systemd unit that starts a deploy file's mission when the machine does.
+    """Write a systemd unit that starts a mission at boot.
 
     It confines the mission to what it needs. The file says how it is taken into use.
     """

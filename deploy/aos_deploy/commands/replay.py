@@ -133,9 +133,9 @@ def diff(
     mission: Mission = None,
     as_json: AsJson = False,
 ) -> None:
-    """Compare two missions: where they part, and what was different before.
+    """Compare two missions up to where they part.
 
-    The exit code is 1 where they differ.
+    Prints the settings that differ and the first step that does. The exit code is 1 where they differ.
     """
     opened = [StudiedRun.open(chosen_run(run, None).path, mission) for run in (first, second)]
     found = difference(*opened)

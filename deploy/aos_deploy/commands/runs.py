@@ -55,9 +55,10 @@ def runs(
     running: Annotated[bool, typer.Option("--running", help="Only those that run, wherever")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """List the missions that run on this machine, and those kept in ./runs.
+    """List the missions of this machine.
 
-    `aos decisions --run DIR` shows one of them, `aos runs prune` removes old ones.
+    Lists those that run, wherever they were started, and those kept in ./runs. `aos decisions --run DIR`
+    shows one of them, `aos runs prune` removes old ones.
     """
     if context.invoked_subcommand is not None:
         context.obj = folder

@@ -35,7 +35,11 @@ __all__ = ["register"]
 
 _ASK_S = 5.0
 
-skill_app = typer.Typer(no_args_is_help=True, help="See, call and stop the skills of a running system.")
+skill_app = typer.Typer(
+    no_args_is_help=True,
+    help="See, call and stop the skills of a running system.",
+    epilog="Example: aos skill list, then aos skill call /navigate x=1.5 y=0 yaw=0",
+)
 
 
 def register(app: typer.Typer) -> None:
@@ -150,7 +154,7 @@ def cancel(
 
 @on_system
 def resume(system: System) -> None:
-    """Go on with a mission that holds, after what it holds for was looked after."""
+    """Go on with a mission that holds."""
 
     async def work(aos: AosClient) -> None:
         before = await aos.mission_state()

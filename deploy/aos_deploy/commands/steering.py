@@ -50,7 +50,7 @@ def step(system: System, as_json: AsJson = False) -> None:
 
 @on_system
 def resume(system: System, as_json: AsJson = False) -> None:
-    """Go on with a mission that holds, whoever or whatever holds it."""
+    """Go on with a mission, whoever or whatever holds it."""
     _steer(system, lambda aos: aos.resume(), as_json, lambda state: "the mission goes on")
 
 
@@ -62,10 +62,11 @@ def act(
     ],
     as_json: AsJson = False,
 ) -> None:
-    """Carry out an action of your own at the next decision, also while the mission holds.
+    """Carry out an action of your own.
 
-    The belief is updated by it as by any other. It returns once the action has begun. A constraint that it
-    exceeds, and a skill that cannot be run, refuse it.
+    It is the next decision, also while the mission holds. The belief is updated by it as by any other. It
+    returns once the action has begun. A constraint that it exceeds, and a skill that cannot be run, refuse
+    it.
     """
     _steer(system, lambda aos: aos.act(action), as_json, lambda state: f"step {state.step}: {action}")
 
@@ -76,10 +77,10 @@ def script(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="One action a line; # begins a comment")],
     as_json: AsJson = False,
 ) -> None:
-    """Carry out the actions of a file in their order, also while the mission holds.
+    """Carry out the actions of a file in their order.
 
-    It returns at once. Where an action is refused, fails or ends otherwise than observed, the rest is
-    dropped, and the mission holds.
+    They are the next decisions, also while the mission holds. It returns at once. Where an action is refused,
+    fails or ends otherwise than observed, the rest is dropped, and the mission holds.
     """
     actions = actions_of_script(file)
     said = f"{count(len(actions), 'action')} asked for"
@@ -88,7 +89,10 @@ def script(
 
 @on_system
 def leave_out(system: System, name: Name, as_json: AsJson = False) -> None:
-    """Decide without a skill or a grounded action, now and in what is looked ahead."""
+    """Decide without a skill or a grounded action.
+
+    It is left out of what is looked ahead, too, until `aos mission take-back`.
+    """
     _steer(system, lambda aos: aos.leave_out(name), as_json, _without)
 
 

@@ -49,7 +49,7 @@ def calibrate(
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
-    """Estimate the probabilities in documents from recorded missions.
+    """Estimate the documents' probabilities from missions.
 
     Prints each with a 95 % interval beside the document's number. Numbers
     that the records do not allow make a patch, which is never applied here.

@@ -32,7 +32,8 @@ def register(app: typer.Typer) -> None:
         no_args_is_help=True,
         context_settings=HELP_NAMES,
         rich_markup_mode=None,
-        help="Run an experiment's missions, and see which of its claims hold.",
+        help="Run an experiment, and see which of its claims hold.",
+        epilog="Example: aos experiment run armadillo --seeds 20",
     )
     group.callback()(lambda: None)
     group.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")(run)

@@ -113,10 +113,10 @@ def solve(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
-    """Work out a policy before the mission, with proven bounds of what it gives.
+    """Work out a policy before the mission.
 
-    Every state that can be reached is enumerated and solved with SARSOP. Ctrl-C ends it early and keeps the
-    best so far. Values are discounted and without a horizon.
+    The bounds of what it gives are proven. Every state that can be reached is enumerated and solved with
+    SARSOP. Ctrl-C ends it early and keeps the best so far. Values are discounted and without a horizon.
     """
     _check_names(export or [], graph)
     if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
