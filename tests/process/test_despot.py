@@ -9,6 +9,7 @@ import pytest
 from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 
+from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
@@ -46,6 +47,31 @@ __moduleResponse = done;
     for skill in ("bet", "wait", "stop")
 }
 """A level that is drawn anew by waiting: to bet loses 6 on average, to wait 1, to stop nothing."""
+
+
+DEAR = {
+    "dear.ef": """project: dear
+horizon: 10
+discount: 0.95
+
+state_variable: bool is_late
+
+initial_belief:
+state.is_late = AOS.Bernoulli(0.5);
+""",
+    "pay.sd": """project: dear
+parameter: int price
+
+available_parameters_code:
+for (int price = 1; price <= 200; price++) __possibleParameters.push_back(std::make_tuple(price));
+
+dynamic_model:
+__reward = -price;
+state__.is_late = AOS.Bernoulli(0.5);
+__moduleResponse = done;
+""",
+}
+"""Two hundred actions, all of which cost."""
 
 
 async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Path, cache_dir: Path) -> None:
@@ -97,3 +123,16 @@ async def test_a_belief_that_has_ended_needs_no_decision(
         plan = await engine.plan(simulations=1_000, seed=1, planner=planner)
     assert summary.goal_probability == 1
     assert {action.q for action in plan.actions} == {0}
+
+
+async def test_an_action_that_was_not_tried_is_told_by_its_bound_and_not_chosen(cache_dir: Path) -> None:
+    async with engine_of(await built_text(DEAR, cache_dir)) as engine:
+        within = Restriction(barred=[0, 1, 2])
+        plan = await engine.plan(simulations=1, seed=1, planner="despot", within=within)
+    untried = [action for action in plan.actions if action.n == 0]
+    assert untried
+    assert plan.best.n > 0
+    assert plan.index not in within.barred
+    for action in untried:
+        assert action.at_most is not None
+        assert action.q <= action.at_most < 0

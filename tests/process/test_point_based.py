@@ -71,6 +71,38 @@ __moduleResponse = done;
 """22,500 places that all matter."""
 
 
+TURNS = {
+    "turns.ef": """project: turns
+horizon: 100
+discount: 0.95
+
+state_variable: int need
+
+initial_belief:
+state.need = AOS.SampleDiscrete({0.5, 0.5, 0, 0});
+""",
+    "give.sd": """project: turns
+parameter: int code
+
+available_parameters_code:
+for (int code = 0; code < 400; code++) __possibleParameters.push_back(std::make_tuple(code));
+
+dynamic_model:
+__reward = code % 4 == state.need ? 5 : -2;
+state__.need = (state.need + 1) % 4;
+__moduleResponse = done;
+""",
+    "ask.sd": """project: turns
+
+dynamic_model:
+__reward = -0.5;
+int told = AOS.Bernoulli(0.85) ? state.need : (state.need + 1) % 4;
+__moduleResponse = told == 0 ? zero : told == 1 ? one : told == 2 ? two : three;
+""",
+}
+"""Four hundred actions, so that few missions are played within a budget. Asking tells what is needed."""
+
+
 @pytest.fixture
 async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
     return await built_bundle(bundles / "bench" / "tiger", cache_dir)
@@ -202,3 +234,12 @@ async def test_auto_chooses_by_states_and_budget_and_says_so(
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
     assert why in plan.why
+
+
+async def test_few_missions_make_no_value_less_certain_than_what_is_proven(cache_dir: Path) -> None:
+    async with engine_of(await built_text(TURNS, cache_dir)) as engine:
+        best = (await engine.plan(simulations=1_000, seed=1, planner="sarsop")).best
+    assert best.at_least is not None
+    assert best.at_most is not None
+    assert best.at_most - best.at_least < 10
+    assert best.stderr < 1.5 * (best.at_most - best.at_least)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from statistics import fmean
 
 from models import built_text, engine_of
 from wide.cleaning import cleaning
@@ -14,30 +15,30 @@ from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 _SIMULATIONS = 4000
+_FEW_SIMULATIONS = 500
+_MISSIONS = 6
 
 
 async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missions_return(
     cache_dir: Path,
 ) -> None:
-    """Rests return -88, and a round trip by hand -20, over 120 steps.
-
-    The first decision tells a value within three errors of what missions return, or within 12.
-    """
+    """Over 60 steps rests return -82 on average, and a round trip by hand -17."""
     built = await built_text(greenhouse(5), cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other:
-        plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
+        plan = await engine.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto")
         assert plan.planner == "savings"
-        assert (await other.plan(simulations=_SIMULATIONS, seed=1, planner="auto")).actions == plan.actions
+        same = await other.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto")
+        assert same.actions == plan.actions
         limits = MissionLimits(goal_probability=1, step_limit=60)
-        searches = (Search(simulations=_SIMULATIONS, seed=seed) for seed in range(2))
+        searches = (Search(simulations=_FEW_SIMULATIONS, seed=seed) for seed in range(_MISSIONS))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
     for run in runs:
         assert sum(action.startswith("water") for action in run.actions) >= 12
         assert sum(action == "refill" for action in run.actions) >= 2
     told = plan.actions[plan.index]
-    mean = sum(run.discounted_return for run in runs) / len(runs)
-    assert mean > -45
-    assert abs(told.q - mean) < max(3 * told.stderr, 12)
+    mean = fmean(run.discounted_return for run in runs)
+    assert mean > -30
+    assert abs(told.q - mean) < 3 * told.stderr
 
 
 async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once(

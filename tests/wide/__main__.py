@@ -20,17 +20,45 @@ import numpy as np
 
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
+from .belts import Belts, belts, belts_rule
 from .inspection import inspection, inspection_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
+from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
+from .screws import Screws, screws, screws_rule
+from .tabletop import Tabletop, tabletop, tabletop_rule
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
 
-_BUNDLES = PROBLEMS | APART | UPKEEP | {"inspection": inspection}
-_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES | {"inspection": 16}
-_RULES = RULES | APART_RULES | UPKEEP_RULES | {"inspection": inspection_rule}
+_SINGLE = {
+    "inspection": inspection,
+    "belts": belts,
+    "screws": screws,
+    "rescue": rescue,
+    "tabletop": tabletop,
+}
+_BUNDLES = PROBLEMS | APART | UPKEEP | _SINGLE
+_SIZES = (
+    SIZES
+    | APART_SIZES
+    | UPKEEP_SIZES
+    | {"inspection": 16, "belts": 3, "screws": 10, "rescue": 3, "tabletop": 5}
+)
+_RULES = (
+    RULES
+    | APART_RULES
+    | UPKEEP_RULES
+    | {
+        "inspection": inspection_rule,
+        "belts": belts_rule,
+        "screws": screws_rule,
+        "rescue": rescue_rule,
+        "tabletop": tabletop_rule,
+    }
+)
+_WORLDS = {"belts": Belts, "screws": Screws, "rescue": Rescue, "tabletop": Tabletop}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:
@@ -65,14 +93,26 @@ def main() -> None:
                 size = arguments.size or _SIZES[problem]
                 mean, error = ruled(problem, size, 200, arguments.seed)
                 bundle, rule = write(Path(folder), problem, size), f"rule {mean:.1f} +- {error:.1f}, "
+                if problem in _WORLDS:
+                    mean, error = at_random(problem, size, 200, arguments.seed)
+                    rule += f"random {mean:.1f} +- {error:.1f}, "
             found = asyncio.run(played(bundle, arguments.planner, arguments.time, seeds, _STEPS))
         print(f"{bundle.name}: {rule}{_text(found)}", flush=True)
 
 
 def ruled(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
     """The mean discounted return of a rule over missions, and its standard error."""
-    returns = [_RULES[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)]
-    return float(np.mean(returns)), float(np.std(returns, ddof=1) / missions**0.5)
+    return _mean([_RULES[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)])
+
+
+def at_random(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
+    """The mean discounted return of random actions over missions, and its standard error."""
+    worlds = [_WORLDS[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)]
+    return _mean([world.play_at_random() for world in worlds])
+
+
+def _mean(returns: list[float]) -> tuple[float, float]:
+    return float(np.mean(returns)), float(np.std(returns, ddof=1) / len(returns) ** 0.5)
 
 
 def _text(found: Played) -> str:

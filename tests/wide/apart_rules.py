@@ -6,6 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .delivery import delivery_rule
+from .world import MOST_STEPS
 
 __all__ = ["APART_RULES", "arms", "courier", "drone", "plant"]
 
@@ -102,7 +103,7 @@ def arms(count: int, rng: random.Random) -> float:
     held: list[bool | None] = [None, None]
     odds = [0.6, 0.6]
     earned, discount, joined = 0.0, 1.0, 0
-    for _ in range(80):
+    for _ in range(MOST_STEPS):
         arm = next((i for i in (0, 1) if held[i] is None or odds[i] < 0.9), None)
         if arm is None:
             is_good = bool(held[0] and held[1])
@@ -112,9 +113,10 @@ def arms(count: int, rng: random.Random) -> float:
                 return earned + discount * 30
         elif held[arm] is None:
             if left[arm] == 0:
-                return earned
-            left[arm] -= 1
-            held[arm], odds[arm], reward = rng.random() < 0.6, 0.6, -0.5
+                reward = -0.3  # nothing is left to do, and no action is free
+            else:
+                left[arm] -= 1
+                held[arm], odds[arm], reward = rng.random() < 0.6, 0.6, -0.5
         elif odds[arm] < 0.2:
             held[arm], reward = None, -0.5
         else:

@@ -96,6 +96,8 @@ class Planners {
     for (ActionEstimate& value : values) {
       value.at_least -= slack;
       value.at_most += slack;
+      // Of an action that was not tried nothing is told but its bounds.
+      if (value.n == 0) value.q = std::clamp(0.0, value.at_least, value.at_most);
     }
     return values;
   }

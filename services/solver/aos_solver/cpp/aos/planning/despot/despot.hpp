@@ -69,7 +69,9 @@ class Despot final : public TreePlanner<Model> {
     return result;
   }
   Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const override {
-    for (ActionEstimate& estimate : estimates) estimate.standard_error = error(belief);
+    for (ActionEstimate& estimate : estimates) {
+      if (estimate.n > 0) estimate.standard_error = error(belief);
+    }
     return TreePlanner<Model>::values(belief, std::move(estimates), choice);
   }
 
@@ -241,12 +243,15 @@ class Despot final : public TreePlanner<Model> {
     const bool has_room = has_room_for(scenarios_, max_new) && has_room_for(nodes_, max_new);
     if (!has_room || !has_room_for(actions_, action_count())) return false;
     const auto first_action = static_cast<std::uint32_t>(actions_.size());
+    bool has_tried = false;
     for (std::size_t a = 0; a < action_count(); ++a) {
-      if (a > 0 && !may_go_on()) {
+      // At the root an action is tried in any case that can be taken.
+      if (has_tried && !may_go_on()) {
         if (number != 0) return false;
         break;
       }
       try_action(number, static_cast<int>(a));
+      has_tried = has_tried || !is_barred(number, a);
     }
     nodes_[number].first_action = first_action;
     update(number);

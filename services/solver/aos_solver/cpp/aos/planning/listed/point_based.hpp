@@ -169,7 +169,10 @@ class PointBased {
     }
     if (policy_) lowers[policy_->action] = std::clamp(policy_->within, lowers[policy_->action], uppers[policy_->action]);
     set_between(estimates, lowers, uppers, choice);
-    const double unknown = error_of_missions(estimates[static_cast<std::size_t>(choice)].q);
+    const ActionEstimate& chosen = estimates[static_cast<std::size_t>(choice)];
+    double unknown = error_of_missions(chosen.q);
+    // Without a horizon a mission that plans anew returns what is proven: lower bounds hold for the next decision, too.
+    if (is_endless_ && !policy_) unknown = std::min(unknown, chosen.at_most - chosen.at_least);
     for (ActionEstimate& estimate : estimates) {
       estimate.q = std::min(estimate.q, estimate.at_most);
       estimate.standard_error = std::hypot(estimate.standard_error, unknown);

@@ -1,7 +1,6 @@
 // Options as a planner: where states cannot be listed and ways to rewards are found (option_policy.hpp).
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/planning/backoff.hpp"
 #include "aos/planning/options/option_policy.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
@@ -31,8 +31,7 @@ class OptionsPlanner final : public Planner<Model> {
     const bool is_asked = is_by_name || (!is_listed && switches::options && !Model::has_rollout_policy && !pomcp_.has_wide_values(belief, horizon));
     has_looked_ = false;
     if (!is_asked) return false;
-    if (put_off_ > 0) {
-      --put_off_;
+    if (!looks_.is_due()) {
       choosing.why += "; no way to a reward was found a few decisions before";
       return false;
     }
@@ -40,13 +39,13 @@ class OptionsPlanner final : public Planner<Model> {
     const std::string obstacle = look(question, Sampler{Sampler{random}.bits()}, choosing);
     if (!obstacle.empty()) choosing.why += "; " + obstacle;
     // Where no way at all is known, the next look is put off, each time for longer.
-    vain_ = policy_.knows_ways() && !policy_.earns_anyway() ? 0 : std::min(vain_ + 1, most_vain);
-    put_off_ = (1 << vain_) - 1;
+    if (policy_.knows_ways() && !policy_.earns_anyway()) looks_.succeed();
+    else looks_.fail();
     return obstacle.empty();
   }
 
   // Whether the last look has found no way that tells what to do, from any state.
-  bool finds_nothing() const { return vain_ > 0; }
+  bool finds_nothing() const { return looks_.is_in_vain(); }
   // Whether the last decision has looked for ways.
   bool has_looked() const { return has_looked_; }
 
@@ -63,12 +62,10 @@ class OptionsPlanner final : public Planner<Model> {
   Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
   void start_over() override {
     policy_.start_over();
-    vain_ = put_off_ = 0;
+    looks_ = Backoff{};
   }
 
  private:
-  static constexpr int most_vain = 4;  // 15 decisions are put off then, as those of simple policies are
-
   // Looks for ways. Returns why these cannot decide; empty if they can.
   std::string look(const Question<Model>& question, Sampler random, Choosing& choosing) {
     const SearchTime time{choosing};
@@ -81,8 +78,7 @@ class OptionsPlanner final : public Planner<Model> {
   Pomcp<Model>& pomcp_;
   OptionPolicy<Model> policy_;
   AffordableSteps<Model> affordable_;
-  int vain_ = 0;     // looks in a row that found no way
-  int put_off_ = 0;  // decisions without a look
+  Backoff looks_;
   bool has_looked_ = false;
 };
 

@@ -1,0 +1,43 @@
+"""A problem played without the engine: the world of a rule by hand, and of random actions."""
+
+import random
+
+__all__ = ["MOST_STEPS", "World"]
+
+MOST_STEPS = 120  # in a mission
+
+
+class World:
+    """The hidden state of a problem, and what was earned in it so far."""
+
+    discount = 1.0
+
+    def __init__(self, rng: random.Random) -> None:
+        self.rng = rng
+        self.earned = 0.0
+        self.steps = 0
+        self.has_ended = False
+
+    @property
+    def is_over(self) -> bool:
+        return self.has_ended or self.steps >= MOST_STEPS
+
+    def actions(self) -> list[tuple[str, int]]:
+        """All actions: skills with the value of their parameter."""
+        raise NotImplementedError
+
+    def act(self, skill: str, value: int = 0) -> str:
+        """Takes an action and returns what is reported."""
+        raise NotImplementedError
+
+    def gain(self, reward: float) -> None:
+        """Counts the reward of a step, which is over then."""
+        self.earned += self.discount**self.steps * reward
+        self.steps += 1
+
+    def play_at_random(self) -> float:
+        """Takes actions at random until the mission is over, and returns what was earned."""
+        actions = self.actions()
+        while not self.is_over:
+            self.act(*self.rng.choice(actions))
+        return self.earned
