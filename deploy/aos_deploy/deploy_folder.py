@@ -17,7 +17,13 @@ _SUFFIXES = (".yaml", ".yml")
 
 
 def deploy_file_at(path: Path) -> Path:
-    """The path itself, of a folder its deploy file; DeployError AOS801 where it has none or several."""
+    """The path itself, of a folder its deploy file; DeployError AOS801 where there is none, or several."""
+    if not path.exists():
+        raise DeployError(
+            f"there is no deploy file {path}",
+            code="AOS801",
+            hint="`aos new adapter KIND --in BUNDLE` writes one, `aos new example NAME` one that runs",
+        )
     if not path.is_dir():
         return path
     inside = [file for file, _ in deploy_files_in(path)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import types
 import typing
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
 import msgspec
@@ -102,7 +102,7 @@ def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> An
         known = [str(argument) for argument in arguments]
         is_quoted = isinstance(value, str) and value in known
         said = f'the text "{value}"' if is_quoted else _shown(value)
-        message = f"{path} is {said}, not {' or '.join(known)}"
+        message = f"{path} is {said}; it must be {one_of(known)}"
         if is_quoted:
             findings.error("AOS106", message, node.span, "Write it without quotes")
             return UNSET
@@ -120,6 +120,12 @@ def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> An
         expected = f"{_KINDS[base]} {_limit_text(limit)}".strip()
         findings.error("AOS106", f"{path} is {_shown(value)}; it must be {expected}", node.span)
         return UNSET
+
+
+def one_of(known: Sequence[str]) -> str:
+    """Names to choose from: `pomcp, despot or auto`."""
+    *others, last = known
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def _limit_text(limit: str) -> str:

@@ -107,7 +107,8 @@ def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
         findings.error("AOS104", f"not well-formed YAML: {error}", Span(file))
         return None, findings
     if not isinstance(root, MappingNode):
-        findings.error("AOS104", "not a mapping of keys to values", Span(file, 1))
+        told = "this file is empty" if root is None else "not a mapping of keys to values"
+        findings.error("AOS104", told, Span(file, 1))
         return None, findings
     return _Reader(file, findings).map(root), findings
 

@@ -120,6 +120,10 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
         hint = "A bundle is a directory with .ef, .sd, .am, .lf or .json files, or an archive of one"
         if path.suffix in (".pomdp", ".pomdpx"):
             hint += f". Such a file is for `aos solve {path}`"
+        elif path.suffix in (".yaml", ".yml"):
+            hint += f". {path.name} may name some under `bundles:`"
+        elif is_document_name(path.name) and path.is_file():
+            hint += f". That of {path.name} is {path.parent}"
         return {}, [Diagnostic(Severity.ERROR, "AOS101", reason, Span(str(path)), hint)]
     total = 0
     for entry in entries:

@@ -293,7 +293,7 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
 @pytest.mark.parametrize(
     ("target", "text"),
     [
-        ("robot.py:fly", "robot.py has no fly. It has asyncio, time, Enum"),
+        ("robot.py:fly", "robot.py has no fly. It has Side, drive, wait, block"),
         ("nowhere.py:drive", "there is no file"),
         ("drive", "/skill is not bound to a function. Write it as /skill: {python: my_robot.py:function}"),
         ("robot.py:time", "which cannot be called"),

@@ -351,7 +351,7 @@ def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path
 def test_a_missing_deploy_file_is_named(tmp_path: Path) -> None:
     with up(tmp_path / "none.yaml") as running:
         assert running.rest() == 1
-        assert "none.yaml: error[AOS101]: the file cannot be read: No such file" in running.error_text()
+        assert "AOS801: there is no deploy file" in running.error_text()
 
 
 @pytest.mark.parametrize(

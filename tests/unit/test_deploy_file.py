@@ -136,7 +136,7 @@ programs:
         ("{command: [a], wait: 3}", "AOS102 unknown key programs.nav.wait"),
         (
             "{command: [a], on_exit: stop}",
-            "AOS106 programs.nav.on_exit is stop, not fault or",
+            "AOS106 programs.nav.on_exit is stop; it must be fault, restart or ignore",
         ),
         ("{command: [a], ready: up}", "AOS106 programs.nav.ready is not a mapping of keys to values"),
         (
@@ -218,7 +218,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ("solver: 3", "4:9 AOS106 solver is not a mapping of keys to values"),
         (
             "solver: {impossible_observation: dance}",
-            "4:34 AOS106 solver.impossible_observation is dance, not hold or widen or reset",
+            "4:34 AOS106 solver.impossible_observation is dance; it must be hold, widen or reset",
         ),
         (
             "mission: {goal_probability: 1.5}",
@@ -226,7 +226,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ),
         (
             "solver: {planner: pompc}",
-            "4:19 AOS106 solver.planner is pompc, not pomcp or despot or sarsop or auto. Did you mean `pomcp",
+            "4:19 AOS106 solver.planner is pompc; it must be pomcp, despot, sarsop or auto. Did you",
         ),
         ("leave_out: look", "4:12 AOS106 leave_out is not a list"),
         ("leave_out: [drive, loook]", "4:20 AOS110 no bundle has a skill loook. Did you mean `look`?"),
@@ -280,11 +280,11 @@ def test_a_mistake_is_named_with_its_place(folder: Path, text: str, found: str) 
 @pytest.mark.parametrize(
     ("text", "found"),
     [
-        ("", "1:0 AOS104 not a mapping of keys to values"),
+        ("", "1:0 AOS104 this file is empty"),
         ("- aos\n", "1:0 AOS104 not a mapping of keys to values"),
         ("aos: 1\nrobot: rover\n", "1:1 AOS105 the key bundles is missing"),
-        (HEAD.replace("aos: 1", "aos: 2"), "1:6 AOS106 aos is 2, not 1"),
-        (HEAD.replace("1", '"1"'), '1:6 AOS106 aos is the text "1", not 1. Write it without quotes'),
+        (HEAD.replace("aos: 1", "aos: 2"), "1:6 AOS106 aos is 2; it must be 1"),
+        (HEAD.replace("1", '"1"'), '1:6 AOS106 aos is the text "1"; it must be 1. Write it without quotes'),
         (HEAD.replace("rover", "my rover"), "2:8 AOS106 'my rover' is not a robot name. Use letters"),
         (HEAD.replace("[bundle]", "[]"), "3:10 AOS105 bundles names none. Name a bundle's folder"),
         (HEAD.replace("[bundle]", "[bundle, gone]"), "3:19 AOS101 there is no bundle folder"),
@@ -317,7 +317,8 @@ def test_a_path_that_is_nearly_one_of_a_skill_is_remarked_where_another_adapter_
 def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path) -> None:
     with pytest.raises(DeployError) as absent:
         read_deploy_file(folder / "absent.yaml")
-    assert "No such file" in absent.value.diagnostics[0].message
+    assert absent.value.message == f"there is no deploy file {folder / 'absent.yaml'}"
+    assert "aos new example" in absent.value.hint
     (folder / "binary.yaml").write_bytes(b"\xff\xfe")
     with pytest.raises(DeployError) as binary:
         read_deploy_file(folder / "binary.yaml")

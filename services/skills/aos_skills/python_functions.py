@@ -99,9 +99,9 @@ class PythonAdapter:
                 if inspect.isclass(found):
                     found = self._object(place, name, found)
         except AttributeError as error:
-            known = ", ".join(other for other in vars(module) if not other.startswith("_"))
+            known = ", ".join(_own_names(module)) or "no function of its own"
             raise DeployError(
-                f"{path} is bound to {target}, and {place} has no {name}", hint=f"It has {known or 'nothing'}"
+                f"{path} is bound to {target}, and {place} has no {name}", hint=f"It has {known}"
             ) from error
         if not callable(found):
             raise DeployError(f"{path} is bound to {target}, which cannot be called")
@@ -197,6 +197,17 @@ class PythonAdapter:
                 closed = close()
                 if inspect.isawaitable(closed):
                     await closed
+
+
+def _own_names(module: ModuleType) -> list[str]:
+    """The functions and classes that a module defines itself, with the methods of the classes."""
+    own: list[str] = []
+    for name, value in vars(module).items():
+        if name.startswith("_") or getattr(value, "__module__", None) != module.__name__:
+            continue
+        methods = [each for each in vars(value) if not each.startswith("_")] if inspect.isclass(value) else []
+        own += [f"{name}.{each}" for each in methods if callable(getattr(value, each))] or [name]
+    return own
 
 
 def _from_file(path: Path) -> ModuleType:

@@ -59,7 +59,7 @@ class RecordedMission(msgspec.Struct, frozen=True):
         found = next((made for made in self.decisions if made.step == step), None)
         if found is None:
             last = self.decisions[-1].step if self.decisions else 0
-            hint = f"Name a step from 1 to {last}" if last else "Wait for the first decision"
+            hint = f"Name a step from 1 to {last}" if last else "It has none yet, or ended before the first"
             raise SkillError(f"the mission has no decision of step {step}", code="AOS501", hint=hint)
         return found
 
