@@ -144,6 +144,12 @@ def test_an_operator_of_cpp_in_a_rule_is_told_with_pythons_word() -> None:
     assert found.endswith("Python writes `and`, `or`, `not`")
 
 
+def test_an_assignment_in_a_rule_is_told_with_the_comparison() -> None:
+    (found,) = finding_texts(rule="answer = heard")
+    assert found.startswith("sell.am:3:23: error: this is not Python")
+    assert found.endswith("To compare, write `==`")
+
+
 def test_a_rule_that_is_never_tried_fails_in_no_run() -> None:
     warned = "sell.am:5:16: warning: no local variable gives `unknown_name`."
     assert any(text.startswith(warned) for text in finding_texts(rule="True", second="unknown_name"))

@@ -248,6 +248,37 @@ def test_a_misspelt_call_is_told_with_the_name_that_was_meant() -> None:
     assert error.span.file == "work.sd"
 
 
+@pytest.mark.parametrize(
+    ("said", "message", "hint"),
+    [
+        ("'elif' was not declared in this scope", "`elif` was not declared", "C++ writes `else if`"),
+        ("use of undeclared identifier 'True'", "use of undeclared identifier `True`", "C++ writes `true`"),
+        (
+            "cannot convert 'const char*' to 'model::Side' in assignment",
+            "cannot convert `const char*` to `Side` in assignment",
+            "Numbers, values of enums and responses are written without quotes",
+        ),
+        (
+            "assigning to 'model::Side' from incompatible type 'const char[5]'",
+            "assigning to `Side` from incompatible type `const char[5]`",
+            "Numbers, values of enums and responses are written without quotes",
+        ),
+        (
+            "no matching function for call to 'aos::AnySource::Bernoulli()'",
+            "no matching function for call to `AOS.Bernoulli()`",
+            "",
+        ),
+    ],
+)
+def test_messages_are_told_in_the_documents_terms_with_what_to_write(
+    said: str, message: str, hint: str
+) -> None:
+    emitted = emit(program())
+    line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
+    (error,) = read_messages(f"m.cpp:{line}:6: error: {said}\n", "m.cpp", emitted).diagnostics
+    assert (error.message, error.hint) == (message, hint)
+
+
 # --- mistakes --------------------------------------------------------------------------------------------
 
 

@@ -183,6 +183,8 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         end = len(code) - (code.rfind("\n") + 1) + 1
         span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
         hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(code) else ""
+        if mode == "eval" and (error.text or "")[(error.offset or end) - 1 :].startswith("= "):
+            hint = hint or "To compare, write `==`"
         findings.error("AOS121", f"this is not Python: {error.msg}", span, hint)
     except (ValueError, RecursionError, MemoryError) as error:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)

@@ -56,6 +56,13 @@ class Extent(NamedTuple):
     column: int
 
 
+_IN_PLACE_OF = {
+    "include": "The standard library's algorithms, containers and mathematics are there without it",
+    "define": "Constants and functions stand in `shared_code:` of the environment document",
+}
+"""Directives that people write, with what there is in their place."""
+
+
 class FaultKind(StrEnum):
     """The reasons why a snippet cannot be placed in a function. SYNTAX is a hint, the compiler decides."""
 
@@ -225,7 +232,8 @@ def _directive(text: str, extent: Extent) -> Fault:
     words = text.strip().removeprefix("%:").removeprefix("#").split(maxsplit=1)
     if text.lstrip().startswith("#") and words and words[0] not in _DIRECTIVES:
         return _no_comment(extent)
-    return Fault(FaultKind.PREPROCESSOR, f"a preprocessor line (#{words[0] if words else ''})", extent)
+    name = words[0] if words else ""
+    return Fault(FaultKind.PREPROCESSOR, f"a preprocessor line (#{name})", extent, _IN_PLACE_OF.get(name, ""))
 
 
 def _no_comment(extent: Extent) -> Fault:

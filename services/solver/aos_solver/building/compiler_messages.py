@@ -20,6 +20,11 @@ _PLACE = re.compile(
 _ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)")
 """g++ and clang say this of the one deleted operator that documents can meet, see named_array.hpp."""
 _NOT_DECLARED = re.compile(r"`([A-Za-z_]\w*)` was not declared|use of undeclared identifier `([A-Za-z_]\w*)`")
+_OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
+_A_TEXT = re.compile(
+    r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
+)
+"""Where a text meets another type: a number, an enum's value, a response."""
 _FAULTS = ("error", "fatal error", "Error")
 
 
@@ -60,7 +65,9 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             continue
         text, hint = _plain(message.text)
         if not hint and (unknown := _NOT_DECLARED.fullmatch(text)) is not None:
-            hint = did_you_mean(unknown[1] or unknown[2], sorted(emitted.names))
+            name = unknown[1] or unknown[2]
+            of_python = f"C++ writes `{_OF_PYTHON[name]}`" if name in _OF_PYTHON else ""
+            hint = of_python or did_you_mean(name, sorted(emitted.names))
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
         diagnostics.append(diagnostic)
     return CompilerReport(tuple(_without_repeats(diagnostics)), tuple(outside))
@@ -103,12 +110,16 @@ def _plain(text: str) -> tuple[str, str]:
     text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
-    text = text.replace("was not declared in this scope", "was not declared")
+    text = text.replace("was not declared in this scope", "was not declared").replace(
+        "aos::AnySource::", "AOS."
+    )
     if _ANOTHER_ENUM.search(text):
         return (
             "this array is indexed by another enum",
             "Use a value of its own enum, or a number: `int(value)`",
         )
+    if _A_TEXT.search(text):
+        return text, "Numbers, values of enums and responses are written without quotes"
     message, separator, suggestion = text.partition("; ")
     if separator and suggestion.startswith("did you mean"):
         return message, suggestion[0].upper() + suggestion[1:]
