@@ -24,7 +24,7 @@ _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else
 _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
 )
-"""Where a text meets another type: a number, an enum's value, a response."""
+"""A text meets another type: a number, an enum's value, a response."""
 _FAULTS = ("error", "fatal error", "Error")
 
 
