@@ -27,7 +27,7 @@ from aos_language.findings import Findings
 from aos_language.load import read_bundle_files
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import Constraint, MissionValue
+from aos_protocol.documents import MAX_HORIZON, Constraint, MissionValue
 from aos_protocol.errors import DeployError
 
 __all__ = [
@@ -47,6 +47,7 @@ __all__ = [
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 Count = Annotated[int, msgspec.Meta(ge=1, le=2**31 - 1)]
+Horizon = Annotated[int, msgspec.Meta(ge=1, le=MAX_HORIZON)]
 Seed = Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)]
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
@@ -126,7 +127,7 @@ class SolverPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     simulations: Count | None = None
     time_s: Seconds | None = None
-    horizon: Count | None = None
+    horizon: Horizon | None = None
     policy: str | None = None
     planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: Annotated[int, msgspec.Meta(ge=1, le=32)] = 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec
@@ -11,6 +12,8 @@ from aos_protocol.spelling import nearest
 
 __all__ = ["Findings"]
 
+MAX_OF_A_SEVERITY = 1000
+"""So many errors, warnings and remarks of a run are told: hostile text has one at each character."""
 _LONGEST_EXCERPT = 4000
 _EXCERPT_MARGIN = 200
 
@@ -21,6 +24,7 @@ class Findings:
     def __init__(self, lines: Mapping[str, Sequence[str]] | None = None) -> None:
         self._diagnostics: list[Diagnostic] = []
         self._lines: dict[str, Sequence[str]] = dict(lines or {})
+        self._counts: Counter[Severity] = Counter()
 
     def add_source(self, file: str, lines: Sequence[str]) -> None:
         """Takes a file's lines: findings in it show theirs from now on."""
@@ -51,13 +55,23 @@ class Findings:
         severity: Severity = Severity.ERROR,
     ) -> None:
         """A name that means nothing. The hint is the nearest known name, else what stands in `otherwise`."""
-        close = nearest(name, known)
+        close = nearest(name, known) if self._has_place(severity) else ""
         hint = f"Did you mean `{close}`?" if close else otherwise
         mend = Mend(span, len(name), close) if close and self._stands_at(name, span) else None
         self.add(Diagnostic(severity, code, message, span, hint, mend=mend))
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """A finding, which gets the source line it is about where it has none."""
+        """A finding, which gets the source line it is about where it has none.
+
+        Where there are very many of its severity it is left out, and the first of these says so.
+        """
+        severity = diagnostic.severity
+        self._counts[severity] += 1
+        if not self._has_place(severity):
+            if self._counts[severity] > MAX_OF_A_SEVERITY + 1:
+                return
+            message = f"there are more than {MAX_OF_A_SEVERITY} of these; the rest is not told"
+            diagnostic = Diagnostic(severity, diagnostic.code, message, diagnostic.span)
         excerpt = diagnostic.excerpt or self._excerpt(diagnostic.span)
         self._diagnostics.append(msgspec.structs.replace(diagnostic, excerpt=excerpt))
 
@@ -77,6 +91,9 @@ class Findings:
         """Returns the diagnostics by file and place; what is said twice is said once."""
         unique = dict.fromkeys(self._diagnostics)
         return tuple(sorted(unique, key=lambda diagnostic: (diagnostic.span, diagnostic.code)))
+
+    def _has_place(self, severity: Severity) -> bool:
+        return self._counts[severity] <= MAX_OF_A_SEVERITY
 
     def _line(self, span: Span) -> str:
         lines = self.lines_of(span.file)

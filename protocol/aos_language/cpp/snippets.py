@@ -2,7 +2,7 @@
 
 Reading is tolerant: whatever the text is, the answer is a `Cpp`, with faults where it does not parse. A
 snippet with bracket, quote, comment or preprocessor faults could leave its function, so nothing else of it is
-read. No names are resolved here: a mention is what is written.
+read, nor of one that takes the parser long. No names are resolved here: a mention is what is written.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import msgspec
 from aos_language.cpp.facts import Access, Call, Cpp, Declaration, DeclarationKind, Mention
 from aos_language.cpp.reader import TreeReader
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Tokens, cut
-from aos_language.cpp.tree import tree_of
+from aos_language.cpp.tree import tree_soon
 
 __all__ = [
     "Access",
@@ -74,4 +74,9 @@ def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
     if tokens.faults or is_empty:
         return Cpp(code, literals=tokens.literals, faults=tokens.faults, is_empty=is_empty)
     complete = Cpp(code).replace((offset, ";") for offset in tokens.missing_semicolons)
-    return TreeReader(code, complete, len(before), tokens).read(tree_of(before + complete + after))
+    root = tree_soon(before + complete + after)
+    if root is None:
+        whole = Extent(0, len(code), 1, 1)
+        fault = Fault(FaultKind.SIZE, "this code takes too long to read", whole, "Write less of it, or C++")
+        return Cpp(code, literals=tokens.literals, faults=(fault,))
+    return TreeReader(code, complete, len(before), tokens).read(root)

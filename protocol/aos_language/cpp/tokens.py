@@ -19,7 +19,7 @@ MAX_NESTING = 200
 
 _TOKEN = re.compile(
     r"""
-      (?P<raw>(?:u8|[uUL])?R"(?P<delimiter>[^()\\\s]{0,16})\(.*?\)(?P=delimiter)")
+      (?P<raw>(?:u8|[uUL])?R"(?P<delimiter>[^()\\\s"]{0,16})\()
     | (?P<string>(?:u8|[uUL])?"(?:[^"\\\n]|\\.)*")
     | (?P<char>(?:u8|[uUL])?'(?:[^'\\\n]|\\.)+')
     | (?P<line_comment>//(?:\\[ \t\r\f\v]*\n|[^\n])*)
@@ -70,6 +70,7 @@ class FaultKind(StrEnum):
     QUOTE = "quote"
     COMMENT = "comment"
     PREPROCESSOR = "preprocessor"
+    SIZE = "size"
     SYNTAX = "syntax"
 
 
@@ -125,6 +126,14 @@ def cut(code: str) -> Tokens:
         if kind in ("word", "other", "number", "scope"):
             continue
         extent = lines.extent(*match.span())
+        if kind == "raw":
+            closing = f'){match["delimiter"]}"'
+            end = code.find(closing, position)
+            if end < 0:
+                faults.append(Fault(FaultKind.QUOTE, "this raw string is never closed", extent))
+                break
+            position = end + len(closing)
+            extent = lines.extent(match.start(), position)
         if kind in ("raw", "string", "char"):
             literals.append(extent)
         elif kind in ("line_comment", "block_comment"):

@@ -11,6 +11,7 @@ from aos_language.reading.json_blocks import read_block
 from aos_language.reading.json_record import Record
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
+    MAX_HORIZON,
     Assignment,
     CompoundType,
     EnumType,
@@ -102,8 +103,9 @@ def _general(record: Record) -> tuple[int, float, bool]:
     is_one_state = general.boolean("OneStateModel")
     general.obsolete("Max_concurrent_actions", "One skill runs at a time")
     general.finish()
-    if horizon is not None and horizon < 1:
-        findings.error("AOS106", "the horizon must be at least 1", general.value_span("Horizon"))
+    if horizon is not None and not 1 <= horizon <= MAX_HORIZON:
+        message = f"the horizon must be from 1 to {MAX_HORIZON}"
+        findings.error("AOS106", message, general.value_span("Horizon"))
     if discount is not None and not 0.0 < discount <= 1.0:
         hint = "It must be above 0 and at most 1"
         findings.error("AOS106", f"the discount is {discount:g}", general.value_span("Discount"), hint)

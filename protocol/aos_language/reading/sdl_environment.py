@@ -20,6 +20,7 @@ from aos_language.reading.sdl_text import Part, Section, listed_values
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
+    MAX_HORIZON,
     Assignment,
     CompoundType,
     EnumType,
@@ -90,8 +91,9 @@ def _horizon(sections: Sections, findings: Findings) -> int:
     number = read_number(section, findings)
     if number is None:
         return 1
-    if number != int(number) or number < 1:
-        findings.error("AOS106", "the horizon must be an integer of at least 1", section.value.span)
+    if number != int(number) or not 1 <= number <= MAX_HORIZON:
+        message = f"the horizon must be an integer from 1 to {MAX_HORIZON}"
+        findings.error("AOS106", message, section.value.span)
         return 1
     return int(number)
 

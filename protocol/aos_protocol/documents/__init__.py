@@ -16,6 +16,7 @@ from aos_protocol.documents.code import (
     TemporaryVariable,
 )
 from aos_protocol.documents.environment import (
+    MAX_HORIZON,
     CompoundType,
     EnumType,
     Environment,
@@ -54,6 +55,7 @@ from aos_protocol.documents.skill_model import (
 
 __all__ = [
     "ACTIVATION_KINDS",
+    "MAX_HORIZON",
     "NO_ACTIVATION",
     "AbstractionMapping",
     "Activation",

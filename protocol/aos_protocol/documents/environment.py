@@ -8,6 +8,7 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents.code import Assignment, Snippet
 
 __all__ = [
+    "MAX_HORIZON",
     "CompoundType",
     "EnumType",
     "Environment",
@@ -16,6 +17,9 @@ __all__ = [
     "SpecialState",
     "StateVariable",
 ]
+
+MAX_HORIZON = 10_000
+"""Searches call themselves for each decision that they look ahead."""
 
 
 class EnumType(msgspec.Struct, frozen=True):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 import shutil
 import tempfile
@@ -17,6 +18,8 @@ from aos_protocol.errors import DocumentError, StorageError
 
 __all__ = ["ProjectEntry", "files_of_upload", "keep_project", "kept_projects"]
 
+_LONGEST_NAME_BYTES = 200
+_LONGEST_ROBOT = 64
 _ENDINGS = "Documents end in .ef, .sd, .am, .lf or .json, archives in .zip, .tar or .tar.gz"
 
 
@@ -33,6 +36,8 @@ def files_of_upload(name: str, body: bytes) -> tuple[dict[str, bytes], list[Diag
     file.
     """
     plain = Path(name).name
+    if not plain.isprintable() or len(plain.encode()) > _LONGEST_NAME_BYTES:
+        raise DocumentError(f"{plain!r} is a name that no document has", code="AOS107", hint=_ENDINGS)
     if is_archive_name(plain):
         with tempfile.TemporaryDirectory(prefix="aos-upload-") as folder:
             path = Path(folder) / plain
@@ -47,7 +52,10 @@ def keep_project(folder: Path, project: str, files: Mapping[str, bytes]) -> Proj
     """Writes a bundle with a deploy file that plays it by its documents, in place of an older one of that
     name.
     """
-    name = re.sub(r"[^A-Za-z0-9_-]", "-", project)[:64]
+    name = re.sub(r"[^A-Za-z0-9_-]", "-", project)[:_LONGEST_ROBOT]
+    if name != project:  # Another project may look the same so.
+        digest = hashlib.blake2b(project.encode(), digest_size=4).hexdigest()
+        name = f"{name[: _LONGEST_ROBOT - len(digest) - 1]}-{digest}"
     target = folder / "projects" / name
     deploy_file = target / f"{name}.yaml"
     try:

@@ -10,6 +10,7 @@ from pathlib import Path
 from watchfiles import awatch
 
 from aos_language.archive import is_archive_name
+from aos_protocol.errors import StorageError
 
 __all__ = ["watch_for_bundles"]
 
@@ -25,7 +26,7 @@ async def watch_for_bundles(
 
     First come those that are there, then each that has changed, and what else is put into `changed`. A bundle
     is taken once nothing changed for `quiet_s`, so that it is not read while it is being copied, and again
-    after later changes.
+    after later changes. StorageError AOS701 for a folder that cannot be looked into.
     """
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(_follow(folder, changed, quiet_s))
@@ -38,14 +39,26 @@ async def watch_for_bundles(
 
 async def _follow(folder: Path, changed: asyncio.Queue[Path], quiet_s: float) -> None:
     step, debounce = int(quiet_s * 1000), int(_LONGEST_WAIT_S * 1000)
-    async for batch in awatch(folder, step=step, debounce=debounce):
-        touched = {_bundle_of(folder, Path(path)) for _, path in batch}
-        for path in sorted(path for path in touched if path is not None and _may_be_bundle(path)):
-            changed.put_nowait(path)
+    try:
+        async for batch in awatch(folder, step=step, debounce=debounce):
+            touched = {_bundle_of(folder, Path(path)) for _, path in batch}
+            for path in sorted(path for path in touched if path is not None and _may_be_bundle(path)):
+                changed.put_nowait(path)
+    except OSError as error:
+        raise _unwatched(folder, error) from error
 
 
 def _bundles_in(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if _may_be_bundle(path) and not path.name.startswith("."))
+    try:
+        inside = [path for path in folder.iterdir() if not path.name.startswith(".")]
+    except OSError as error:
+        raise _unwatched(folder, error) from error
+    return sorted(path for path in inside if _may_be_bundle(path))
+
+
+def _unwatched(folder: Path, error: OSError) -> StorageError:
+    text = f"the folder {folder} cannot be watched: {error.strerror or error}"
+    return StorageError(text, code="AOS701", hint="Name another one by `watch:`")
 
 
 def _may_be_bundle(path: Path) -> bool:
