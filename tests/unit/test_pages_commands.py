@@ -18,7 +18,7 @@ PAGES = [
     *(page for page in (ROOT / "docs").rglob("*.md") if "experiments" not in page.parts),
 ]
 TYPED = re.compile(r"`([^`\n]+)`|^\s*(?:\$ )?((?:\.venv/bin/)?aos(?:-up)? (?!=)[^\n]*)$", re.MULTILINE)
-"""What stands as code in a line, and the lines of blocks that begin with a command."""
+"""Code within a line, and the lines of blocks that begin with a command."""
 CALL = re.compile(r"(?:\.venv/bin/)?(aos|aos-up) +(.*)")
 
 Words = tuple[str, ...]
