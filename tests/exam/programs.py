@@ -26,7 +26,7 @@ async def built_program(cache_dir: Path, source: Path, *options: str, includes: 
     """
     compiler = await find_compiler()
     folders = [source.parent, *includes]
-    more = [*options, *(f"-I{folder}" for folder in folders)]
+    more = [*options, *compiler.without_collections, *(f"-I{folder}" for folder in folders)]
     engine = await build_engine(cache_dir, compiler=compiler)
 
     async def make(staging: Path) -> None:

@@ -66,7 +66,7 @@ ENGINE_SHARE = 1 / 20
 LINES_PER_CPU_S = 150
 """A quick build may take `MODEL_CPU_S` of processor time, or `ENGINE_SHARE` of the engine's where that is
 more, and a second more for `LINES_PER_CPU_S` lines. A model of 200 lines takes half a second, of 700 lines up
-to 3 s, all parts of the engine 40 s."""
+to 3 s, all parts of the engine 35 s."""
 
 _ENGINE_DEADLINES = 5
 """The engine has so many times a model's deadline: our own sources are known to end, and only a busy machine

@@ -28,31 +28,22 @@ inline constexpr std::array<std::uint8_t, 256> base64_values = [] {
   return values;
 }();
 
-}  // namespace detail
-
-template <class Number>
-std::string to_base64(const std::vector<Number>& numbers) {
-  static_assert(std::is_arithmetic_v<Number>);
-  const auto* bytes = reinterpret_cast<const unsigned char*>(numbers.data());
-  const std::size_t size = numbers.size() * sizeof(Number);
+inline std::string base64_of(const unsigned char* bytes, std::size_t size) {
   std::string text;
   text.reserve((size + 2) / 3 * 4);
   for (std::size_t at = 0; at < size; at += 3) {
     const std::size_t left = size - at;
     const unsigned group = static_cast<unsigned>(bytes[at]) << 16 | (left > 1 ? static_cast<unsigned>(bytes[at + 1]) << 8 : 0) |
                            (left > 2 ? static_cast<unsigned>(bytes[at + 2]) : 0);
-    text += detail::base64_digits[group >> 18];
-    text += detail::base64_digits[group >> 12 & 63];
-    text += left > 1 ? detail::base64_digits[group >> 6 & 63] : '=';
-    text += left > 2 ? detail::base64_digits[group & 63] : '=';
+    text += base64_digits[group >> 18];
+    text += base64_digits[group >> 12 & 63];
+    text += left > 1 ? base64_digits[group >> 6 & 63] : '=';
+    text += left > 2 ? base64_digits[group & 63] : '=';
   }
   return text;
 }
 
-// Returns nothing if the text is not base64, or if its bytes do not fill a whole number of `Number`s.
-template <class Number>
-std::optional<std::vector<Number>> from_base64(std::string_view text) {
-  static_assert(std::is_arithmetic_v<Number>);
+inline std::optional<std::vector<unsigned char>> bytes_of_base64(std::string_view text) {
   if (text.size() % 4 != 0) return std::nullopt;
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   std::vector<unsigned char> bytes;
@@ -60,8 +51,8 @@ std::optional<std::vector<Number>> from_base64(std::string_view text) {
   unsigned group = 0;
   int bits = 0;
   for (const char character : text) {
-    const std::uint8_t value = detail::base64_values[static_cast<unsigned char>(character)];
-    if (value == detail::no_digit) return std::nullopt;
+    const std::uint8_t value = base64_values[static_cast<unsigned char>(character)];
+    if (value == no_digit) return std::nullopt;
     group = group << 6 | value;
     bits += 6;
     if (bits >= 8) {
@@ -70,9 +61,25 @@ std::optional<std::vector<Number>> from_base64(std::string_view text) {
       group &= (1u << bits) - 1;
     }
   }
-  if (bytes.size() % sizeof(Number) != 0) return std::nullopt;
-  std::vector<Number> numbers(bytes.size() / sizeof(Number));
-  if (!bytes.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  return bytes;
+}
+
+}  // namespace detail
+
+template <class Number>
+std::string to_base64(const std::vector<Number>& numbers) {
+  static_assert(std::is_arithmetic_v<Number>);
+  return detail::base64_of(reinterpret_cast<const unsigned char*>(numbers.data()), numbers.size() * sizeof(Number));
+}
+
+// Returns nothing if the text is not base64, or if its bytes do not fill a whole number of `Number`s.
+template <class Number>
+std::optional<std::vector<Number>> from_base64(std::string_view text) {
+  static_assert(std::is_arithmetic_v<Number>);
+  const auto bytes = detail::bytes_of_base64(text);
+  if (!bytes || bytes->size() % sizeof(Number) != 0) return std::nullopt;
+  std::vector<Number> numbers(bytes->size() / sizeof(Number));
+  if (!bytes->empty()) std::memcpy(numbers.data(), bytes->data(), bytes->size());
   return numbers;
 }
 

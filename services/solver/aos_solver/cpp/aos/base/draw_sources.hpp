@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <type_traits>
 
 #include "aos/base/directed.hpp"
@@ -79,6 +81,98 @@ int Enumerator::choose(const double* weights, int count, double total) {
 double Enumerator::uniform() {
   if (!luck_) throw NotEnumerable{"a draw is continuous"};
   return drawn_.uniform();
+}
+
+double Enumerator::walk(Run run, Run visit, int max_paths, std::size_t max_depth_first) {
+  has_loops_ = false;
+  is_listing_ = is_cutting_ = true;
+  visits_ = 1;
+  paths_left_ = max_paths;
+  const auto visit_end = [&] { visit(*this); };
+  start_from(LoopChain::start);
+  double left_out = walk_on(run, visit_end, max_depth_first);
+  if (!has_loops_) return left_out;
+  chain_.end(LoopChain::start, 0, 0);
+  try {
+    left_out += list_heads(run, max_depth_first);
+  } catch (const TooManyHeads&) {
+    return walk_without_cuts(run, visit, max_paths, max_depth_first);
+  }
+  is_listing_ = false;
+  paths_left_ = max_paths;
+  for (LoopChain::Number head = LoopChain::start + 1; head < chain_.size(); ++head) {
+    if (!chain_.has_ends(head)) continue;
+    visits_ = chain_.visits(head);
+    start_from(head);
+    walk_on(run, visit_end, max_depth_first);
+  }
+  return left_out;
+}
+
+double Enumerator::walk_without_cuts(Run run, Run visit, int max_paths, std::size_t max_depth_first) {
+  is_cutting_ = false;
+  paths_left_ = max_paths;
+  start_from(LoopChain::start);
+  const auto visit_end = [&] {
+    if (has_arrived_) visit(*this);
+  };
+  return walk_on(run, visit_end, max_depth_first);
+}
+
+double Enumerator::list_heads(Run run, std::size_t max_depth_first) {
+  const bool is_nearly = max_depth_first < std::numeric_limits<std::size_t>::max();
+  while (chain_.is_waiting()) {
+    if (is_nearly && chain_.waiting() <= negligible_paths && chain_.settle() <= negligible_paths) break;
+    if (paths_left_ <= 0) {
+      if (!is_nearly || chain_.settle() > max_left_out) throw TooManyHeads{};
+      break;
+    }
+    const LoopChain::Number head = chain_.likeliest();
+    start_from(head);
+    chain_.begin(head);
+    double ends = 0;
+    const double lost = walk_on(run, [&] { ends += probability_; }, max_depth_first);
+    chain_.end(head, ends, lost);
+    if (chain_.is_too_large()) throw TooManyHeads{};
+  }
+  return chain_.settle();
+}
+
+double Enumerator::walk_on(Run run, End at_end, std::size_t max_depth_first) {
+  start();
+  do {
+    if (--paths_left_ < 0) give_up();
+    run_once(run, at_end);
+    if (depth_ > max_depth_first) return best_first(run, at_end);
+  } while (advance());
+  return 0;
+}
+
+void Enumerator::run_once(Run run, End at_end) {
+  depth_ = 0;
+  probability_ = 1;
+  if (has_loops_) begin_run_with_loops();
+  if (luck_) drawn_ = Sampler{*luck_};
+  begin_numbers();
+  try {
+    run(*this);
+  } catch (const CutPath&) {
+    return;
+  }
+  at_end();
+}
+
+double Enumerator::best_first(Run run, End at_end) {
+  if (!advance()) return 0;
+  begin_best_first();
+  for (; paths_left_ > 0 && nodes_.size() < max_frontier; --paths_left_) {
+    run_once(run, at_end);
+    put_off();
+    if (begun_.empty() || waiting_ + dropped_ <= negligible_paths) return waiting_ + dropped_;
+    take_likeliest();
+  }
+  if (waiting_ + dropped_ > max_left_out) throw NotEnumerable{"loops that draw have more paths than can be walked"};
+  return waiting_ + dropped_;
 }
 
 void Enumerator::start() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aos/base/directed.hpp"
+#include "aos/base/function_ref.hpp"
 #include "aos/base/loop_chain.hpp"
 #include "aos/base/loop_heads.hpp"
 #include "aos/base/random.hpp"
@@ -59,18 +60,18 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   // of the discrete draws under this luck.
   void leave_numbers_to(std::uint64_t luck) { luck_ = luck; }
 
+  using Run = FunctionRef<void(Enumerator&)>;
+
   // Calls `run(enumerator)` for each path, and `visit(enumerator)` once its end has been reached; `probability()` is
   // the path's then. `run` may run model code and keep its result. Some runs are cut short or are not visited. Throws
   // NotEnumerable.
-  template <class Run, class Visit>
-  void for_each_path(Run&& run, Visit&& visit, int max_paths = path_budget) {
+  void for_each_path(Run run, Run visit, int max_paths = path_budget) {
     walk(run, visit, max_paths, std::numeric_limits<std::size_t>::max());
   }
 
   // Does the same, but leaves out negligible paths of loops without end. Returns the probability of the paths that were
   // not walked, which is at most `max_left_out`. Throws NotEnumerable.
-  template <class Run, class Visit>
-  double for_nearly_each_path(Run&& run, Visit&& visit, int max_paths = path_budget) {
+  double for_nearly_each_path(Run run, Run visit, int max_paths = path_budget) {
     return walk(run, visit, max_paths, max_draws_depth_first);
   }
 
@@ -113,109 +114,22 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   // Goes to the next path, depth first. Returns false after the last one.
   bool advance();
 
-  template <class Run, class Visit>
-  double walk(Run& run, Visit& visit, int max_paths, std::size_t max_depth_first) {
-    has_loops_ = false;
-    is_listing_ = is_cutting_ = true;
-    visits_ = 1;
-    paths_left_ = max_paths;
-    const auto visit_end = [&] { visit(*this); };
-    start_from(LoopChain::start);
-    double left_out = walk_on(run, visit_end, max_depth_first);
-    if (!has_loops_) return left_out;
-    chain_.end(LoopChain::start, 0, 0);
-    try {
-      left_out += list_heads(run, max_depth_first);
-    } catch (const TooManyHeads&) {
-      return walk_without_cuts(run, visit, max_paths, max_depth_first);
-    }
-    is_listing_ = false;
-    paths_left_ = max_paths;
-    for (LoopChain::Number head = LoopChain::start + 1; head < chain_.size(); ++head) {
-      if (!chain_.has_ends(head)) continue;
-      visits_ = chain_.visits(head);
-      start_from(head);
-      walk_on(run, visit_end, max_depth_first);
-    }
-    return left_out;
-  }
+  using End = FunctionRef<void()>;
 
+  double walk(Run run, Run visit, int max_paths, std::size_t max_depth_first);
   // Walks the paths that were cut before.
-  template <class Run, class Visit>
-  double walk_without_cuts(Run& run, Visit& visit, int max_paths, std::size_t max_depth_first) {
-    is_cutting_ = false;
-    paths_left_ = max_paths;
-    start_from(LoopChain::start);
-    const auto visit_end = [&] {
-      if (has_arrived_) visit(*this);
-    };
-    return walk_on(run, visit_end, max_depth_first);
-  }
-
+  double walk_without_cuts(Run run, Run visit, int max_paths, std::size_t max_depth_first);
   // Lists what follows each head. Returns the probability of what is not listed.
-  template <class Run>
-  double list_heads(Run& run, std::size_t max_depth_first) {
-    const bool is_nearly = max_depth_first < std::numeric_limits<std::size_t>::max();
-    while (chain_.is_waiting()) {
-      if (is_nearly && chain_.waiting() <= negligible_paths && chain_.settle() <= negligible_paths) break;
-      if (paths_left_ <= 0) {
-        if (!is_nearly || chain_.settle() > max_left_out) throw TooManyHeads{};
-        break;
-      }
-      const LoopChain::Number head = chain_.likeliest();
-      start_from(head);
-      chain_.begin(head);
-      double ends = 0;
-      const double lost = walk_on(run, [&] { ends += probability_; }, max_depth_first);
-      chain_.end(head, ends, lost);
-      if (chain_.is_too_large()) throw TooManyHeads{};
-    }
-    return chain_.settle();
-  }
-
+  double list_heads(Run run, std::size_t max_depth_first);
   // Walks the paths from the head on, up to their ends or other heads. Returns the probability of those not walked.
-  template <class Run, class End>
-  double walk_on(Run& run, End&& at_end, std::size_t max_depth_first) {
-    start();
-    do {
-      if (--paths_left_ < 0) give_up();
-      run_once(run, at_end);
-      if (depth_ > max_depth_first) return best_first(run, at_end);
-    } while (advance());
-    return 0;
-  }
+  double walk_on(Run run, End at_end, std::size_t max_depth_first);
 
   [[noreturn]] void give_up() const;
   void begin_run_with_loops();
   int choose_given();
-  template <class Run, class End>
-  void run_once(Run& run, End& at_end) {
-    depth_ = 0;
-    probability_ = 1;
-    if (has_loops_) begin_run_with_loops();
-    if (luck_) drawn_ = Sampler{*luck_};
-    begin_numbers();
-    try {
-      run(*this);
-    } catch (const CutPath&) {
-      return;
-    }
-    at_end();
-  }
+  void run_once(Run run, End at_end);
 
-  template <class Run, class End>
-  double best_first(Run& run, End& at_end) {
-    if (!advance()) return 0;
-    begin_best_first();
-    for (; paths_left_ > 0 && nodes_.size() < max_frontier; --paths_left_) {
-      run_once(run, at_end);
-      put_off();
-      if (begun_.empty() || waiting_ + dropped_ <= negligible_paths) return waiting_ + dropped_;
-      take_likeliest();
-    }
-    if (waiting_ + dropped_ > max_left_out) throw NotEnumerable{"loops that draw have more paths than can be walked"};
-    return waiting_ + dropped_;
-  }
+  double best_first(Run run, End at_end);
   void begin_best_first();
   // Stores the paths that branch off the one just walked.
   void put_off();

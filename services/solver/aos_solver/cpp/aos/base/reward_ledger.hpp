@@ -18,11 +18,7 @@ class RewardLedger {
     terms_.clear();
     of_phase_ = 0;
   }
-  void add(std::uint32_t place, double amount, const char* skill = nullptr) {
-    if (amount == 0) return;
-    terms_.push_back({place, skill, amount});
-    of_phase_ += amount;
-  }
+  void add(std::uint32_t place, double amount, const char* skill = nullptr);
   // Ends a phase of the step: what its reward has beyond the terms of its statements is given to a place.
   void end_phase(std::uint32_t place, double reward, const char* skill = nullptr) {
     add(place, reward - of_phase_, skill);

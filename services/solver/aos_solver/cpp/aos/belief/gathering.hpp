@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "aos/base/function_ref.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/base/random.hpp"
 
@@ -18,8 +19,9 @@ struct Particle {
 };
 
 // Calls `visit(state)` for states at even distances in the cumulative weights, from a random start (systematic sampling).
-template <class Model, class Visit>
-void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t count, Sampler& random, Visit&& visit) {
+template <class Model>
+void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t count, Sampler& random,
+                 FunctionRef<void(const typename Model::State&)> visit) {
   double total = 0;
   for (const auto& particle : particles) total += particle.weight;
   const double distance = total / static_cast<double>(count);

@@ -27,6 +27,7 @@
 #include <string_view>
 #include <vector>
 
+#include "aos/base/function_ref.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
 #include "aos/base/text_order.hpp"
@@ -68,10 +69,11 @@ class GuidedStep {
   // How many steps were run so far.
   std::size_t runs() const { return runs_; }
 
+  using Visit = FunctionRef<void(const State& next, double weight, const std::vector<double>& values)>;
+
   // Calls `visit(next, weight, values)` for steps from a state that agree with the observation. `values` are
   // all draws of a step. Returns the sum of the weights.
-  template <class Visit>
-  double from(const State& state, Visit&& visit, int branches = max_branches) {
+  double from(const State& state, Visit visit, int branches = max_branches) {
     const WholeText whole{text_};
     start_ = &state;
     values_.clear();
@@ -212,8 +214,7 @@ class GuidedStep {
   }
 
   // Follows the step from the draws in `values_` on. Returns the sum of the weights.
-  template <class Visit>
-  double follow(double weight, int branches, Visit& visit) {
+  double follow(double weight, int branches, Visit visit) {
     std::vector<Alternative> alternatives;
     if (values_.size() >= by_chance_ + max_guided_draws) {
       is_exhaustive_ = false;
@@ -240,17 +241,15 @@ class GuidedStep {
     return follow_one(alternatives, promises, weight, branches, visit);
   }
 
-  template <class Visit>
-  double visited(double weight, const std::vector<double>& values, Visit& visit) {
+  double visited(double weight, const std::vector<double>& values, Visit visit) {
     weight *= replay_.weight();
     if (weight > 0) visit(next_, weight, values);
     return weight;
   }
 
   // Follows each promising alternative, and now and then one of the others.
-  template <class Visit>
   double follow_all(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
-                    int branches, Visit& visit) {
+                    int branches, Visit visit) {
     double sum = 0;
     std::vector<double> others;
     for (std::size_t i = 0; i < alternatives.size(); ++i) {
@@ -263,9 +262,8 @@ class GuidedStep {
   }
 
   // Follows one promising alternative, or now and then one of the others.
-  template <class Visit>
   double follow_one(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
-                    int branches, Visit& visit) {
+                    int branches, Visit visit) {
     std::vector<double> promising = promises;
     std::vector<double> others = promises;
     bool is_mixed = false;
@@ -279,9 +277,8 @@ class GuidedStep {
     return follow_drawn(alternatives, promising, weight / (1 - misled), visit, branches);
   }
 
-  template <class Visit>
   double follow_drawn(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
-                      Visit& visit, int branches = 1) {
+                      Visit visit, int branches = 1) {
     std::vector<double> shares;
     double total = 0;
     for (std::size_t i = 0; i < alternatives.size(); ++i) {
@@ -294,8 +291,7 @@ class GuidedStep {
     return follow_at(alternatives[chosen], weight * total / promises[chosen], branches, visit);
   }
 
-  template <class Visit>
-  double follow_at(const Alternative& alternative, double weight, int branches, Visit& visit) {
+  double follow_at(const Alternative& alternative, double weight, int branches, Visit visit) {
     values_.push_back(alternative.value);
     const double sum = follow(weight, branches, visit);
     values_.pop_back();

@@ -17,6 +17,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/model/values.hpp"
 
@@ -175,8 +176,7 @@ class Marginals {
     const std::size_t share = max_in_all / std::max<std::size_t>(variables_.size(), 1);
     const std::size_t max_values = std::clamp<std::size_t>(share, 1, max_of_one);
     for (Variable& variable : variables_) {
-      std::stable_sort(variable.values.begin(), variable.values.end(),
-                       [](const Value& left, const Value& right) { return left.weight > right.weight; });
+      sort_stably(variable.values, [](const Value& left, const Value& right) { return left.weight > right.weight; });
       variable.texts.resize(std::min(max_values, variable.values.size()));
     }
   }

@@ -261,7 +261,8 @@ class ParticleFilter {
     });
     const double price = static_cast<double>(guided.runs() - runs_before) / price_count;
     std::vector<double> sorted = shares;
-    std::sort(sorted.begin(), sorted.end(), std::greater<>{});
+    std::sort(sorted.begin(), sorted.end());
+    std::reverse(sorted.begin(), sorted.end());
     double light = 1 - nearly_all;
     std::size_t covered = sorted.size();
     while (covered > 0 && (light -= sorted[covered - 1]) > 0) --covered;

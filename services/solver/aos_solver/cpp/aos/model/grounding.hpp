@@ -28,9 +28,16 @@ struct GroundedAction {
   const ActionWords* words = nullptr;
 };
 
+// What makes and destroys them is compiled with the engine.
 struct GroundedActions {
   std::vector<GroundedAction> actions;
   std::deque<ActionWords> words;  // the elements of a deque stay where they are
+
+  GroundedActions();
+  GroundedActions(const GroundedActions&) = delete;
+  GroundedActions& operator=(const GroundedActions&) = delete;
+  ~GroundedActions();
+  void clear();
 };
 
 template <class Skill>

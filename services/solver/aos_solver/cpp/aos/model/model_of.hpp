@@ -108,8 +108,8 @@ class ModelOf {
     set_default_values(draft, draws);
     Project::set_constants(draft);
     prepared_.start = draft;
-    prepared_.grounded = {};
-    prepared_.monitors = {};
+    prepared_.grounded.clear();
+    prepared_.monitors.clear();
     ground(Skills{}, draft);
     if (prepared_.grounded.actions.empty()) throw ModelFault{"AOS119", "no skill has a grounded action"};
     blame::at(0);
@@ -222,9 +222,7 @@ class ModelOf {
   // The variables that are the same in all states, as text.
   static SavedConstants save_constants() {
     SavedConstants saved;
-    for (const Member& member : Project::variables) {
-      if (member.constant != nullptr) saved.add(member.name, AnyValue{member.constant, member.visit});
-    }
+    saved.add_all(Project::variables);
     return saved;
   }
   // Both texts may come from documents in which other variables were constants.

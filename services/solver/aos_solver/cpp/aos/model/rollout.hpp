@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 #include "aos/base/build_kind.hpp"
 #include "aos/base/random.hpp"
@@ -21,6 +20,9 @@ inline constexpr double heuristic_ending = 0.75;
 // Rollouts that repeat also put off an end that earns nothing, such as an exit or an accident, by drawing another action
 // (anti-decisive moves: Teytaud and Teytaud, 2010). Where an exit is open at every step, few other rollouts get far.
 inline constexpr double share_of_repeating = 0.5;
+
+// Memory of this thread for so many weights of a rollout policy. It is defined with the engine, so that models compile sooner.
+double* memory_for_weights(std::size_t count);
 
 // How many times a random walk takes its next action (Dabney, Ostrovski and Barreto, 2021).
 inline int drawn_repeats(Sampler& random) { return 1 << random.below(4); }
@@ -93,10 +95,9 @@ void rollout_odds(const typename Model::State& state, double* odds, int count, S
 // The discounted return of at most `left` steps from `start` on. `left` becomes the number of steps that were not taken.
 template <class Model>
 AOS_INLINING_ALL double rollout(const typename Model::State& start, int& left, Sampler& random) {
-  thread_local std::vector<double> sums_of_weights;
   const int count = Model::action_count();
-  if constexpr (Model::has_rollout_policy) sums_of_weights.resize(static_cast<std::size_t>(count));
-  double* const sums = sums_of_weights.data();
+  double* sums = nullptr;
+  if constexpr (Model::has_rollout_policy) sums = memory_for_weights(static_cast<std::size_t>(count));
   Sampler draws = random;  // nothing points to it, so a compiler keeps it in registers
   ModelSource<Sampler> model_draws{draws};
   typename Model::State state = start;

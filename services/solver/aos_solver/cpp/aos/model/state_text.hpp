@@ -97,6 +97,8 @@ constexpr Member constant_member(const char* name, const T& constant) {
 class SavedConstants {
  public:
   void add(std::string_view name, AnyValue value);
+  // Adds those of the variables that are constants.
+  void add_all(std::span<const Member> members);
   void add_text(std::string_view name, std::string_view text);
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
 

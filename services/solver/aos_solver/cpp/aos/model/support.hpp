@@ -9,16 +9,19 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "aos/base/distribution_functions.hpp"
 #include "aos/base/draw_sources.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/reward_ledger.hpp"
 #include "aos/model/containers.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/named_array.hpp"
 #include "aos/model/reporting.hpp"
+#include "aos/model/rollout.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/text.hpp"
 #include "aos/model/transition.hpp"
@@ -88,6 +91,25 @@ std::string_view observation_text(Observation number) {
   const auto& texts = detail::observed_texts();
   const auto known = texts.find(number);
   return known == texts.end() ? std::string_view{} : std::string_view{known->second};
+}
+
+void RewardLedger::add(std::uint32_t place, double amount, const char* skill) {
+  if (amount == 0) return;
+  terms_.push_back({place, skill, amount});
+  of_phase_ += amount;
+}
+
+double* memory_for_weights(std::size_t count) {
+  thread_local std::vector<double> weights;
+  weights.resize(count);
+  return weights.data();
+}
+
+GroundedActions::GroundedActions() = default;
+GroundedActions::~GroundedActions() = default;
+void GroundedActions::clear() {
+  actions.clear();
+  words.clear();
 }
 
 void Groundings::add(std::initializer_list<Argument> arguments, const void* parameters) {

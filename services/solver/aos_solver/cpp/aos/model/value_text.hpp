@@ -225,6 +225,11 @@ void SavedConstants::add(std::string_view name, AnyValue value) {
   add_text(name, text.text());
 }
 
+void SavedConstants::add_all(std::span<const Member> members) {
+  for (const Member& member : members) {
+    if (member.constant != nullptr) add(member.name, AnyValue{member.constant, member.visit});
+  }
+}
 void SavedConstants::add_text(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
 
 void SavedConstants::read(const Member& member, void* state, StateReader& text) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
@@ -41,7 +42,7 @@ void sort_by_observation(std::vector<Element>& elements, std::size_t first, std:
   const auto begin = elements.begin() + static_cast<std::ptrdiff_t>(first);
   const auto end = elements.begin() + static_cast<std::ptrdiff_t>(last);
   const auto is_before = [](const Element& left, const Element& right) { return left.observation < right.observation; };
-  if (!std::is_sorted(begin, end, is_before)) std::stable_sort(begin, end, is_before);
+  if (!std::is_sorted(begin, end, is_before)) sort_stably(begin, end, is_before);
 }
 
 // The end of the elements that have the observation of the one at `start`.

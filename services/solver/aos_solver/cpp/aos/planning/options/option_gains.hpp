@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"
@@ -120,7 +121,7 @@ class OptionGains {
       const double earned = earned_by(o);
       if (earned > 0) candidates_.push_back({o, income<Model>(earned, (*options_)[o].size()), earned});
     }
-    std::ranges::stable_sort(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
+    sort_stably(candidates_, [](const Candidate& one, const Candidate& other) { return one.income > other.income; });
     double sum = 0;
     double discount = 1;
     chosen_.clear();

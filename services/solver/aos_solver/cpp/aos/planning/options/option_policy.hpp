@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
@@ -136,7 +137,7 @@ class OptionPolicy {
       if (barred.contains(static_cast<std::size_t>(option.front()))) continue;
       incomes.emplace_back(income<Model>(gains_.earned(o, belief_.weights()), option.size()), o);
     }
-    std::ranges::stable_sort(incomes, std::greater<>{}, [](const auto& entry) { return entry.first; });
+    sort_stably(incomes, [](const auto& one, const auto& other) { return one.first > other.first; });
     std::vector<std::size_t> options;
     for (std::size_t i = 0; i < std::min(tried_options, incomes.size()); ++i) options.push_back(incomes[i].second);
     return options;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 #include "aos/planning/values/seen_cells.hpp"
@@ -95,6 +96,7 @@ class OptionSearch {
     double once;    // when it was found
     double income;
   };
+  static constexpr auto has_more_income = [](const auto& one, const auto& other) { return one.income > other.income; };
 
   // The shortest ways are found first. Where they have needed luck, longer ones are tried, too.
   std::vector<Option> searched(const State& start, int width, double& steps, Sampler& random) {
@@ -102,7 +104,7 @@ class OptionSearch {
     if (!found_.empty() && (ways.empty() || ways.front().earned < needs_luck * ways.front().once)) {
       const std::vector<Way> longer = confirmed(start, found_within(start, width, longer_by, steps, random), steps, random);
       ways.insert(ways.end(), longer.begin(), longer.end());
-      std::ranges::stable_sort(ways, std::greater<>{}, &Way::income);
+      sort_stably(ways, has_more_income);
     }
     std::vector<Option> options;
     for (Way& way : ways) options.push_back(std::move(way.option));
@@ -138,10 +140,10 @@ class OptionSearch {
         }
       }
     }
-    std::ranges::stable_sort(found_, std::greater<>{}, &Found::income);
+    sort_stably(found_, has_more_income);
     // Those that are no longer among the first may still earn most.
     if (found_.size() > max_found) {
-      std::stable_sort(found_.begin() + static_cast<std::ptrdiff_t>(max_found), found_.end(), [](const Found& one, const Found& other) { return one.earned > other.earned; });
+      sort_stably(found_.begin() + static_cast<std::ptrdiff_t>(max_found), found_.end(), [](const Found& one, const Found& other) { return one.earned > other.earned; });
       found_.resize(std::min(found_.size(), max_found + max_dear));
     }
     return found_;
@@ -162,7 +164,7 @@ class OptionSearch {
       steps -= tries * static_cast<double>(way.option.size());
       if (way.earned > 0) ways.push_back(std::move(way));
     }
-    std::ranges::stable_sort(ways, std::greater<>{}, &Way::income);
+    sort_stably(ways, has_more_income);
     return ways;
   }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/option_regret.hpp"
@@ -52,7 +53,7 @@ class OptionTests {
       informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
       if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
     }
-    std::ranges::stable_sort(tests_, std::greater<>{}, &Test::information);
+    sort_stably(tests_, [](const Test& one, const Test& other) { return one.information > other.information; });
   }
 
   bool empty() const { return tests_.empty(); }

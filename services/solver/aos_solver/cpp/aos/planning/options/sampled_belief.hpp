@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "aos/base/function_ref.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
@@ -17,8 +18,7 @@ namespace aos {
 using StateWeights = std::vector<double>;  // by state; they sum to 1
 
 // Calls `use` with the numbers of so many states, drawn at even distances in the weights.
-template <class Use>
-void draw_states(const StateWeights& weights, int count, Sampler& random, Use&& use) {
+inline void draw_states(const StateWeights& weights, int count, Sampler& random, FunctionRef<void(std::size_t)> use) {
   double place = random.uniform() / count;
   double below = 0;
   std::size_t k = 0;

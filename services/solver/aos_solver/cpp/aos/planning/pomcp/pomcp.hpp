@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
+#include "aos/base/function_ref.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
@@ -170,8 +171,7 @@ class Pomcp final : public TreePlanner<Model> {
   }
 
   // Searches below one action, or from the root if that is -1.
-  template <class Ends>
-  std::uint64_t search_below(int first, const Question<Model>& question, Sampler& random, Ends&& is_over) {
+  std::uint64_t search_below(int first, const Question<Model>& question, Sampler& random, FunctionRef<bool()> is_over) {
     const Belief<Model>& belief = question.belief;
     const Budget budget = question.budget;
     const int horizon = question.horizon;

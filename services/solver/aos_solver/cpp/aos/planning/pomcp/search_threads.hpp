@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
+#include "aos/base/function_ref.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
@@ -44,9 +45,9 @@ class SearchThreads {
 
   // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or
   // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch.
-  template <class StartState, class IsOver>
-  std::uint64_t simulate(StartState&& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
-                         int first, IsOver&& is_over) {
+  template <class StartState>
+  std::uint64_t simulate(const StartState& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
+                         int first, FunctionRef<bool()> is_over) {
     std::vector<Work> works(trees_.size());
     {
       std::vector<std::jthread> others;
@@ -87,9 +88,9 @@ class SearchThreads {
     return budget;
   }
 
-  template <class StartState, class IsOver>
+  template <class StartState>
   static Work work(Tree& tree, const StartState& start_state, Budget budget, Operations each,
-                   PlanningClock::time_point start, Sampler& random, int first, IsOver&& is_over) {
+                   PlanningClock::time_point start, Sampler& random, int first, FunctionRef<bool()> is_over) {
     constexpr std::uint64_t between_looks = 64;
     constexpr Operations start_cost = 30;
     Work done;

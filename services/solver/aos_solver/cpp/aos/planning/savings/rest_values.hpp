@@ -14,6 +14,7 @@
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/cell_tables.hpp"
@@ -95,7 +96,7 @@ class RestValues {
         const StepLuck luck{random};
         for (const int action : actions) sums[static_cast<std::size_t>(action)] += returned(action, state, luck);
       }
-      std::ranges::stable_sort(actions, [&](int one, int other) { return sums[static_cast<std::size_t>(one)] > sums[static_cast<std::size_t>(other)]; });
+      sort_stably(actions, [&](int one, int other) { return sums[static_cast<std::size_t>(one)] > sums[static_cast<std::size_t>(other)]; });
       actions.resize(std::max<std::size_t>(actions.size() / kept_share, 1));
     }
     action_ = actions.front();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
@@ -86,7 +87,7 @@ class SavingIndex final : public StateValues<Model> {
     std::vector<std::size_t> order(ways_.size());
     std::iota(order.begin(), order.end(), 0);
     incomes_.resize(ways_.size(), 0);
-    std::ranges::stable_sort(order, std::greater<>{}, [&](std::size_t i) { return incomes_[i]; });
+    sort_stably(order, [&](std::size_t one, std::size_t other) { return incomes_[one] > incomes_[other]; });
     std::vector<Option> kept;
     for (std::size_t i = 0; i < kept_ways; ++i) kept.push_back(std::move(ways_[order[i]]));
     ways_ = std::move(kept);

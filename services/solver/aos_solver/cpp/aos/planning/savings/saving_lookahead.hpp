@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
@@ -50,7 +51,7 @@ class SavingLookahead {
     told_.clear();
     incomes_.resize(states * (ways_.size() + 1));
     for (std::size_t k = 0; k < states; ++k) take(action, k);
-    std::ranges::stable_sort(told_, {}, &std::pair<Observation, std::size_t>::first);
+    sort_stably(told_, [](const auto& one, const auto& other) { return one.first < other.first; });
     double sum = 0;
     rare_.clear();
     for (auto start = told_.begin(); start != told_.end();) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
@@ -150,10 +151,11 @@ class SavingPolicy {
     for (std::size_t a = 0; a < actions; ++a) {
       if (incomes[a] == none) told[a] = told_by(static_cast<int>(a), steps, random);
     }
-    std::ranges::stable_sort(ordered, std::greater<>{}, [&](int action) {
+    const auto worth = [&](int action) {
       const auto a = static_cast<std::size_t>(action);
       return std::pair{incomes[a], told[a]};
-    });
+    };
+    sort_stably(ordered, [&](int one, int other) { return worth(one) > worth(other); });
     return ordered;
   }
 

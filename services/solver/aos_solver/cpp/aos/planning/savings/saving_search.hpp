@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"
@@ -137,7 +138,7 @@ class SavingSearch {
         if (Model::ending(after_[a]) == Ending::running && is_new(a, width)) nodes_.push_back({after_[a], number, static_cast<int>(a), worths_[a].earned, depth + 1});
       }
     }
-    std::ranges::stable_sort(found_, std::greater<>{}, &Found::income);
+    sort_stably(found_, [](const Found& one, const Found& other) { return one.income > other.income; });
     found_.resize(std::min(found_.size(), max_found));
   }
 

@@ -21,6 +21,7 @@
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/model/blame.hpp"
@@ -177,7 +178,7 @@ class GroupMissions {
       group_.push_back(follower);
     }
     const auto is_before = [](const Follower& one, const Follower& other) { return one.observation < other.observation; };
-    std::stable_sort(group_.begin(), group_.end(), is_before);
+    sort_stably(group_, is_before);
     rare_.clear();
     for (auto start = group_.begin(); start != group_.end();) {
       const auto end = std::upper_bound(start, group_.end(), *start, is_before);

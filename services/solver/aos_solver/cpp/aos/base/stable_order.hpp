@@ -1,0 +1,43 @@
+// Stable sorting with little code: elements are sorted by their places, so that the sort itself is compiled once. The standard
+// library's own takes 5 kB for each type of element.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "aos/base/function_ref.hpp"
+
+namespace aos {
+
+// Returns the places of `count` elements in their order. Where neither of two is before the other, the first stays first.
+inline std::vector<std::uint32_t> stable_order(std::size_t count, FunctionRef<bool(std::uint32_t, std::uint32_t)> is_before) {
+  std::vector<std::uint32_t> places(count);
+  std::iota(places.begin(), places.end(), std::uint32_t{0});
+  std::stable_sort(places.begin(), places.end(), is_before);
+  return places;
+}
+
+// Sorts as std::stable_sort does.
+template <class Iterator, class IsBefore>
+void sort_stably(Iterator first, Iterator last, IsBefore is_before) {
+  const auto at = [first](std::uint32_t place) -> decltype(auto) { return first[static_cast<std::ptrdiff_t>(place)]; };
+  const auto count = static_cast<std::size_t>(last - first);
+  std::vector<std::uint32_t> from = stable_order(count, [&](std::uint32_t one, std::uint32_t other) { return is_before(at(one), at(other)); });
+  for (std::uint32_t start = 0; start < count; ++start) {
+    // Around a cycle of places each element goes to its own.
+    std::uint32_t to = start;
+    for (; from[to] != start; to = std::exchange(from[to], to)) std::swap(at(to), at(from[to]));
+    from[to] = to;
+  }
+}
+
+template <class Elements, class IsBefore>
+void sort_stably(Elements& elements, IsBefore is_before) {
+  sort_stably(elements.begin(), elements.end(), is_before);
+}
+
+}  // namespace aos
