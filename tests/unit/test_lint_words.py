@@ -206,6 +206,33 @@ def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one
         assert [finding.code for finding in found(environment=environment, skill=skill)] == ["AOS123"]
 
 
+@pytest.mark.parametrize(
+    ("statement", "line", "name"),
+    [
+        ('state__.first.is_wet = "false";', 10, "state__.first.is_wet"),
+        ('state__.marked[1] = "yes";', 10, "state__.marked[]"),
+        ('__isGoalState = "true";', 28, "__isGoalState"),
+    ],
+)
+def test_a_text_is_no_truth_although_the_compiler_takes_it(statement: str, line: int, name: str) -> None:
+    environment = ENVIRONMENT.replace("variable: int x 0", "variable: int x 0\nvariable: bool is_wet false")
+    environment = environment.replace(
+        "initial_belief:",
+        "state_variable: bool marked []\ncode:\nstate.marked = {true, false};\n\ninitial_belief:",
+    )
+    skill = SKILL
+    if name.startswith("state"):
+        skill = SKILL.replace("__moduleResponse", f"{statement}\n__moduleResponse")
+    else:
+        environment = environment.replace("__isGoalState = true;", statement)
+    (told,) = (text for text in finding_texts(environment=environment, skill=skill) if "AOS106" in text)
+    expected = (
+        f"AOS106 `{name}` is true or false, and this is a text. Write `true` or `false`, without quotes"
+    )
+    assert told.partition(" ")[2] == expected
+    assert told.startswith(f"{line} ")
+
+
 EXTRINSIC = "\nextrinsic_code:\nif (pour != NULL && AOS.Bernoulli(0.5)) state_.second.x = 1;\n"
 
 

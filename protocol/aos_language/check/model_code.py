@@ -36,6 +36,8 @@ __all__ = ["check_block", "check_environment_code", "check_skill_code", "read_bl
 
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 _LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
+_TRUTHS = frozenset({"__isFailureState", "__isGoalState", "__meetPrecondition", "__stopEvaluatingState"})
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 
 
 def check_environment_code(environment: Environment, scope: Scope, findings: Findings) -> None:
@@ -279,6 +281,8 @@ class _BlockCheck:
         is_set = mention.access in (Access.WRITE, Access.UPDATE)
         is_meant = is_set and root.strip("_").lower() in _PLAIN_SPECIAL_NAMES
         is_special = root.startswith("__") and not COMPILER_NAMES.fullmatch(root)
+        if root in _TRUTHS:
+            self._check_truth(mention)
         if root in known:
             return
         if is_meant:
@@ -369,6 +373,17 @@ class _BlockCheck:
                 return
             inner = ValueType.of(fields[part])
             name, is_container, index_enum = inner.name, inner.is_container, inner.index_enum
+        if name == "bool" and not is_container:
+            self._check_truth(mention)
+
+    def _check_truth(self, mention: Mention) -> None:
+        """A truth is given no text: the compiler takes each for true, `"false"` too."""
+        given = mention.assigned
+        if given is not None and _TEXT.fullmatch(self._cpp.code[given.start : given.end].strip()):
+            message = f"`{mention.text}` is true or false, and this is a text"
+            self._findings.error(
+                "AOS106", message, self._span(given), "Write `true` or `false`, without quotes"
+            )
 
     def _check_index(self, subscript: Extent, enum: str) -> None:
         """An array over an enum is indexed by its values, or by numbers."""
