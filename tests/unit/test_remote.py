@@ -120,7 +120,7 @@ def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Pa
     words = ("./arm", "two words", "$(reboot)")
     program = Program(name="arm", command=words, host="arm", folder="/opt/the arm")
     command = remote_command(program, "tcp/127.0.0.1:7447", variables, settings, ["-o", "Port=1"])
-    assert command[command.index("-R") - 2 :][:2] == ["-o", "Port=1"]
+    assert command[2:4] == ["-o", "Port=1"], "of two values ssh takes the first"
     forward = command[command.index("-R") + 1]
     assert forward.startswith("127.0.0.1:")
     assert forward.endswith(":127.0.0.1:7447")

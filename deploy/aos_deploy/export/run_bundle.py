@@ -100,6 +100,7 @@ def _unpack_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, staging: Pat
         or not parts
         or entry.filename.startswith("/")
         or any(part in ("..", "") for part in parts)
+        or not entry.filename.isprintable()
     ):
         raise _no_bundle(path, f"the entry {entry.filename!r} is not a plain file within it")
     if entry.is_dir():

@@ -7,6 +7,7 @@ from __future__ import annotations
 import asyncio
 import re
 from collections.abc import AsyncIterator
+from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
@@ -19,7 +20,7 @@ from aos_gateway.runs import KeptRun, RunEntry
 from aos_gateway.shared import Gateway
 from aos_gateway.trace import Trace, steps_of
 from aos_protocol import __version__
-from aos_protocol.errors import AosError, GatewayError
+from aos_protocol.errors import AosError, GatewayError, StorageError
 from aos_protocol.messages import (
     BeliefSummary,
     DecisionRecord,
@@ -51,6 +52,8 @@ __all__ = [
 _PAGE = 1000
 _TRACE_RECORDS = 4000
 _LOG_BYTES = 200_000
+_SERVICE = re.compile(r"[A-Za-z0-9_-]{1,64}")
+"""A record that somebody has sent may name anything, and a log is named by its service."""
 _PICTURE = re.compile(r"(?:step-?)?0*(\d+)\.(png|jpg)")
 
 Since = Annotated[int, msgspec.Meta(ge=0, le=2**53, description="The first sequence number")]
@@ -220,7 +223,7 @@ async def services(gateway: Gateway, run: str) -> Services:
 async def log(gateway: Gateway, run: str, service: str, query: OfLog) -> Content:
     """The end of a service's log, as text."""
     found = _kept(gateway, run)
-    if service not in found.directory.read_record().pids:
+    if not _SERVICE.fullmatch(service) or service not in found.directory.read_record().pids:
         raise GatewayError(f"the run {run} has no service {service}", code="AOS902")
     return Content(await asyncio.to_thread(_tail, found, service, query.tail), "text/plain; charset=utf-8")
 
@@ -338,7 +341,7 @@ async def picture(gateway: Gateway, mission: str, step: str) -> Content:
     if path is None:
         raise GatewayError(f"there is no picture of step {step}", code="AOS902")
     media = "image/png" if path.suffix == ".png" else "image/jpeg"
-    return Content(await asyncio.to_thread(path.read_bytes), media)
+    return Content(await asyncio.to_thread(_bytes_of, path), media)
 
 
 async def events(gateway: Gateway, query: OfEvents, last_event_id: str) -> AsyncIterator[bytes]:
@@ -376,9 +379,23 @@ def _tail(found: KeptRun, service: str, size_bytes: int) -> bytes:
     path = found.directory.log(service)
     if not path.exists():
         return b""
-    with path.open("rb") as file:
-        file.seek(max(0, path.stat().st_size - size_bytes))
-        return file.read(size_bytes)
+    try:
+        with path.open("rb") as file:
+            file.seek(max(0, path.stat().st_size - size_bytes))
+            return file.read(size_bytes)
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> StorageError:
+    return StorageError(f"{path} cannot be read: {error.strerror}", code="AOS702")
 
 
 def _pictures(found: KeptRun) -> dict[int, Any]:
