@@ -38,11 +38,11 @@ THREE_LEVELS = "state.level = AOSUtils::SampleDiscrete(vector<double>{0.5, 0.3, 
 PRIOR = (0.5, 0.3, 0.2)
 
 
-def mapping(*locals_: str, responses: tuple[str, ...] = ("read",)) -> str:
+def mapping(*locals_: str, responses: tuple[str, ...] = ("read",), skill: str = "look") -> str:
     """A mapping with these responses and local variables, each as `type name`."""
     rules = [f"{name}: code == '{name}'" for name in responses]
     kinds = dict(reversed(local.split()) for local in ("string code", *locals_))
-    return mapping_text(*rules, project="gauge", skill="look", reports=kinds)
+    return mapping_text(*rules, project="gauge", skill=skill, reports=kinds)
 
 
 def documents(dynamic_model: str, am: str, belief: str = THREE_LEVELS) -> dict[str, str]:
@@ -51,6 +51,15 @@ def documents(dynamic_model: str, am: str, belief: str = THREE_LEVELS) -> dict[s
         "look.sd": f"project: gauge\n\ndynamic_model:\n{dynamic_model}",
         "look.am": am,
     }
+
+
+def gauge(skills: Mapping[str, tuple[str, str]]) -> dict[str, str]:
+    """The documents with these skills, each with its dynamic model and its mapping: one model is compiled."""
+    files = {}
+    for skill, (dynamic_model, am) in skills.items():
+        files[f"{skill}.sd"] = f"project: gauge\n\ndynamic_model:\n{dynamic_model}"
+        files[f"{skill}.am"] = am
+    return {"gauge.ef": ENVIRONMENT.format(belief=THREE_LEVELS), **files}
 
 
 def normal(value: float, mean: float, deviation: float) -> float:
@@ -71,25 +80,6 @@ async def levels(engine: Engine) -> dict[int, float]:
     return {int(level): probability for level, probability in values.items()}
 
 
-async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path) -> None:
-    """The noise depends on the state, so that both the mean and the deviation tell."""
-    files = documents(
-        "__moduleResponse = read;\n"
-        "__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0 + 0.5 * state.level);\n",
-        mapping("float depth"),
-    )
-    async with engine_of(await built_text(files, cache_dir)) as engine:
-        belief = dict(enumerate(PRIOR))
-        for depth in (1.3, -0.4, 2.9, 3.3):
-            likelihood = {level: normal(depth, 2.0 * level, 1.0 + 0.5 * level) for level in belief}
-            belief, density = posterior(belief, likelihood)
-            update = await engine.update("look", "read", numbers={"depth": depth})
-            assert update.summary.is_exact
-            assert update.probability == pytest.approx(density, rel=1e-9)
-            assert update.surprise == pytest.approx(-math.log(density), rel=1e-9)
-            assert await levels(engine) == pytest.approx(belief, abs=1e-9)
-
-
 EVERY_DRAW = """
 enum Shade { Dark, Dim, Bright };
 if (AOS.Bernoulli(0.1 * state.level)) {
@@ -102,6 +92,58 @@ if (AOS.Bernoulli(0.1 * state.level)) {
     if (AOS.Bernoulli(0.5)) __observed.beeps = AOS.Bernoulli(0.3 + 0.2 * state.level);
 }
 """
+EXACT = gauge(
+    {
+        "plumb": (
+            "__moduleResponse = read;\n"
+            "__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0 + 0.5 * state.level);\n",
+            mapping("float depth", skill="plumb"),
+        ),
+        "feel": (
+            EVERY_DRAW,
+            mapping(
+                "double warmth",
+                "int shade",
+                "int kind",
+                "bool beeps",
+                responses=("read", "blind"),
+                skill="feel",
+            ),
+        ),
+        "scan": (
+            "__moduleResponse = read;\n"
+            "for (int i = 3; i >= 0; i--) __observed.beams[i] = AOS.SampleNormal(state.level * i, 1.5);\n"
+            "for (int i = 0; i < 1 + state.level; i++) __observed.hits.push_back(AOS.Bernoulli(0.4));\n",
+            mapping("float[] beams", "bool[] hits", skill="scan"),
+        ),
+        "sweep": (
+            "__moduleResponse = read;\n"
+            "for (int i = 0; i < 100; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 0.5);\n",
+            mapping("float[] beams", skill="sweep"),
+        ),
+        "poke": (
+            "if (state.level == 2) {\n    __moduleResponse = blind;\n    return;\n}\n"
+            "__moduleResponse = read;\n"
+            "__observed.depth = AOS.SampleUniform(state.level, state.level + 0.5);\n",
+            mapping("float depth", responses=("read", "blind"), skill="poke"),
+        ),
+    }
+)
+"""Skills whose numbers leave beliefs exact."""
+
+
+async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path) -> None:
+    """The noise depends on the state, so that both the mean and the deviation tell."""
+    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+        belief = dict(enumerate(PRIOR))
+        for depth in (1.3, -0.4, 2.9, 3.3):
+            likelihood = {level: normal(depth, 2.0 * level, 1.0 + 0.5 * level) for level in belief}
+            belief, density = posterior(belief, likelihood)
+            update = await engine.update("plumb", "read", numbers={"depth": depth})
+            assert update.summary.is_exact
+            assert update.probability == pytest.approx(density, rel=1e-9)
+            assert update.surprise == pytest.approx(-math.log(density), rel=1e-9)
+            assert await levels(engine) == pytest.approx(belief, abs=1e-9)
 
 
 @pytest.mark.parametrize(("kind", "beeps"), [(0, True), (1, False), (-1, None)])
@@ -109,10 +151,6 @@ async def test_several_numbers_and_a_response_count_together(
     kind: int, beeps: bool | None, cache_dir: Path
 ) -> None:
     """Discrete draws by their probability; also whether a number is reported tells something."""
-    files = documents(
-        EVERY_DRAW,
-        mapping("double warmth", "int shade", "int kind", "bool beeps", responses=("read", "blind")),
-    )
     likelihood = {}
     for level in range(3):
         chance = 1 - 0.1 * level
@@ -122,25 +160,20 @@ async def test_several_numbers_and_a_response_count_together(
         beep = {True: 0.3 + 0.2 * level, False: 0.7 - 0.2 * level, None: 1.0}
         likelihood[level] = chance * warmth * shade * kinds[kind] * 0.5 * beep[beeps]
     expected, density = posterior(dict(enumerate(PRIOR)), likelihood)
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
         numbers = {"warmth": 0.7, "shade": 1, "kind": kind, "beeps": beeps}
-        update = await engine.update("look", "read", numbers=numbers)
+        update = await engine.update("feel", "read", numbers=numbers)
         assert update.probability == pytest.approx(density, rel=1e-9)
         assert await levels(engine) == pytest.approx({k: v for k, v in expected.items() if v}, abs=1e-9)
-        (prediction,) = [response.probability for response in (await engine.predict(0)).predicted[:1]]
+        feel = [action.name for action in engine.description.actions].index("feel")
+        (prediction,) = [response.probability for response in (await engine.predict(feel)).predicted[:1]]
         assert prediction == pytest.approx(sum(p * (1 - 0.1 * level) for level, p in expected.items()))
 
 
 async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache_dir: Path) -> None:
-    files = documents(
-        "__moduleResponse = read;\n"
-        "for (int i = 3; i >= 0; i--) __observed.beams[i] = AOS.SampleNormal(state.level * i, 1.5);\n"
-        "for (int i = 0; i < 1 + state.level; i++) __observed.hits.push_back(AOS.Bernoulli(0.4));\n",
-        mapping("float[] beams", "bool[] hits"),
-    )
     beams = [0.4, 1.7, 1.2, 4.4]
-    async with engine_of(await built_text(files, cache_dir)) as engine:
-        update = await engine.update("look", "read", numbers={"beams": beams, "hits": [True, False]})
+    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+        update = await engine.update("scan", "read", numbers={"beams": beams, "hits": [True, False]})
         # Only at level 1 there are two hits.
         density = math.prod(normal(beam, i, 1.5) for i, beam in enumerate(beams)) * 0.4 * 0.6 * PRIOR[1]
         assert update.probability == pytest.approx(density, rel=1e-9)
@@ -149,19 +182,14 @@ async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache
 
 async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(cache_dir: Path) -> None:
     """Their density is far below what a double can hold."""
-    files = documents(
-        "__moduleResponse = read;\n"
-        "for (int i = 0; i < 100; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 0.5);\n",
-        mapping("float[] beams"),
-    )
     beams = [8.0 + 0.01 * i for i in range(100)]
     logs = [
         sum(-0.5 * ((beam - level) / 0.5) ** 2 - math.log(0.5 * math.sqrt(2 * math.pi)) for beam in beams)
         + math.log(PRIOR[level])
         for level in range(3)
     ]
-    async with engine_of(await built_text(files, cache_dir)) as engine:
-        update = await engine.update("look", "read", numbers={"beams": beams})
+    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+        update = await engine.update("sweep", "read", numbers={"beams": beams})
         total = max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs))
         assert total < -7000
         assert update.log_probability == pytest.approx(total, rel=1e-9)
@@ -205,24 +233,18 @@ async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.flo
 
 
 async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path) -> None:
-    files = documents(
-        "if (state.level == 2) {\n    __moduleResponse = blind;\n    return;\n}\n"
-        "__moduleResponse = read;\n"
-        "__observed.depth = AOS.SampleUniform(state.level, state.level + 0.5);\n",
-        mapping("float depth", responses=("read", "blind")),
-    )
-    async with engine_of(await built_text(files, cache_dir)) as engine:
-        missing = await engine.update("look", "read", {"depth": "null", "code": '"read"'}, {})
+    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+        missing = await engine.update("poke", "read", {"depth": "null", "code": '"read"'}, {})
         assert not missing.is_impossible
         assert missing.remark == (
-            "the numbers of look do not count (depth = null): the model reports others with the response read"
+            "the numbers of poke do not count (depth = null): the model reports others with the response read"
         )
         assert missing.probability == pytest.approx(0.8)
         assert await levels(engine) == pytest.approx({0: 5 / 8, 1: 3 / 8})
-        impossible = await engine.update("look", "read", numbers={"depth": 0.7})
+        impossible = await engine.update("poke", "read", numbers={"depth": 0.7})
         assert (impossible.is_impossible, impossible.remark) == (True, "")
         await engine.reset_belief()
-        needless = await engine.update("look", "blind", numbers={"depth": 0.7})
+        needless = await engine.update("poke", "blind", numbers={"depth": 0.7})
         assert "depth = 0.7" in needless.remark
         assert await levels(engine) == pytest.approx({2: 1.0})
 
@@ -242,29 +264,41 @@ async def test_simulated_worlds_give_numbers_that_their_belief_learns_from(cache
         assert max((await levels(engine)).values()) > 0.999
 
 
-@pytest.mark.parametrize(
-    ("model", "why", "line"),
-    [
-        ("__observed.depth = AOS.SampleNormal(0, state.level);", "the deviation of a reported number", 6),
-        (
-            "__observed.depth = AOS.SampleNormal(0, 1);\nif (state.level == 1) "
-            "__observed.depth = AOS.SampleNormal(0, 1);",
-            "reported twice",
-            7,
-        ),
-        ("__observed.beams[state.level - 1] = AOS.Bernoulli(0.5);", "no element -1", 6),
-    ],
+FAULTS = {
+    "depth": (
+        "__observed.depth = AOS.SampleNormal(0, state.level);",
+        "the deviation of a reported number",
+        6,
+    ),
+    "again": (
+        "__observed.depth = AOS.SampleNormal(0, 1);\nif (state.level == 1) "
+        "__observed.depth = AOS.SampleNormal(0, 1);",
+        "reported twice",
+        7,
+    ),
+    "below": ("__observed.beams[state.level - 1] = AOS.Bernoulli(0.5);", "no element -1", 6),
+}
+"""Skills with a statement, what is wrong with it, and its line."""
+FAULTY = gauge(
+    {
+        skill: (
+            f"__moduleResponse = read;\n\n{statement}\n",
+            mapping("float depth", "bool[] beams", skill=skill),
+        )
+        for skill, (statement, _, _) in FAULTS.items()
+    }
 )
-async def test_a_report_without_a_density_is_a_fault_at_its_statement(
-    model: str, why: str, line: int, cache_dir: Path
-) -> None:
-    files = documents(f"__moduleResponse = read;\n\n{model}\n", mapping("float depth", "bool[] beams"))
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+
+
+@pytest.mark.parametrize("skill", FAULTS)
+async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str, cache_dir: Path) -> None:
+    _, why, line = FAULTS[skill]
+    async with engine_of(await built_text(FAULTY, cache_dir)) as engine:
         with pytest.raises(ModelError, match=why) as raised:
-            await engine.update("look", "read", numbers={"depth": 0.5, "beams": [True]})
+            await engine.update(skill, "read", numbers={"depth": 0.5, "beams": [True]})
     assert raised.value.code == "AOS215"
     (diagnostic,) = raised.value.diagnostics
-    assert (diagnostic.span.file, diagnostic.span.line) == ("look.sd", line)
+    assert (diagnostic.span.file, diagnostic.span.line) == (f"{skill}.sd", line)
 
 
 async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path) -> None:
