@@ -31,7 +31,7 @@ REACHING = {
     "connect": "opens a TCP socket",
     "kill": "kills its guard",
 }
-"""What each skill of a lamp does."""
+"""The skills of a lamp and their deeds."""
 
 
 @pytest.fixture(scope="module")
