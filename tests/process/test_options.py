@@ -60,3 +60,12 @@ async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> Non
         plan = await engine.plan(simulations=10_000, seed=1, planner="auto")
     assert plan.planner == "options"
     assert plan.simulations < 12_500
+
+
+async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> None:
+    """Also the first decision, before it is known what a step costs, with too little time for all states."""
+    async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
+        await engine.count_processor_time(True)
+        plans = [await engine.plan(simulations=1, time_s=0.006, seed=seed, planner="auto") for seed in range(3)]
+    assert {plan.planner for plan in plans} <= {"options", "pomcp"}
+    assert max(plan.search_s for plan in plans) < 0.012

@@ -30,7 +30,7 @@ class OptionFollowing {
     double value = 0;
     double discount = 1;
     double left = most_steps;
-    while (Model::ending(state) == Ending::running && left > 0) {
+    while (Model::ending(state) == Ending::running && left > 0 && !library_.clock().is_over()) {
       Followed best = best_known(state, horizon, left, random);
       if (best.option.empty()) best = best_searched(state, horizon, left, random);
       if (best.option.empty()) break;
@@ -80,7 +80,7 @@ class OptionFollowing {
   }
 
   Followed best_searched(const State& state, std::size_t horizon, double& left, Sampler& random) const {
-    OptionSearch<Model> search{library_.cells()};
+    OptionSearch<Model> search{library_.cells(), library_.clock()};
     const std::vector<Option> ways = search.from(state, left, random);
     if (ways.empty() || ways.front().size() > horizon) return {};
     if (found_.size() < most_found) found_.push_back(ways.front());

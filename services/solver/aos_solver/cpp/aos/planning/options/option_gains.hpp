@@ -15,6 +15,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
@@ -28,9 +29,10 @@ class OptionGains {
   using State = typename Model::State;
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-  // Takes each option from each state. What changes by itself touches nothing.
+  // Takes each option from each state, those first that are known longest. What changes by itself touches nothing. Options
+  // for which there is no time earn nothing.
   void measure(const std::vector<Option>& options, const std::vector<State>& states, const LeafCells<Model>& cells,
-               const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+               const OwnChanges<Model>& changes, const DecisionClock& clock, double& steps, Sampler& random) {
     options_ = &options;
     states_ = states.size();
     earned_.assign(options.size() * states_, 0);
@@ -43,6 +45,7 @@ class OptionGains {
     after_.resize(cells.size());
     for (std::size_t o = 0; o < options.size(); ++o) {
       discounts_.push_back(std::pow(Model::discount, options[o].size()));
+      if (clock.is_over()) continue;
       for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
       steps -= tries * static_cast<double>(options[o].size() * states_);
     }

@@ -9,6 +9,7 @@
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
@@ -21,8 +22,11 @@ class OptionLibrary {
  public:
   using State = typename Model::State;
 
+  explicit OptionLibrary(const DecisionClock& clock) : clock_(clock) {}
+
   const std::vector<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
+  const DecisionClock& clock() const { return clock_; }
   // Whether the action alone is an option: it earns something at once in some state.
   bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }
 
@@ -35,13 +39,13 @@ class OptionLibrary {
   // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
   // with an option. `steps` is counted down.
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
-    OptionSearch<Model> search{cells_};
+    OptionSearch<Model> search{cells_, clock_};
     double found = 0;
     std::vector<State> rests;
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
       bool has_way = follow(state, steps, random);
-      if (!has_way && steps > 0 && add(search.from(state, steps, random))) has_way = follow(state, steps, random);
+      if (!has_way && is_left(steps) && add(search.from(state, steps, random))) has_way = follow(state, steps, random);
       if (!has_way) continue;
       found += belief.weights()[k];
       if (Model::ending(state) == Ending::running) rests.push_back(state);
@@ -49,7 +53,7 @@ class OptionLibrary {
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
       State& rest = rests[i];
-      while (steps > 0 && Model::ending(rest) == Ending::running && add(search.narrow(rest, steps, random))) {
+      while (is_left(steps) && Model::ending(rest) == Ending::running && add(search.narrow(rest, steps, random))) {
         if (!follow(rest, steps, random)) break;
       }
     }
@@ -73,6 +77,8 @@ class OptionLibrary {
   static constexpr std::size_t searched_rests = 8;  // states where the known options end
   static constexpr std::size_t longest = 40;        // options in a row
 
+  bool is_left(double steps) const { return steps > 0 && !clock_.is_over(); }
+
   // Adds options, and what is left of each after its first actions. Returns whether there were any.
   bool add(const std::vector<Option>& found) {
     for (const Option& option : found) {
@@ -87,7 +93,7 @@ class OptionLibrary {
   // Takes options that earn something, the best first, until none is left. Returns whether there was one.
   bool follow(State& state, double& steps, Sampler& random) const {
     bool has_found = false;
-    for (std::size_t i = 0; i < longest && Model::ending(state) == Ending::running && steps > 0; ++i) {
+    for (std::size_t i = 0; i < longest && Model::ending(state) == Ending::running && is_left(steps); ++i) {
       const Option* best = nullptr;
       double most = 0;
       for (const Option& option : options_) {
@@ -105,6 +111,7 @@ class OptionLibrary {
     return has_found;
   }
 
+  const DecisionClock& clock_;
   LeafCells<Model> cells_;
   std::vector<Option> options_;
 };

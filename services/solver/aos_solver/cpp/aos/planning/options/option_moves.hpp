@@ -32,7 +32,7 @@ class OptionMoves {
   void add_to(std::vector<OptionCandidate>& candidates, const std::vector<int>& moves, double& steps, Sampler& random) {
     for (int repeats = 1; repeats <= OptionTests<Model>::most_repeats; repeats *= 2) {
       for (const int move : moves) {
-        if (repeats == 1 || steps > 0) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
+        if (repeats == 1 || (steps > 0 && !tests_.clock().is_over())) add_way(candidates, Option(static_cast<std::size_t>(repeats), move), steps, random);
       }
     }
   }
@@ -46,6 +46,7 @@ class OptionMoves {
     double most = OptionTests<Model>::least_information;
     for (int action = 0; action < Model::action_count(); ++action) {
       if (barred.contains(static_cast<std::size_t>(action)) || tests_.is_move(action)) continue;
+      if (tests_.clock().is_over()) break;
       for (std::size_t k = 0; k < now.size(); ++k) {
         State state = now[k];
         step_.take(state, action, reports[k], steps, random);

@@ -44,12 +44,14 @@ class OptionPolicy {
   using State = typename Model::State;
   static constexpr double of_options = 0.4;  // of the affordable steps: to find options and what they earn
 
-  // Draws states and finds options within so many steps of the model. Returns why this policy cannot decide; empty if it can.
-  std::string prepare(const Belief<Model>& belief, double affordable, Sampler random) {
+  // Draws states and finds options within so many steps of the model, and so many seconds if these are above 0. Returns why this policy cannot decide; empty if it can.
+  std::string prepare(const Belief<Model>& belief, double affordable, double seconds, Sampler random) {
     taken_ = 0;
     if (belief.probability_of(Ending::running) <= 0) return "the mission is over";
     if (!obstacle_.empty()) return obstacle_;
     const ForgottenTexts forgotten;
+    clock_.begin(seconds);
+    clock_.end_at(of_options);
     if (!is_prepared_) library_.prepare(belief, random);
     affordable_ = affordable;
     const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, 64);
@@ -59,7 +61,8 @@ class OptionPolicy {
     changes_.measure(belief_.states(), library_.cells(), left, random);
     if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
     const double found = library_.extend(belief_, left, random);
-    gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, left, random);
+    clock_.end_at(of_gains);
+    gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, clock_, left, random);
     taken_ = of_options * affordable_ - left;
     std::string obstacle = found < enough_found ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
@@ -74,6 +77,7 @@ class OptionPolicy {
     choose_moves(barred);
     regret_.begin();
     double left = affordable_ - taken_;
+    clock_.end_at(of_all);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
@@ -100,10 +104,14 @@ class OptionPolicy {
     is_prepared_ = false;
     obstacle_.clear();
     gains_ = {};
+    tests_.start_over();
   }
 
  private:
   static constexpr double of_states = 0.05;
+  // Of the time, if the budget is one:
+  static constexpr double of_gains = 0.5;  // until options are measured
+  static constexpr double of_all = 0.95;   // what is at hand when the clock is asked still ends
   static constexpr double enough_found = 0.5;   // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
@@ -111,9 +119,10 @@ class OptionPolicy {
   // What keeps the policy from deciding in this model.
   std::string obstacle_of_model(Sampler& random) {
     double left = 0;
-    tests_.observe_all({}, left, random);
+    clock_.end_at(of_all);
+    const bool is_whole = tests_.observe_all({}, left, random);
     taken_ -= left;
-    const bool only_changes = tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
+    const bool only_changes = is_whole && tests_.empty() && tests_.moves().size() > OptionMoves<Model>::few;
     return only_changes ? "nothing is observed but by what changes the state" : "";
   }
 
@@ -158,10 +167,10 @@ class OptionPolicy {
     tests_.add_to(candidates_, left, random);
     moves_.add_to(candidates_, tried_moves_, left, random);
     for (const int move : tried_moves_) {
-      if (are_for_views_ && left > 0) moves_.add_view(candidates_, move, barred, left, random);
+      if (are_for_views_ && left > 0 && !clock_.is_over()) moves_.add_view(candidates_, move, barred, left, random);
     }
     for (const std::size_t option : likely) {
-      if (left > 0 && library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
+      if (left > 0 && !clock_.is_over() && library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
     }
   }
 
@@ -188,7 +197,8 @@ class OptionPolicy {
 
   bool is_prepared_ = false;
   std::string obstacle_;
-  OptionLibrary<Model> library_;
+  DecisionClock clock_;
+  OptionLibrary<Model> library_{clock_};
   OptionGains<Model> gains_;
   double affordable_ = 0;  // steps of the model
   double taken_ = 0;       // of them, so far
@@ -196,8 +206,8 @@ class OptionPolicy {
   SampledBelief<Model> belief_;
   OptionRegret<Model> regret_{belief_, gains_};
   OwnChanges<Model> changes_;
-  OptionTests<Model> tests_{belief_, regret_, changes_};
-  OptionValues<Model> values_{library_};
+  OptionTests<Model> tests_{belief_, regret_, changes_, clock_};
+  OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   std::vector<int> tried_moves_;
   bool are_for_views_ = false;

@@ -18,6 +18,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 #include "aos/planning/values/seen_cells.hpp"
 
@@ -57,7 +58,7 @@ class OptionSearch {
  public:
   using State = typename Model::State;
 
-  explicit OptionSearch(const LeafCells<Model>& cells) : cells_(cells) {}
+  OptionSearch(const LeafCells<Model>& cells, const DecisionClock& clock) : cells_(cells), clock_(clock) {}
 
   // The ways from a state, the best first. `steps` is counted down.
   std::vector<Option> from(const State& state, double& steps, Sampler& random) {
@@ -73,6 +74,7 @@ class OptionSearch {
   static constexpr std::size_t max_found = 16;  // with the highest income
   static constexpr std::size_t max_dear = 16;   // of the others, that earn most
   static constexpr int tries = 4;  // of each way that was found
+  static constexpr std::uint32_t asked_every = 32;  // nodes, the clock
   static constexpr double needs_luck = 0.9;
   static constexpr std::uint32_t longer_by = 2;
   static constexpr std::uint32_t later_ends = 1;
@@ -123,6 +125,7 @@ class OptionSearch {
     note_start(start, width);
     std::uint32_t last_depth = std::numeric_limits<std::uint32_t>::max();
     for (std::uint32_t number = 0; number < nodes_.size() && limit > 0 && nodes_[number].depth <= last_depth; ++number) {
+      if (number % asked_every == 0 && clock_.is_over()) break;
       cells_.write(nodes_[number].state, cells_before_.data());
       const double discount = std::pow(Model::discount, nodes_[number].depth);
       for (int action = 0; action < Model::action_count(); ++action, --limit, --steps) {
@@ -183,6 +186,7 @@ class OptionSearch {
   }
 
   const LeafCells<Model>& cells_;
+  const DecisionClock& clock_;
   std::vector<Node> nodes_;
   std::vector<Found> found_;
   SeenCells seen_;

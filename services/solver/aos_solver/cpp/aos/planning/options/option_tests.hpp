@@ -10,6 +10,7 @@
 #include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/repeated_observation.hpp"
@@ -31,21 +32,35 @@ class OptionTests {
     return of_likelihood * OptionRegret<Model>::observations * static_cast<double>(states);
   }
 
-  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes)
-      : belief_(belief), regret_(regret), changes_(changes) {}
+  OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes, DecisionClock& clock)
+      : belief_(belief), regret_(regret), changes_(changes), clock_(clock) {}
 
-  // Takes each action once from each state, and notes what is observed. `steps` is counted down.
-  void observe_all(const BarredActions& barred, double& steps, Sampler& random) {
+  const DecisionClock& clock() const { return clock_; }
+  // Begins a mission.
+  void start_over() { first_ = 0; }
+
+  // Takes each action once from each state, and notes what is observed. `steps` is counted down. It takes half of the time that
+  // is left at most, and begins next time with what is left out. Returns whether nothing was.
+  bool observe_all(const BarredActions& barred, double& steps, Sampler& random) {
     const auto actions = static_cast<std::size_t>(Model::action_count());
     reports_.resize(actions);
     informations_.assign(actions, 0);
     tests_.clear();
     moves_.clear();
-    for (std::size_t a = 0; a < actions; ++a) {
+    const DecisionClock::Slice half(clock_, clock_.left_s() / 2);
+    const std::size_t first = first_;
+    bool is_whole = true;
+    for (std::size_t i = 0; i < actions; ++i) {
+      const std::size_t a = (first + i) % actions;
       reports_[a].resize(belief_.size());
       if (barred.contains(a)) continue;
       if (changes_.is_move(static_cast<int>(a))) {
         moves_.push_back(static_cast<int>(a));
+        continue;
+      }
+      if (clock_.is_over()) {
+        if (is_whole) first_ = a;
+        is_whole = false;
         continue;
       }
       const double reward = take(static_cast<int>(a), steps, random);
@@ -54,6 +69,7 @@ class OptionTests {
       if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});
     }
     sort_stably(tests_, [](const Test& one, const Test& other) { return one.information > other.information; });
+    return is_whole;
   }
 
   bool empty() const { return tests_.empty(); }
@@ -67,7 +83,7 @@ class OptionTests {
     const std::vector<Test> tests = most_telling();
     for (int repeats = 1; repeats <= most_repeats; repeats *= 2) {
       for (const Test& test : tests) {
-        if (repeats == 1 || steps > 0) add(candidates, test, repeats, steps, random);
+        if (repeats == 1 || (steps > 0 && !clock_.is_over())) add(candidates, test, repeats, steps, random);
       }
     }
   }
@@ -116,11 +132,13 @@ class OptionTests {
   const SampledBelief<Model>& belief_;
   const OptionRegret<Model>& regret_;
   const OwnChanges<Model>& changes_;
+  DecisionClock& clock_;
   ReportedStep<Model> step_;
   std::vector<std::vector<StepReports>> reports_;  // [action][state]
   std::vector<double> informations_;               // by action
   std::vector<Test> tests_;
   std::vector<int> moves_;
+  std::size_t first_ = 0;  // action that is observed
 };
 
 }  // namespace aos

@@ -11,6 +11,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_following.hpp"
 #include "aos/planning/options/option_library.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
@@ -22,7 +23,7 @@ class OptionValues {
  public:
   using State = typename Model::State;
 
-  explicit OptionValues(const OptionLibrary<Model>& library) : following_(library) {}
+  OptionValues(const OptionLibrary<Model>& library, DecisionClock& clock) : following_(library), clock_(clock) {}
 
   // Values a few states of a belief. `gains` times the gain of actions will be asked for: the fewer, the more states, and the
   // further they are followed. `steps` is counted down.
@@ -32,6 +33,8 @@ class OptionValues {
     following_.begin();
     const double affordable = of_values * steps / static_cast<double>(1 + gains);
     value_steps_ = std::clamp(affordable / fewest_valued, least_value_steps, most_value_steps);
+    one_s_ = of_values * clock_.left_s() / static_cast<double>((1 + gains) * fewest_valued);
+    const double latest_s = clock_.left_s() - static_cast<double>(fewest_valued) * one_s_;
     const double before = steps;
     // States at a distance first, so that those that are valued are spread over the belief.
     const std::size_t stride = std::max<std::size_t>(belief.size() / most_valued, 1);
@@ -39,21 +42,23 @@ class OptionValues {
     const std::size_t jump = coprime_jump(count);
     for (std::size_t i = 0; i < count; ++i) {
       if (i >= fewest_valued && (before - steps) * static_cast<double>(i + 1) / static_cast<double>(i) > affordable) break;
+      if (i >= fewest_valued && clock_.is_limited() && clock_.left_s() < latest_s) break;
       const std::size_t k = i * jump % count * stride;
-      valued_.push_back({k, belief.weights()[k], following_.value(belief.states()[k], horizon_, value_steps_, steps, random)});
+      valued_.push_back({k, belief.weights()[k], value(belief.states()[k], horizon_, steps, random)});
     }
   }
 
   // How much more the next states are worth than those before, after so many actions, less its standard error: of many gains
-  // that are as uncertain, the highest one is too high.
+  // that are as uncertain, the highest one is too high. Where there is no time to value them it is 0.
   double gain_of(const std::vector<State>& next, std::size_t actions, double& steps, Sampler& random) const {
     double gain = 0;
     double weights = 0;
     std::vector<std::pair<double, double>> gains;  // weight and gain
-    for (const auto& [k, weight, value] : valued_) {
+    for (const auto& [k, weight, before] : valued_) {
       if (Model::ending(next[k]) != Ending::running) continue;
+      if (clock_.left_s() < one_s_) return 0;
       const std::size_t left = horizon_ > actions ? horizon_ - actions : 0;
-      gains.emplace_back(weight, following_.value(next[k], left, value_steps_, steps, random) - value);
+      gains.emplace_back(weight, value(next[k], left, steps, random) - before);
       gain += weight * gains.back().second;
       weights += weight;
     }
@@ -89,6 +94,12 @@ class OptionValues {
     double value;
   };
 
+  // All states have as many steps and as much time, so that their values compare.
+  double value(const State& state, std::size_t horizon, double& steps, Sampler& random) const {
+    const DecisionClock::Slice one(clock_, one_s_);
+    return following_.value(state, horizon, value_steps_, steps, random);
+  }
+
   // A step that goes through all numbers below a count, far apart from one to the next.
   static std::size_t coprime_jump(std::size_t count) {
     std::size_t jump = std::max<std::size_t>(count * 3 / 8, 1);
@@ -97,8 +108,10 @@ class OptionValues {
   }
 
   OptionFollowing<Model> following_;
+  DecisionClock& clock_;
   std::size_t horizon_ = 1;
   double value_steps_ = most_value_steps;
+  double one_s_ = 0;
   std::vector<Valued> valued_;
 };
 

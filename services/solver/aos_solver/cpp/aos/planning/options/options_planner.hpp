@@ -70,7 +70,8 @@ class OptionsPlanner final : public Planner<Model> {
   std::string look(const Question<Model>& question, Sampler random, Choosing& choosing) {
     const SearchTime time{choosing};
     const auto start = PlanningClock::now();
-    std::string obstacle = policy_.prepare(question.belief, affordable_.of(question.budget, question.horizon), random);
+    const double affordable = affordable_.of(question.budget, question.horizon);
+    std::string obstacle = policy_.prepare(question.belief, affordable, question.budget.seconds, random);
     affordable_.note(policy_.taken(), PlanningClock::now() - start);
     return obstacle;
   }

@@ -1,0 +1,49 @@
+// The clock of a decision whose work is counted in steps of the model. What a step costs differs between the parts of a
+// search, so within a budget in time the work ends by the clock, too. Without one the clock is never over.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "aos/base/clock.hpp"
+
+namespace aos {
+
+class DecisionClock {
+ public:
+  // Lets what is done in its scope take so many seconds of those that are left.
+  class Slice {
+   public:
+    Slice(DecisionClock& clock, double seconds) : clock_(clock), end_s_(clock.end_s_) { clock.end_s_ = std::min(end_s_, clock.spent_s() + seconds); }
+    ~Slice() { clock_.end_s_ = end_s_; }
+    Slice(const Slice&) = delete;
+    Slice& operator=(const Slice&) = delete;
+
+   private:
+    DecisionClock& clock_;
+    double end_s_;
+  };
+
+  // Begins a decision of so many seconds; 0 are no limit.
+  void begin(double seconds) {
+    start_ = PlanningClock::now();
+    seconds_ = seconds > 0 ? seconds : std::numeric_limits<double>::infinity();
+    end_s_ = seconds_;
+  }
+  // The work that follows ends when this share of the decision's time has passed.
+  void end_at(double share) { end_s_ = share * seconds_; }
+
+  bool is_limited() const { return seconds_ < std::numeric_limits<double>::infinity(); }
+  bool is_over() const { return is_limited() && left_s() <= 0; }
+  double left_s() const { return end_s_ - spent_s(); }
+
+ private:
+  double spent_s() const { return std::chrono::duration<double>(PlanningClock::now() - start_).count(); }
+
+  PlanningClock::time_point start_{};
+  double seconds_ = std::numeric_limits<double>::infinity();
+  double end_s_ = seconds_;  // of the work at hand
+};
+
+}  // namespace aos
