@@ -43,7 +43,7 @@ ROUTES = (
         ),
     ),
     Route("pomcp", "pomcp", (), ("listed_values", "step_table", *_SEARCH)),
-    Route("auto, states unlisted", "auto", _UNLISTED, ("options", "learned_values")),
+    Route("auto, states unlisted", "auto", _UNLISTED, ("options", "enough_ways", "learned_values")),
     Route(
         "pomcp with learned values",
         "auto",

@@ -11,6 +11,8 @@
 
 // Which planner decides:
 //   lists (of states), exact, near_states, belief_tree, options, savings
+// Whether options leave beliefs to POMCP from which they find few ways:
+//   enough_ways
 // What saves most:
 //   saving_lookahead
 // SARSOP:
@@ -22,6 +24,7 @@
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
   of(lists) of(exact) of(near_states) of(belief_tree) of(options) of(savings)                                  \
+  of(enough_ways)                                                                                              \
   of(saving_lookahead)                                                                                         \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state)  \
