@@ -67,5 +67,4 @@ async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> N
     async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
         await engine.count_processor_time(True)
         plans = [await engine.plan(simulations=1, time_s=0.006, seed=seed) for seed in range(3)]
-    assert {plan.planner for plan in plans} <= {"options", "pomcp"}
     assert max(plan.search_s for plan in plans) < 0.012

@@ -11,7 +11,7 @@
 
 // Which planner decides:
 //   lists (of states), exact, near_states, belief_tree, options, savings
-// Whether options leave beliefs to POMCP from which they find few ways:
+// Options:
 //   enough_ways
 // What saves most:
 //   saving_lookahead

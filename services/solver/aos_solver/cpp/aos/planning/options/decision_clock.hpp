@@ -1,5 +1,4 @@
-// The clock of a decision whose work is counted in steps of the model. What a step costs differs between the parts of a
-// search, so within a budget in time the work ends by the clock, too. Without one the clock is never over.
+// The clock that ends a decision with a budget in time, where steps of the model cost more in one part than in another.
 #pragma once
 
 #include <algorithm>
