@@ -63,7 +63,7 @@ async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> Non
 
 
 async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> None:
-    """Also the first decision, before it is known what a step costs, with too little time for all states."""
+    """Also before it is known what a step costs."""
     async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
         await engine.count_processor_time(True)
         plans = [await engine.plan(simulations=1, time_s=0.006, seed=seed) for seed in range(3)]

@@ -29,8 +29,7 @@ class OptionGains {
   using State = typename Model::State;
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-  // Takes each option from each state, those first that are known longest. What changes by itself touches nothing. Options
-  // for which there is no time earn nothing.
+  // Takes each option from each state. What changes by itself touches nothing. Options for which there is no time earn nothing.
   void measure(const std::vector<Option>& options, const std::vector<State>& states, const LeafCells<Model>& cells,
                const OwnChanges<Model>& changes, const DecisionClock& clock, double& steps, Sampler& random) {
     options_ = &options;

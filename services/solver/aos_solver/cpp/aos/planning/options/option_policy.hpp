@@ -65,7 +65,7 @@ class OptionPolicy {
     clock_.end_at(of_gains);
     gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, clock_, left, random);
     taken_ = of_options * affordable_ - left;
-    std::string obstacle = found < (switches::enough_ways ? enough_found : any_found) ? "no way to a reward is found from most states" : "";
+    std::string obstacle = found < (switches::enough_ways ? enough_found : 1e-9) ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
     is_prepared_ = is_prepared_ || obstacle.empty();
     return obstacle;
@@ -112,9 +112,8 @@ class OptionPolicy {
   static constexpr double of_states = 0.05;
   // Of the time, if the budget is one:
   static constexpr double of_gains = 0.5;  // until options are measured
-  static constexpr double of_all = 0.95;   // what is at hand when the clock is asked still ends
+  static constexpr double of_all = 0.95;   // to end what is at hand takes the rest
   static constexpr double enough_found = 0.5;  // of the belief
-  static constexpr double any_found = 1e-9;
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
 
