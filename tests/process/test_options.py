@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from statistics import fmean
 
 from models import built_text, engine_of
 from wide.delivery import delivery
 from wide.problems import open_field, parcels
+from wide.rescue import rescue
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
@@ -68,3 +70,14 @@ async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> N
         await engine.count_processor_time(True)
         plans = [await engine.plan(simulations=1, time_s=0.006, seed=seed) for seed in range(3)]
     assert max(plan.search_s for plan in plans) < 0.012
+
+
+async def test_a_reward_that_was_earned_is_not_expected_again_where_the_mission_may_end_with_it(
+    cache_dir: Path,
+) -> None:
+    """Two people are helped, who may be in one room. A rule by hand returns 26, and random actions -42."""
+    async with engine_of(await built_text(rescue(3), cache_dir)) as engine:
+        limits = MissionLimits(goal_probability=1, step_limit=40)
+        searches = (Search(simulations=1000, seed=seed) for seed in range(8))
+        runs = [await simulate_mission(engine, search, limits) for search in searches]
+    assert fmean(run.discounted_return for run in runs) > 10

@@ -20,7 +20,6 @@ import numpy as np
 
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
-from .belts import Belts, belts, belts_rule
 from .inspection import inspection, inspection_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
@@ -34,31 +33,24 @@ _STEPS = 120  # at most, in a mission
 
 _SINGLE = {
     "inspection": inspection,
-    "belts": belts,
     "screws": screws,
     "rescue": rescue,
     "tabletop": tabletop,
 }
 _BUNDLES = PROBLEMS | APART | UPKEEP | _SINGLE
-_SIZES = (
-    SIZES
-    | APART_SIZES
-    | UPKEEP_SIZES
-    | {"inspection": 16, "belts": 3, "screws": 10, "rescue": 3, "tabletop": 5}
-)
+_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5}
 _RULES = (
     RULES
     | APART_RULES
     | UPKEEP_RULES
     | {
         "inspection": inspection_rule,
-        "belts": belts_rule,
         "screws": screws_rule,
         "rescue": rescue_rule,
         "tabletop": tabletop_rule,
     }
 )
-_WORLDS = {"belts": Belts, "screws": Screws, "rescue": Rescue, "tabletop": Tabletop}
+_WORLDS = {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:

@@ -38,6 +38,7 @@ class OptionGains {
     goes_on_.assign(options.size() * states_, 0);
     changed_.assign(options.size(), std::vector<bool>(cells.size()));
     ends_.assign(options.size(), false);
+    earns_without_end_.assign(options.size(), false);
     used_.assign(options.size(), false);
     discounts_.clear();
     before_.resize(cells.size());
@@ -48,6 +49,7 @@ class OptionGains {
       for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
       steps -= tries * static_cast<double>(options[o].size() * states_);
     }
+    for (std::size_t o = 0; o < options.size(); ++o) ends_[o] = ends_[o] && !earns_without_end_[o];
     for (auto& changed : changed_) {
       for (std::size_t i = 0; i < cells.size(); ++i) changed[i] = changed[i] && !changes.is_worlds(i);
     }
@@ -109,6 +111,7 @@ class OptionGains {
       earned_[option * states_ + k] += outcome.earned / tries;
       goes_on_[option * states_ + k] += outcome.goes_on / tries;
       if (outcome.goes_on == 0) ends_[option] = true;
+      else if (outcome.earned > 0) earns_without_end_[option] = true;
       cells.write(state, after_.data());
       for (std::size_t i = 0; i < cells.size(); ++i) {
         if (before_[i] != after_[i]) changed_[option][i] = true;
@@ -185,7 +188,8 @@ class OptionGains {
   std::vector<double> earned_;   // [option * states + state]
   std::vector<double> goes_on_;  // [option * states + state]
   std::vector<double> discounts_;
-  std::vector<bool> ends_;
+  std::vector<bool> ends_;  // in some state, and earns nothing where it does not
+  std::vector<bool> earns_without_end_;
   std::vector<std::vector<bool>> changed_;  // [option][variable]
   std::vector<bool> touches_;               // [option * options + option]
   std::vector<std::uint64_t> before_;

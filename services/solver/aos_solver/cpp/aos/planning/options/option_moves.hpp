@@ -79,7 +79,7 @@ class OptionMoves {
     if (share < 0.5) return;
     const RepeatedObservation last{share < 1 - 1e-9 || !tell_nothing(reports) ? std::vector<StepReports>{} : reports.back()};
     if (!last.is_listed(1)) steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
-    const double left = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
+    const auto told = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
       if (weights[k] <= 0) return;
       for (const auto& of_step : reports) observe(of_step, of_step[k].drawn(random), weights);
@@ -87,7 +87,7 @@ class OptionMoves {
     // What is at stake grows as the mission comes closer to what it can earn.
     const double seen = share * (regret_.value_seen() + values_.gain_of(now, way.size(), steps, random));
     const double stake = regret_.value_seen() > 0 ? std::max(seen / regret_.value_seen(), 0.0) : 1;
-    candidates.push_back({way.front(), earned + discount * (seen - stake * left), discount, "what can be observed elsewhere"});
+    candidates.push_back({way.front(), earned + discount * (seen - stake * told.regret), discount, "what can be observed elsewhere", told.avoided});
   }
 
   // Whether nothing is observed on the way but at its last step.

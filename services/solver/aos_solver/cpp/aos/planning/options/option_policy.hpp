@@ -81,11 +81,17 @@ class OptionPolicy {
     clock_.end_at(of_all);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
+    regret_.watch(likely);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
     const double blind = regret_.value_seen() - regret_.now();
-    double gained = 0;
-    for (const OptionCandidate& candidate : candidates_) gained = std::max(gained, candidate.value - candidate.discount * blind);
-    for (const std::size_t option : likely) add_option(option, gained);
+    for (std::size_t i = 0, count = candidates_.size(); i < likely.size(); ++i) {
+      double gained = 0;
+      for (std::size_t c = 0; c < count; ++c) {
+        const OptionCandidate& candidate = candidates_[c];
+        gained = std::max(gained, candidate.value - candidate.discount * (blind + candidate.avoided[i]));
+      }
+      add_option(likely[i], gained);
+    }
     settle(belief.probability_of(Ending::running));
     taken_ = affordable_ - left;
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
@@ -153,8 +159,8 @@ class OptionPolicy {
     return options;
   }
 
-  // What can be gained by observing now can be gained after the option, too, while the mission goes on. So of both comes first
-  // what brings more.
+  // What can be gained by observing now can be gained after the option, too, while the mission goes on, but for what is told of
+  // the option itself. So of both comes first what brings more.
   void add_option(std::size_t option, double gained) {
     const StateWeights after = gains_.after(option, belief_.weights());
     const double goes_on = std::accumulate(after.begin(), after.end(), 0.0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -20,6 +21,7 @@ struct OptionCandidate {
   double value;
   double discount;  // of what comes after it
   const char* reason;
+  std::vector<double> avoided{};  // of each likely option: what is not lost by it, since the observation tells of it
 };
 
 template <class Model>
@@ -27,15 +29,23 @@ class OptionRegret {
  public:
   static constexpr int observations = 16;  // drawn where not all are gone through
 
+  struct Told {
+    double regret = 0;
+    std::vector<double> avoided{};  // see OptionCandidate
+  };
+
   OptionRegret(const SampledBelief<Model>& belief, const OptionGains<Model>& gains) : belief_(belief), gains_(gains) {}
 
   // Takes the belief and the gains as they are now.
   void begin() {
     seen_.clear();
+    likely_.clear();
     for (std::size_t k = 0; k < belief_.size(); ++k) seen_.push_back(gains_.best_in(k));
     value_seen_ = mean(belief_.weights());
     regret_ = after(belief_.weights());
   }
+  // The options that may be taken next.
+  void watch(std::vector<std::size_t> likely) { likely_ = std::move(likely); }
   double value_seen(std::size_t state) const { return seen_[state]; }
   double value_seen() const { return value_seen_; }
   double now() const { return regret_; }
@@ -51,25 +61,27 @@ class OptionRegret {
   }
   double after(const StateWeights& weights) const { return std::max(mean(weights) - gains_.best(weights), 0.0); }
 
-  // The mean regret after an observation that is made so many times. Where these are too many to list, `see(k, weights)`
+  // The mean regret after an observation that is made so many times, and what it tells of each likely option. Where these are too many to list, `see(k, weights)`
   // draws from state k what is observed. `steps` is counted down.
   template <class See>
-  double after(const RepeatedObservation& observation, int times, double& steps, Sampler& random, See&& see) const {
-    double sum = 0;
+  Told after(const RepeatedObservation& observation, int times, double& steps, Sampler& random, See&& see) const {
+    Told told;
+    for (const std::size_t option : likely_) told.avoided.push_back(-std::max(gains_.earned(option, belief_.weights()), 0.0));
+    const auto note = [&](double probability, const StateWeights& weights) {
+      told.regret += probability * after(weights);
+      for (std::size_t i = 0; i < likely_.size(); ++i) told.avoided[i] += probability * std::max(gains_.earned(likely_[i], weights), 0.0);
+      steps -= steps_of_best();
+    };
     if (observation.is_listed(times)) {
-      observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) {
-        sum += probability * after(weights);
-        steps -= steps_of_best();
-      });
-      return sum;
+      observation.for_each(belief_.weights(), times, note);
+      return told;
     }
     draw_states(belief_.weights(), observations, random, [&](std::size_t k) {
       StateWeights weights = belief_.weights();
       see(k, weights);
-      sum += after(weights);
-      steps -= steps_of_best();
+      note(1.0 / observations, weights);
     });
-    return sum / observations;
+    return told;
   }
 
  private:
@@ -86,6 +98,7 @@ class OptionRegret {
 
   const SampledBelief<Model>& belief_;
   const OptionGains<Model>& gains_;
+  std::vector<std::size_t> likely_;
   std::vector<double> seen_;  // what the states are worth if they are seen
   double value_seen_ = 0;
   double regret_ = 0;
