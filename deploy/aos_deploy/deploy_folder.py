@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from aos_deploy.named_paths import absolute
+from aos_deploy.named_paths import absolute, is_folder, is_there, named
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
@@ -18,13 +18,13 @@ _SUFFIXES = (".yaml", ".yml")
 
 def deploy_file_at(path: Path) -> Path:
     """The path itself, of a folder its deploy file; DeployError AOS801 where there is none, or several."""
-    if not path.exists():
+    if not is_there(path):
         raise DeployError(
-            f"there is no deploy file {path}",
+            f"there is no deploy file {named(path)}",
             code="AOS801",
             hint="`aos new adapter KIND --in BUNDLE` writes one, `aos new example NAME` one that runs",
         )
-    if not path.is_dir():
+    if not is_folder(path):
         return path
     inside = [file for file, _ in deploy_files_in(path)]
     if len(inside) == 1:

@@ -5,9 +5,17 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-__all__ = ["absolute", "is_file", "is_folder", "named"]
+__all__ = ["absolute", "is_file", "is_folder", "is_there", "named"]
 
 _LONGEST = 200
+
+
+def is_there(path: Path) -> bool:
+    """Returns whether there is anything; False where there cannot be."""
+    try:
+        return path.exists()
+    except OSError:
+        return False
 
 
 def is_file(path: Path) -> bool:

@@ -510,3 +510,11 @@ def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path) -> None:
     with pytest.raises(DeployError) as caught:
         read_deploy_file(tmp_path / "rover.yaml")
     assert "more than 1000000 bytes" in caught.value.diagnostics[0].message
+
+
+@pytest.mark.parametrize("name", ["x" * 10_000, "a\0b", "loop"])
+def test_a_deploy_file_that_cannot_be_is_not_there(tmp_path: Path, name: str) -> None:
+    (tmp_path / "loop").symlink_to("loop")
+    with pytest.raises(DeployError) as caught:
+        read_deploy_file(tmp_path / name)
+    assert len(str(caught.value)) < 1000

@@ -74,7 +74,8 @@ def malformed(folder: Path, options: argparse.Namespace) -> int:
             broken += flood.slowest_s > MAY_ANSWER_S or grown_bytes > MAY_GROW_BYTES
             print(
                 f"  {key} by {user}: {flood.sent} in {flood.took_s:.1f} s, slowest answer "
-                f"{flood.slowest_s * 1e3:.0f} ms, memory +{grown_bytes / 1e6:.1f} MB",
+                f"{flood.slowest_s * 1e3:.0f} ms, {flood.waited_s * 1e3:.0f} ms waited for a processor, "
+                f"memory +{grown_bytes / 1e6:.1f} MB",
                 flush=True,
             )
         mission.go_on()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import random
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,12 +35,17 @@ _MIXED = 2000
 
 
 class Flood(NamedTuple):
-    """The consequences of messages on one key: times of good questions meanwhile, and how memory grew."""
+    """The consequences of messages on one key: times of good questions meanwhile, and how memory grew.
+
+    Of the slowest question `waited_s` is how long threads of asker, router and services stood ready and got
+    no processor, added up.
+    """
 
     key: str
     sent: int
     took_s: float
     slowest_s: float
+    waited_s: float
     grown_bytes: dict[str, int]
 
 
@@ -87,7 +94,7 @@ def flooding(cell: Cell, key: str, user: str, is_question: bool, count: int) -> 
     # A question with other fields is one to stop the mission all the same.
     messages = [one for one in noise(1) if key != KEYS.stop_mission or not _is_message(one)]
     before = {name: _memory_bytes(pid) for name, pid in cell.record.pids.items()}
-    questions = _Questions(asker)
+    questions = _Questions(asker, [os.getpid(), *cell.record.pids.values()])
     started_s = time.monotonic()
     with questions:
         if is_question:
@@ -100,7 +107,8 @@ def flooding(cell: Cell, key: str, user: str, is_question: bool, count: int) -> 
         round_trip(session, asker)
     took_s = time.monotonic() - started_s
     grown = {name: _memory_bytes(pid) - before[name] for name, pid in cell.record.pids.items()}
-    return Flood(key, count, took_s, max(questions.times_s, default=0.0), grown)
+    slowest_s, waited_s = max(questions.times_s, default=(0.0, 0.0))
+    return Flood(key, count, took_s, slowest_s, waited_s, grown)
 
 
 def _ask_all(session: zenoh.Session, key: str, messages: list[bytes], count: int) -> None:
@@ -121,11 +129,13 @@ def _ask_all(session: zenoh.Session, key: str, messages: list[bytes], count: int
 class _Questions:
     """Good questions to registry, middleware and solver, one after the other, until the block ends."""
 
-    def __init__(self, session: zenoh.Session) -> None:
+    def __init__(self, session: zenoh.Session, pids: list[int]) -> None:
         self._session = session
+        self._pids = pids
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._ask)
-        self.times_s: list[float] = []
+        self.times_s: list[tuple[float, float]] = []
+        """Times of each question: what it took, and what threads waited for a processor meanwhile."""
 
     def __enter__(self) -> _Questions:
         self._thread.start()
@@ -140,10 +150,11 @@ class _Questions:
         payload = msgspec.msgpack.encode(body)
         while not self._ended.wait(_LOOKS_S):
             for key in (KEYS.catalogue, KEYS.mapping_state, KEYS.mission_state):
-                started_s = time.monotonic()
+                started_s, before_s = time.monotonic(), sum(map(_waited_s, self._pids))
                 answers = [reply.ok for reply in self._session.get(key, payload=payload, timeout=_ANSWER_S)]
                 is_answered = bool(answers) and answers[0] is not None
-                self.times_s.append(time.monotonic() - started_s if is_answered else _ANSWER_S)
+                took_s = time.monotonic() - started_s if is_answered else _ANSWER_S
+                self.times_s.append((took_s, sum(map(_waited_s, self._pids)) - before_s))
 
 
 def _is_message(payload: bytes) -> bool:
@@ -152,6 +163,15 @@ def _is_message(payload: bytes) -> bool:
         return isinstance(decode(payload, StopMission), StopMission)
     except BusError:
         return False
+
+
+def _waited_s(pid: int) -> float:
+    """The time that the threads of a process stood ready and got no processor, of those that are there."""
+    waited_ns = 0
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        with suppress(OSError):  # It has ended meanwhile.
+            waited_ns += int((task / "schedstat").read_text().split()[1])
+    return waited_ns / 1e9
 
 
 def _memory_bytes(pid: int) -> int:
