@@ -10,12 +10,13 @@ import heapq
 import os
 import random
 import select
+import signal
 import struct
 import subprocess
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 __all__ = ["Wire", "wire"]
 
@@ -83,6 +84,10 @@ def wire(namespace: str, here: str, there: str) -> Iterator[Wire]:
         finally:
             made.close()
     finally:
+        # A connection that was cut is never ended here: what sshd has started for it would stay.
+        for pid in ip("netns", "pids", namespace).split():
+            with suppress(ProcessLookupError):
+                os.kill(int(pid), signal.SIGKILL)
         ip("netns", "del", namespace)
 
 
@@ -93,6 +98,6 @@ def _tun(name: str) -> int:
     return end
 
 
-def ip(*words: str) -> None:
-    """Runs the command `ip`."""
-    subprocess.run(["ip", *words], check=True)
+def ip(*words: str) -> str:
+    """Runs the command `ip`; returns what it prints."""
+    return subprocess.run(["ip", *words], check=True, stdout=subprocess.PIPE, text=True).stdout
