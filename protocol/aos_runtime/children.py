@@ -165,7 +165,15 @@ class Child:
 
     async def wait(self) -> int:
         """Its return code, once it has ended."""
-        return await self._process.wait()
+        status = await self._process.wait()
+        stdin = self._process.stdin
+        if stdin is not None:
+            if not stdin.is_closing():
+                stdin.transport.abort()
+            # Before 3.11.4 Python logs that an input broke, unless somebody asks for it.
+            with contextlib.suppress(ConnectionError):
+                await stdin.wait_closed()
+        return status
 
     async def wait_for(self, timeout_s: float) -> bool:
         """Waits until it has ended, at most for a time; returns whether it has."""
