@@ -5,10 +5,20 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import time
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["COMMAND_S", "HANG_S", "descendants", "has_listener", "is_running", "kill", "until_ended"]
+__all__ = [
+    "COMMAND_S",
+    "HANG_S",
+    "descendants",
+    "has_listener",
+    "is_running",
+    "kill",
+    "until_ended",
+    "until_taking_over",
+]
 
 HANG_S = 120.0
 """Tests wait this long for one event, which takes a second on an idle machine: only a hang takes longer."""
@@ -76,3 +86,13 @@ def has_listener(port: int) -> bool:
 def kill(pid: int) -> None:
     """Kills the process with SIGKILL."""
     os.kill(pid, signal.SIGKILL)
+
+
+def until_taking_over(run: Path, revision: int) -> None:
+    """Returns once the next decision of a run takes the model of this revision: solver and middleware have
+    it."""
+    deadline_s = time.monotonic() + HANG_S
+    awaited = f"the model of revision {revision} is ready", f"the middleware has revision {revision}"
+    while not all(text in (run / "logs" / "solver.log").read_text() for text in awaited):
+        assert time.monotonic() < deadline_s, f"revision {revision} is not ready"
+        time.sleep(0.02)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import until_taking_over
 
 BIN = Path(sys.executable).parent
 SENSING = ("observe_holding", "observe_arm_outstretched")
@@ -101,6 +102,7 @@ def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
                 decisions.append(event)
                 if event["skill"] == "pick" and not pushed:
                     pushed = [_push(broken, runs), _push(root / "deploy/bundles/armadillo-finer", runs)]
+                    until_taking_over((runs / "latest").resolve(), decisions[0]["revision"] + 1)
                     picked.touch()
                 elif event["skill"] in (*SENSING, "serve"):
                     break

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 from gateway import write_slow_tiger
-from processes import COMMAND_S, HANG_S, kill
+from processes import COMMAND_S, HANG_S, kill, until_taking_over
 
 from aos_deploy.history_check.files import violations_of_run
 from aos_protocol.access import OPERATOR
@@ -242,6 +242,7 @@ def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays
     stays.until("mission", phase="acting", step=1)
     removed = stays.aos("bundle", "rm", "tiger", "listen")
     assert removed[0] == 0, removed
+    until_taking_over(stays.run, 2)
     stays.be_slow(False)
     stays.until("mission", phase="ended")
     code, said, _ = stays.aos("bundle", "rm", "tiger", "open")

@@ -82,5 +82,8 @@ class MappingWatch:
         if state.unavailable != self.unavailable:
             log.info("unavailable skills: %s", state.unavailable or "none")
         self.unavailable, self.announced = state.unavailable, state.announced
+        for revision in state.revisions:
+            if revision not in self._revisions:
+                log.info("the middleware has revision %d", revision)
         self._revisions = state.revisions
         self._on_changed()

@@ -142,6 +142,7 @@ class ModelShelf:
             if self._running is not None:
                 successor.follow(self._running, self._past, self.on_ready)
             self._shelf.notify_all()
+        log.info("the model of revision %d is ready", successor.model.revision)
         self.on_ready()
 
     def _end(self, ended: Successor | Engine) -> None:
