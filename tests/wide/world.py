@@ -1,13 +1,14 @@
 """A problem played without the engine: the world of a rule by hand, and of random actions."""
 
 import random
+from abc import ABC, abstractmethod
 
 __all__ = ["MOST_STEPS", "World"]
 
 MOST_STEPS = 120  # in a mission
 
 
-class World:
+class World(ABC):
     """The hidden state of a problem, and what was earned in it so far."""
 
     discount = 1.0
@@ -22,13 +23,13 @@ class World:
     def is_over(self) -> bool:
         return self.has_ended or self.steps >= MOST_STEPS
 
+    @abstractmethod
     def actions(self) -> list[tuple[str, int]]:
         """All actions: skills with the value of their parameter."""
-        raise NotImplementedError
 
+    @abstractmethod
     def act(self, skill: str, value: int = 0) -> str:
         """Takes an action and returns what is reported."""
-        raise NotImplementedError
 
     def gain(self, reward: float) -> None:
         """Counts the reward of a step, which is over then."""
