@@ -105,9 +105,11 @@ async def test_what_becomes_true_between_two_skills_keeps_the_next_one_from_bein
     system: System,
 ) -> None:
     adapter = await monitored(system)
+    # What is said before the monitor listens is not heard.
+    assert (await sensed(system, 1, 0.9)).monitors == {"battery": "fine"}
     system.adapter.publish("/battery", {"level": 0.05})
     # Two processes speak: where the message comes late, it stops the skill that was called.
-    stopped = await system.activate("drive", 1)
+    stopped = await system.activate("drive", 2)
     if not adapter.asked:
         assert not adapter.is_called.is_set()
         assert stopped.status == "refused"

@@ -73,17 +73,18 @@ def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path) -> No
 def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    short = tmp_path / "x"
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(short))
-    short.mkdir()
-    assert place_of_socket(short) == short / "bus"
-    for folder in (tmp_path / ("long" * 30), tmp_path / "with space", tmp_path / "with?mark"):
-        socket = place_of_socket(folder)
-        assert socket.parent.parent == short
-        assert socket.parent.stat().st_mode & 0o777 == 0o700
-        socket.touch()
-        remove_socket(socket)
-        assert not socket.parent.exists()
+    # The folders of tests may have long paths themselves.
+    with tempfile.TemporaryDirectory(dir="/tmp") as name:
+        short = Path(name)
+        monkeypatch.setenv("XDG_RUNTIME_DIR", name)
+        assert place_of_socket(short) == short / "bus"
+        for folder in (tmp_path / ("long" * 30), tmp_path / "with space", tmp_path / "with?mark"):
+            socket = place_of_socket(folder)
+            assert socket.parent.parent == short
+            assert socket.parent.stat().st_mode & 0o777 == 0o700
+            socket.touch()
+            remove_socket(socket)
+            assert not socket.parent.exists()
 
 
 @pytest.mark.parametrize("written", ["{command: [python], credential: x}", "{external: '', credential: 3}"])
