@@ -1,26 +1,30 @@
-// Makes the page: node build.mjs [FOLDER]. Without a folder it goes to where `aos serve` finds it.
+// Makes the page: node build.mjs [FOLDER]. Without a folder it goes to where `aos serve` finds it. Script and styles are
+// compressed, as browsers get them.
 import { build } from "esbuild";
 import { copyFile, mkdir, readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const folder = process.argv[2] ?? join(here, "../aos_gateway/page");
 const libraries = ["preact", "htm", "@preact/signals", "@preact/signals-core"];
 
 await mkdir(folder, { recursive: true });
-await build({
-  absWorkingDir: here,
+const common = { absWorkingDir: here, minify: true, outdir: folder, write: false };
+const script = await build({
+  ...common,
   entryPoints: { page: "src/main.js" },
   bundle: true,
-  minify: true,
   format: "esm",
   target: "es2022",
   charset: "utf8",
   legalComments: "none",
-  outdir: folder,
 });
-await build({ absWorkingDir: here, entryPoints: { page: "src/page.css" }, minify: true, outdir: folder });
+const styles = await build({ ...common, entryPoints: { page: "src/page.css" } });
+for (const { path, contents } of [...script.outputFiles, ...styles.outputFiles]) {
+  await writeFile(`${path}.gz`, gzipSync(contents, { level: 9 }));
+}
 await copyFile(join(here, "src/index.html"), join(folder, "index.html"));
 await copyFile(join(here, "src/icon.svg"), join(folder, "icon.svg"));
 
