@@ -71,13 +71,23 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
 def chosen_runs(named: Iterable[Path] | None, runs: Path | None) -> list[Path]:
     """The directories of the runs that a command means, each once; errors as from `chosen_run`.
 
-    `runs/*` names the last run twice, since `runs/latest` points to it.
+    A folder of runs names all of them. `runs/*` names the last run twice, since `runs/latest` points to it.
     """
     found: dict[Path, Path] = {}
-    for run in named or (None,):
+    each: list[Path] = [run for name in named or () for run in _runs_in(name) or [name]]
+    for run in each or (None,):
         path = chosen_run(run, runs).path
         found.setdefault(path.resolve(), path)
     return list(found.values())
+
+
+def _runs_in(folder: Path) -> list[Path]:
+    """The runs in a folder of runs, the oldest first; none if it is no such folder."""
+    if not folder.is_dir() or (folder / "run.json").exists():
+        return []
+    return sorted(
+        path for path in folder.iterdir() if not path.is_symlink() and (path / "run.json").is_file()
+    )
 
 
 def living_run(run: Path | None, runs: Path | None) -> RunDirectory:

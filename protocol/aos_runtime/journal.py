@@ -27,7 +27,7 @@ from aos_runtime.plain_tables import require_plain_tables
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
-__all__ = ["Journal", "JournalRow"]
+__all__ = ["Journal", "JournalError", "JournalRow"]
 
 T = TypeVar("T")
 
@@ -59,6 +59,14 @@ _PAGES_IN_A_CHECKPOINT = 100
 long one."""
 
 
+class JournalError(StorageError):
+    """A fault of a journal: `what` is wrong with it, which the message tells after the name of the file."""
+
+    def __init__(self, path: Path, what: str, code: str = "AOS702") -> None:
+        super().__init__(f"the journal {path}: {what}", code=code)
+        self.what = what
+
+
 class JournalRow(NamedTuple):
     """One entry: `seq` counts from 1 without gaps, `payload` is JSON, `journal` is the file that has it."""
 
@@ -73,10 +81,8 @@ class JournalRow(NamedTuple):
         try:
             return msgspec.json.decode(self.payload, type=kind)
         except UNREADABLE as error:
-            raise StorageError(
-                f"the journal {self.journal}: row {self.seq}, {self.kind}, cannot be read: {error}",
-                code="AOS702",
-            ) from error
+            what = f"row {self.seq}, {self.kind}, cannot be read: {error}"
+            raise JournalError(self.journal, what) from error
 
 
 class Journal:
@@ -207,7 +213,7 @@ class Journal:
         return int(found[0]) if found is not None else 0
 
     def _damaged(self, what: str) -> StorageError:
-        return StorageError(f"the journal {self._path}: {what}", code="AOS702")
+        return JournalError(self._path, what)
 
 
 def _checksum(stamp_ns: int, kind: str, payload: str) -> int:
@@ -230,4 +236,4 @@ def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: b
 
 
 def _fault(code: str, path: Path, error: Exception) -> StorageError:
-    return StorageError(f"the journal {path}: {error}", code=code)
+    return JournalError(path, str(error), code)

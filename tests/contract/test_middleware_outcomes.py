@@ -84,6 +84,16 @@ async def test_a_silent_topic_has_its_initial_value_not_that_of_the_last_activat
     assert (await system.activate("sense", 2)).response == "quiet"
 
 
+async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System) -> None:
+    async def publish_elsewhere(_: SkillCall) -> dict[str, Any]:
+        system.adapter.publish("/levels", {"data": 9})
+        return {}
+
+    await system.adapter.serve("/sense", publish_elsewhere)
+    assert [(await system.activate("sense", step)).response for step in (1, 2, 3)] == ["quiet"] * 3
+    await system.logged("no message has come on /level in 3 calls of skills. Did you mean `/levels`?")
+
+
 async def test_holding_is_decided_from_the_published_gap_and_forces(system: System) -> None:
     async def squeeze(call: SkillCall) -> dict[str, Any]:
         force_n = 4.0 if call.id.step == 1 else 0.0

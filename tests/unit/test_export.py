@@ -298,6 +298,16 @@ def test_a_run_that_is_named_twice_is_taken_once(tmp_path: Path) -> None:
     assert chosen_runs([tmp_path / "latest", *runs], None) == [tmp_path / "latest", runs[0]]
 
 
+def test_a_folder_of_runs_names_all_of_them(tmp_path: Path) -> None:
+    (tmp_path / "runs").mkdir()
+    runs = [make_run(tmp_path / name).rename(tmp_path / "runs" / name) for name in ("b", "a")]
+    (tmp_path / "runs" / "latest").symlink_to(runs[0])
+    (tmp_path / "runs" / "other").mkdir()
+    assert chosen_runs([tmp_path / "runs"], None) == [runs[1], runs[0]]
+    with pytest.raises(DeployError, match="is not a run directory"):
+        chosen_runs([tmp_path / "runs" / "other"], None)
+
+
 def test_a_file_that_was_damaged_on_its_way_is_opened_or_refused(run: Path, tmp_path: Path) -> None:
     target = tmp_path / "sent.aosrun"
     write_bundle([run], target)

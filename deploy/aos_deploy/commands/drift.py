@@ -20,12 +20,13 @@ __all__ = ["register"]
 
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`."""
-    app.command(epilog="Example: aos drift runs/*")(drift)
+    app.command(epilog="Example: aos drift runs")(drift)
 
 
 def drift(
     run: Annotated[
-        list[Path] | None, typer.Argument(metavar="RUN...", help="Run directories; else the last run")
+        list[Path] | None,
+        typer.Argument(metavar="RUN...", help="Run directories, or a folder of them; else the last run"),
     ] = None,
     runs: Runs = None,
     as_json: AsJson = False,

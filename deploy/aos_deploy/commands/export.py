@@ -25,7 +25,8 @@ def register(app: typer.Typer) -> None:
 
 def export(
     run: Annotated[
-        list[Path] | None, typer.Argument(metavar="RUN...", help="Run directories; else the last run")
+        list[Path] | None,
+        typer.Argument(metavar="RUN...", help="Run directories, or a folder of them; else the last run"),
     ] = None,
     format: Annotated[Format, typer.Option("--format", help="What is written")] = "mcap",
     output: Annotated[

@@ -10,7 +10,7 @@ from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KIND
 from aos_deploy.history_check.rules import Violation
 from aos_deploy.verdict import Verdict
 from aos_protocol.errors import StorageError
-from aos_runtime.journal import JournalRow
+from aos_runtime.journal import JournalError, JournalRow
 
 __all__ = ["History", "violations", "violations_of"]
 
@@ -114,8 +114,13 @@ def _go_through(
             try:
                 message = row.read_as(kind)
             except StorageError as error:
-                found("rows", error.message)
+                found("rows", _without_file(error))
             else:
                 rules.take(row, message, found)
     except StorageError as error:
-        found("rows", f"nothing can be read after it: {error}")
+        found("rows", f"nothing can be read after it: {_without_file(error)}")
+
+
+def _without_file(error: StorageError) -> str:
+    """The fault of a file, whose name each violation has already."""
+    return error.what if isinstance(error, JournalError) else str(error)

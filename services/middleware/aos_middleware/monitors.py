@@ -97,6 +97,14 @@ class Monitors:
         except TimeoutError:
             _log.info("monitors: some messages did not come")
 
+    def has_heard(self) -> dict[str, bool]:
+        """The topics of the monitors, and of each whether a message has come on it."""
+        return {
+            topic: topic.strip("/") in monitor.last_numbers
+            for monitor in self._running.values()
+            for topic in monitor.topics
+        }
+
     async def end(self, stop: Stop) -> Monitored:
         """The activation has ended: what the monitors have heard since the one before."""
         self._stops.remove(stop)
@@ -116,7 +124,7 @@ class Monitors:
 
 class _Monitor:
     """One monitor. `has_risen` says that its `stop_when` became true since its last response, and `listens`
-    that it is at work."""
+    that it is at work. `last_numbers` are those of the last messages, by topic without its slash."""
 
     def __init__(self, name: str, evaluator: Evaluator, on_stop: Callable[[str], None]) -> None:
         self.name = name
@@ -124,7 +132,7 @@ class _Monitor:
         self.has_risen = False
         self.listens = asyncio.Event()
         self._on_stop = on_stop
-        self._topics = {
+        self.topics = {
             variable.topic
             for variable in evaluator.emitted.mapping.local_variables
             if variable.source is LocalSource.TOPIC
@@ -132,12 +140,12 @@ class _Monitor:
         self._asking = asyncio.Lock()
         self._has_heard = False
         self._fault = ""
-        self._last_numbers: dict[str, int] = {}
+        self.last_numbers: dict[str, int] = {}
         self._received = asyncio.Event()
 
     async def listen(self, bus: Bus, keys: Keys) -> None:
         """Evaluates the messages of its topics for ever; meanwhile nobody else closes its worker."""
-        topics = {keys.topic(topic): topic for topic in sorted(self._topics)}
+        topics = {keys.topic(topic): topic for topic in sorted(self.topics)}
         streams = [bus.listen(key, TopicMessage) for key in topics]
         async with self.evaluator.in_use, merged(*streams, queue_size=_QUEUE_SIZE) as messages:
             async with self._asking:
@@ -148,13 +156,13 @@ class _Monitor:
                 async with self._asking:
                     await self._evaluate([(topics[key], message.fields) for key, message in batch])
                 for key, message in batch:
-                    self._last_numbers[topics[key].strip("/")] = message.number
+                    self.last_numbers[topics[key].strip("/")] = message.number
                 self._received.set()
 
     async def until_heard(self, sent: Mapping[str, int]) -> None:
         """Returns when the messages with these numbers have been evaluated."""
-        own = [topic.strip("/") for topic in self._topics if topic.strip("/") in sent]
-        while any(self._last_numbers.get(topic, 0) < sent[topic] for topic in own):
+        own = [topic.strip("/") for topic in self.topics if topic.strip("/") in sent]
+        while any(self.last_numbers.get(topic, 0) < sent[topic] for topic in own):
             self._received.clear()
             await self._received.wait()
 

@@ -22,6 +22,7 @@ from aos_middleware.monitors import Monitors
 from aos_middleware.motion_gate import MotionGate
 from aos_middleware.served_paths import ServedPaths
 from aos_middleware.settings import Settings
+from aos_middleware.silent_topics import SilentTopics
 from aos_middleware.surroundings import Surroundings
 from aos_protocol.errors import BusError, SkillError
 from aos_protocol.messages import (
@@ -87,6 +88,7 @@ class _Middleware:
             on_stray=self._ledger.note,
             is_played=settings.is_played,
             monitors=self._monitors,
+            silent=SilentTopics(),
         )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}

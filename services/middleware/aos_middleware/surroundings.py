@@ -9,6 +9,7 @@ from aos_middleware.low_level import LowLevelValues
 from aos_middleware.monitors import Monitors
 from aos_middleware.motion_gate import MotionGate
 from aos_middleware.served_paths import ServedPaths
+from aos_middleware.silent_topics import SilentTopics
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Stray
 from aos_runtime.bus import Bus
@@ -35,3 +36,4 @@ class Surroundings(NamedTuple):
     on_stray: Callable[[Stray], None]
     is_played: Callable[[str], bool]
     monitors: Monitors
+    silent: SilentTopics

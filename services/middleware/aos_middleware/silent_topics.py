@@ -1,0 +1,39 @@
+"""Topics that mappings read and on which nothing has ever come, such as those whose name is misspelt."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+from aos_protocol.spelling import did_you_mean
+
+__all__ = ["SilentTopics"]
+
+CALLS = 3
+"""A topic that was silent during this many calls of skills is told."""
+
+_log = logging.getLogger("aos.middleware")
+
+
+class SilentTopics:
+    """Counts the calls during which a topic was silent, and tells each one once, in the log.
+
+    A mapping with an initial value goes on without a message: nothing else tells that none comes.
+    """
+
+    def __init__(self) -> None:
+        self._calls: Counter[str] = Counter()
+        self._heard: set[str] = set()
+
+    def take_call(self, has_heard: Mapping[str, bool], sent: Iterable[str]) -> None:
+        """A call has ended; of each topic that was listened to, whether a message has come on it.
+
+        `sent` are the topics on which adapters have sent something.
+        """
+        self._heard |= {topic for topic, is_heard in has_heard.items() if is_heard}
+        for topic in has_heard.keys() - self._heard:
+            self._calls[topic] += 1
+            if self._calls[topic] == CALLS:
+                hint = did_you_mean(topic, [f"/{name}" for name in sent])
+                _log.warning("no message has come on %s in %d calls of skills. %s", topic, CALLS, hint)
