@@ -30,6 +30,11 @@ inline constexpr std::size_t smallest_group = 10;
 // Of the scenarios with the same history, those that its bounds are taken of.
 inline constexpr std::size_t max_evaluated = 50;
 
+// --- work --------------------------------------------------------------------------------------------
+
+// The engine for the smallest states copies so many bytes of each.
+inline constexpr std::size_t least_copied_bytes = 64;
+
 // --- limits ------------------------------------------------------------------------------------------
 
 inline constexpr std::size_t max_scenario_bytes = std::size_t{512} << 20;

@@ -160,7 +160,6 @@ class ScenarioEvaluation {
   double deviation() const { return best_.deviation(); }
 
  private:
-  static constexpr Operations per_listed_step = 50 + sizeof(Scenario<Model>) / 4;  // it is copied
   static constexpr Operations cost_of_number = 60;  // of a state, in the list
   static constexpr Operations cost_of_certain = 15;  // of the number that the list gives a state before
   static constexpr Operations per_outcome = 2;      // that is passed over
@@ -197,13 +196,18 @@ class ScenarioEvaluation {
     return std::max<std::size_t>((last - first) / max_evaluated, 1);
   }
 
+  // A scenario is copied. What an engine copies that takes larger states does not count: engines decide alike.
+  static Operations per_listed_step() {
+    return 50 + static_cast<Operations>(std::max(Model::state_bytes(), least_copied_bytes) + 2 * sizeof(std::uint32_t)) / 4;
+  }
+
   // Where states are listed, steps by code are compared with steps by the list. Elsewhere all planners step by code.
   Operations step_cost() const { return has_values_ ? code_cost_ : operations_of_step; }
 
   Step listed_step(Scenario<Model>& scenario, int action, Sampler& luck, bool& has_ended) {
     const point_based::FlatModel& rows = values_.space().rows();
     const std::size_t row = rows.row(scenario.seen, static_cast<std::size_t>(action));
-    work_ += per_listed_step;
+    work_ += per_listed_step();
     Step step{rows.rewards[row], default_observation};
     double place = luck.uniform();
     for (const auto& outcome : rows.outcomes[row]) {
