@@ -23,7 +23,7 @@ from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
-from aos_runtime.mission_folders import number_of
+from aos_runtime.mission_folders import number_in
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 
@@ -88,13 +88,13 @@ class ModelAdapter:
 
     async def _turn_to(self, mission: str) -> None:
         """Turns to the world of another mission, in a system that stays."""
-        place = number_of(mission)
-        if mission == self._mission or place is None or place[0] != self._host.run_dir.name:
+        number = number_in(self._host.run_dir.name, mission)
+        if mission == self._mission or number is None:
             return
         entries = (await self._host.missions()).entries
         async with self._changing:
             self._worlds = worlds_of(
-                entries, place[1], self._host.run_dir, self._host.name, self._mission_values
+                entries, number, self._host.run_dir, self._host.name, self._mission_values
             )
             if self._world is not None:
                 self._world = await self._brought(self._world.engine, self._world.project)

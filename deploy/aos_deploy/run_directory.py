@@ -40,6 +40,8 @@ __all__ = ["LATEST", "ProcessEnd", "RunDirectory", "RunRecord", "Summary", "Syst
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""
 
+_TOLD_LOG_LINES = 8
+
 
 _ANEW = ("endpoint", "password_file", "dictionary", "parties", "ros2")
 """The settings that a run which goes on does not keep."""
@@ -220,13 +222,13 @@ class RunDirectory:
         with _kept(path):
             return path.open("ab")
 
-    def last_log_lines(self, service: str, count: int = 8) -> list[str]:
+    def last_log_lines(self, service: str) -> list[str]:
         """The end of a service's log."""
         try:
             text = self.log(service).read_text(encoding="utf-8", errors="replace")
         except OSError:
             return []
-        return text.splitlines()[-count:]
+        return text.splitlines()[-_TOLD_LOG_LINES:]
 
     def fault(self, service: str) -> Fault | None:
         """The fault a service has left, if it has."""

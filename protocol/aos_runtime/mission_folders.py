@@ -19,6 +19,7 @@ __all__ = [
     "mission_folder",
     "mission_folders",
     "mission_name",
+    "number_in",
     "number_of",
     "stays",
 ]
@@ -62,6 +63,12 @@ def number_of(mission: str) -> tuple[str, int] | None:
     """The run and the number in such a name; None for any other name."""
     run, dash, number = mission.rpartition("-")
     return (run, int(number)) if dash and number.isascii() and number.isdigit() else None
+
+
+def number_in(run: str, mission: str) -> int | None:
+    """The number of a mission of this run in a system that stays; None for any other mission."""
+    place = number_of(mission)
+    return place[1] if place is not None and place[0] == run else None
 
 
 def is_before(mission: str, other: str) -> bool:

@@ -1,19 +1,19 @@
-"""The paths that adapters serve now, as their tokens tell."""
+"""The adapters' paths that are served now, as their tokens tell."""
 
 from __future__ import annotations
 
-from aos_protocol.keys import Keys
+from aos_protocol.keys import Keys, Serving
 from aos_runtime.bus import Bus
 
-__all__ = ["served_paths"]
+__all__ = ["served"]
 
 
-async def served_paths(bus: Bus, keys: Keys) -> list[str]:
-    """The paths by name, each once."""
-    paths = set()
+async def served(bus: Bus, keys: Keys) -> list[Serving]:
+    """Each path with who serves it; one that several serve is there several times."""
+    found = []
     async with bus.presence(keys.all_serve) as present:
         while present.has_items:
             key, is_there = await anext(present)
             if is_there and (serving := keys.serving_of(key)) is not None:
-                paths.add(serving.path)
-    return sorted(paths)
+                found.append(serving)
+    return found

@@ -29,6 +29,7 @@ from aos_protocol.messages import (
     SkillResult,
 )
 from aos_runtime.client import AosClient
+from aos_runtime.served import served
 from aos_runtime.subscription import Subscription
 
 __all__ = ["register"]
@@ -60,8 +61,8 @@ def list_skills(system: System, as_json: AsJson = False) -> None:
             typer.echo(json.dumps(rows, indent=2))
             return
         for row in rows:
-            served = ", ".join(row["served_by"]) or row["unavailable"]
-            typer.echo(f"{row['skill']:24} {row['path']:24} {served}")
+            by = ", ".join(row["served_by"]) or row["unavailable"]
+            typer.echo(f"{row['skill']:24} {row['path']:24} {by}")
 
     system.do(show)
 
@@ -141,8 +142,8 @@ def cancel(
     """Stop what moves; the mission goes on with that outcome."""
 
     async def work(aos: AosClient) -> None:
-        paths = [path] if path else sorted({server.path for server in await _servers(aos)})
-        answers = await asyncio.gather(*(_stop(aos, served) for served in paths), return_exceptions=True)
+        paths = [path] if path else sorted({server.path for server in await served(aos.bus, aos.keys)})
+        answers = await asyncio.gather(*(_stop(aos, path) for path in paths), return_exceptions=True)
         stopped = {id for answer in answers if isinstance(answer, Cancelled) for id in answer.ids}
         typer.echo(f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving")
         for answered in answers:
@@ -174,18 +175,7 @@ async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:
     bus, keys = aos.bus, aos.keys
     revision = await bus.ask(keys.project, ProjectQuery(), ProjectRevision, timeout_s=_ASK_S)
     state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
-    return revision.project, state, await _servers(aos)
-
-
-async def _servers(aos: AosClient) -> list[Serving]:
-    """Everything that is served now."""
-    servers = []
-    async with aos.bus.presence(aos.keys.all_serve) as present:
-        while present.has_items:
-            key, _ = await anext(present)
-            if (serving := aos.keys.serving_of(key)) is not None:
-                servers.append(serving)
-    return servers
+    return revision.project, state, await served(aos.bus, aos.keys)
 
 
 async def _mission_state(aos: AosClient) -> MissionState | None:

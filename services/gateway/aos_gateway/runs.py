@@ -20,7 +20,7 @@ from aos_protocol.errors import AosError, DeployError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder, mission_folders, number_of
+from aos_runtime.mission_folders import mission_folder, mission_folders, number_in, number_of
 from aos_solver.mission.history import history_page
 from aos_solver.mission.logbook import JOURNAL, entries_of
 
@@ -215,19 +215,12 @@ class KeptRun(Run):
 
     def folder(self, mission: str) -> Path:
         """The folder of a mission's journal and summary."""
-        place = number_of(mission)
-        is_one_of_several = place is not None and place[0] == self.name
-        return (
-            mission_folder(self.directory.path, place[1])
-            if place and is_one_of_several
-            else self.directory.path
-        )
+        number = number_in(self.name, mission)
+        return self.directory.path if number is None else mission_folder(self.directory.path, number)
 
     def summary(self, mission: str) -> Summary | None:
         """The summary of a mission that has ended."""
-        place = number_of(mission)
-        is_one_of_several = place is not None and place[0] == self.name
-        return self.directory.read_summary(place[1] if place and is_one_of_several else 0)
+        return self.directory.read_summary(number_in(self.name, mission) or 0)
 
 
 class RemoteRun(Run):

@@ -4,7 +4,8 @@ directory.
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Awaitable, Callable
+from typing import Annotated, TypeVar
 
 import msgspec
 
@@ -13,11 +14,15 @@ from aos_gateway.reading import number_of_step
 from aos_gateway.runs import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError
+from aos_protocol.keys import Keys
 from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.client import STUDY_TIMEOUT_S
-from aos_runtime.mission_folders import number_of
+from aos_runtime.mission_folders import number_in
+from aos_solver.study.study import Study
 
 __all__ = ["tree", "what_if", "why"]
+
+A = TypeVar("A", Why, DecisionTree, WhatIf)
 
 
 class OfWhy(msgspec.Struct, frozen=True):
@@ -47,25 +52,15 @@ async def why(gateway: Gateway, mission: str, step: str, query: OfWhy) -> Why:
     beliefs.
     """
     asked = WhyQuery(number_of_step(step), query.instead, mission)
-    found = await gateway.shelf.run_of_mission(mission)
-    if found.is_running:
-        async with found.asking() as client:
-            return await client.bus.ask(client.keys.study_why, asked, Why, timeout_s=STUDY_TIMEOUT_S)
-    async with gateway.studying:
-        return await _studied(found, mission).study(lambda study: study.why(asked))
+    return await _answer(gateway, asked, Why, lambda keys: keys.study_why, lambda study: study.why(asked))
 
 
 async def tree(gateway: Gateway, mission: str, step: str, query: OfTree) -> DecisionTree:
     """The tree below a decision: the best actions and likeliest responses, each belief planned anew."""
     asked = TreeQuery(number_of_step(step), query.depth, query.branches, mission)
-    found = await gateway.shelf.run_of_mission(mission)
-    if found.is_running:
-        async with found.asking() as client:
-            return await client.bus.ask(
-                client.keys.study_tree, asked, DecisionTree, timeout_s=STUDY_TIMEOUT_S
-            )
-    async with gateway.studying:
-        return await _studied(found, mission).study(lambda study: study.tree(asked))
+    return await _answer(
+        gateway, asked, DecisionTree, lambda keys: keys.study_tree, lambda study: study.tree(asked)
+    )
 
 
 async def what_if(gateway: Gateway, mission: str, step: str, body: Otherwise) -> WhatIf:
@@ -73,17 +68,24 @@ async def what_if(gateway: Gateway, mission: str, step: str, body: Otherwise) ->
     compiled.
     """
     asked = WhatIfQuery(number_of_step(step), body.forbid, body.without, body.believe, body.change, mission)
-    found = await gateway.shelf.run_of_mission(mission)
-    if found.is_running:
-        async with found.asking() as client:
-            return await client.bus.ask(client.keys.study_whatif, asked, WhatIf, timeout_s=STUDY_TIMEOUT_S)
-    async with gateway.studying:
-        return await _studied(found, mission).study(lambda study: study.what_if(asked))
+    return await _answer(
+        gateway, asked, WhatIf, lambda keys: keys.study_whatif, lambda study: study.what_if(asked)
+    )
 
 
-def _studied(run: object, mission: str) -> StudiedRun:
+async def _answer(
+    gateway: Gateway,
+    asked: WhyQuery | TreeQuery | WhatIfQuery,
+    kind: type[A],
+    key: Callable[[Keys], str],
+    study: Callable[[Study], Awaitable[A]],
+) -> A:
+    """The answer of the mission's solver at a key of the bus; of a mission that is over, that of a study."""
+    run = await gateway.shelf.run_of_mission(asked.mission)
+    if run.is_running:
+        async with run.asking() as client:
+            return await client.bus.ask(key(client.keys), asked, kind, timeout_s=STUDY_TIMEOUT_S)
     if not isinstance(run, KeptRun):
-        raise GatewayError(f"the mission {mission} is over, and not on this machine", code="AOS902")
-    place = number_of(mission)
-    is_one_of_several = place is not None and place[0] == run.name
-    return StudiedRun.open(run.directory.path, place[1] if place and is_one_of_several else None)
+        raise GatewayError(f"the mission {asked.mission} is over, and not on this machine", code="AOS902")
+    async with gateway.studying:
+        return await StudiedRun.open(run.directory.path, number_in(run.name, asked.mission)).study(study)

@@ -9,7 +9,7 @@ from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
-from aos_runtime.served import served_paths
+from aos_runtime.served import served
 from aos_solver.mission.loop import Mission
 
 __all__ = ["until_stopped"]
@@ -36,7 +36,7 @@ async def _cancel(mission: Mission, reason: str, bus: Bus, keys: Keys) -> None:
     # All at once: one that is slow to answer keeps nothing else moving.
     questions = [
         bus.ask(keys.cancel(path), cancel, Cancelled, timeout_s=CANCEL_TIMEOUT_S)
-        for path in await served_paths(bus, keys)
+        for path in sorted({server.path for server in await served(bus, keys)})
     ]
     answers = await asyncio.gather(*questions, return_exceptions=True)
     for answer in answers:

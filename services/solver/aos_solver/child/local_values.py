@@ -15,7 +15,7 @@ import msgspec
 from aos_protocol.codec import UNREADABLE
 from aos_solver.emission.program import Local
 
-__all__ = ["UnusableLocals", "local_values_line"]
+__all__ = ["UnusableLocals", "local_values_line", "numbers_of"]
 
 _SHOWN_CHARACTERS = 60
 _Int = Annotated[int, msgspec.Meta(ge=-(2**31), lt=2**31)]
@@ -44,7 +44,7 @@ def local_values_line(wanted: Iterable[Local], texts: Mapping[str, str]) -> str:
         except UNREADABLE:
             reasons.append(_reason(local, text))
         else:
-            numbers += _numbers(value)
+            numbers += numbers_of(value)
     if reasons:
         raise UnusableLocals("; ".join(reasons))
     return " ".join(map(str, numbers))
@@ -58,8 +58,9 @@ def _reason(local: Local, text: str) -> str:
     return f"{local.name} is {shown}, which is no {kind}"
 
 
-def _numbers(value: Any) -> Iterator[int]:
-    """A number as it is, of a real one the bits as a signed integer; of a list or a text its size first."""
+def numbers_of(value: Any) -> Iterator[int]:
+    """The numbers that stand for a value: a number itself, of a real one the bits as a signed integer; of a
+    list or a text its size first."""
     if isinstance(value, float):
         yield from struct.unpack("<q", struct.pack("<d", value))
     elif isinstance(value, int):
@@ -68,4 +69,4 @@ def _numbers(value: Any) -> Iterator[int]:
         items = value.encode() if isinstance(value, str) else value
         yield len(items)
         for item in items:
-            yield from _numbers(item)
+            yield from numbers_of(item)

@@ -21,6 +21,7 @@ PLANNING_DEADLINE_S = 120.0
 searches."""
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
+_LOOK_FOR_GOAL_S = 1.0
 
 
 class Restriction(msgspec.Struct, frozen=True, kw_only=True):
@@ -108,17 +109,15 @@ class MissionQuestions(Asking):
         without: Sequence[str] = (),
         without_actions: Sequence[int] = (),
         cautious: bool = False,
-        seconds: float = 1.0,
-        seed: int = 0,
     ) -> GoalReach:
-        """Looks for so much processor time whether the other skills and actions lead to a goal."""
+        """Looks for a second of processor time whether the other skills and actions lead to a goal."""
         command = command_line(
             "may_reach_goal",
             without=",".join(without) or None,
             without_actions=",".join(map(str, without_actions)) or None,
             cautious=cautious or None,
-            seconds=seconds,
-            seed=seed,
+            seconds=_LOOK_FOR_GOAL_S,
+            seed=0,
             horizon=0,
         )
         return await self._ask(command, GoalReach)

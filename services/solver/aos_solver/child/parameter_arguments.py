@@ -5,10 +5,10 @@ Each is `name=value`, with the value as `StateReader` in state_text.hpp reads it
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from aos_language.mission_parameters import ParameterLeaf
+from aos_solver.child.local_values import numbers_of
 
 __all__ = ["parameter_arguments"]
 
@@ -16,19 +16,16 @@ __all__ = ["parameter_arguments"]
 def parameter_arguments(leaves: Mapping[str, ParameterLeaf], values: Mapping[str, str]) -> tuple[str, ...]:
     """The arguments for values in their canonical spelling; each is that of a leaf."""
     return tuple(
-        f"{name}={' '.join(map(str, _numbers(leaves[name], text)))}" for name, text in values.items()
+        f"{name}={' '.join(map(str, numbers_of(_value(leaves[name], text))))}"
+        for name, text in values.items()
     )
 
 
-def _numbers(leaf: ParameterLeaf, text: str) -> Iterator[int]:
+def _value(leaf: ParameterLeaf, text: str) -> int | float | str:
     if leaf.values:
-        yield leaf.values.index(text)
-    elif leaf.type == "bool":
-        yield int(text == "true")
-    elif leaf.type == "string":
-        characters = struct.unpack(f"{len(text.encode())}b", text.encode())
-        yield from (len(characters), *characters)
-    elif leaf.type in ("float", "double"):
-        yield from struct.unpack("<q", struct.pack("<d", float(text)))
-    else:
-        yield int(text)
+        return leaf.values.index(text)
+    if leaf.type == "bool":
+        return text == "true"
+    if leaf.type == "string":
+        return text
+    return float(text) if leaf.type in ("float", "double") else int(text)

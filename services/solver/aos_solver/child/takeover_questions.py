@@ -54,12 +54,12 @@ class TakeoverQuestions(Asking):
         """The skills whose responses may be any text."""
         return self._built.emitted.texting_skills
 
-    async def pass_time(self, steps: int = 1, *, step: int | None = None) -> BeliefUpdate:
-        """Lets extrinsic changes alone act for so many steps; nothing is done and nothing observed.
+    async def pass_time(self, *, step: int | None = None) -> BeliefUpdate:
+        """Lets extrinsic changes alone act for a step; nothing is done and nothing observed.
 
         `step` is the mission's, as in `update`.
         """
-        command = command_line("pass_time", steps=steps, draws=self._draws.of(step))
+        command = command_line("pass_time", steps=1, draws=self._draws.of(step))
         return await self._change_belief(command, BeliefUpdate)
 
     async def marginals(self) -> tuple[Marginal, ...]:

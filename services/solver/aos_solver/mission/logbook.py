@@ -14,7 +14,7 @@ from aos_runtime.mission_folders import (
     mission_folder,
     mission_folders,
     mission_name,
-    number_of,
+    number_in,
 )
 from aos_solver.mission.memory import BEGUN, MissionMemory, folded
 
@@ -143,10 +143,10 @@ def entries_of(run: Path) -> tuple[MissionEntry, ...]:
 
 def entry_of(run: Path, mission: str) -> MissionEntry | None:
     """The mission of this name in the folder of a run; None if it has not begun there."""
-    place = number_of(mission)
-    if place is None or place[0] != run.name:
+    number = number_in(run.name, mission)
+    if number is None:
         return None
-    return next(iter(_entry(mission_folder(run, place[1]) / JOURNAL, place[1])), None)
+    return next(iter(_entry(mission_folder(run, number) / JOURNAL, number)), None)
 
 
 def _entry(path: Path, number: int) -> list[MissionEntry]:

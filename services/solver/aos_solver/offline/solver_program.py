@@ -6,7 +6,7 @@ from pathlib import Path
 
 from aos_solver.building.build import SOURCES
 from aos_solver.building.build_cache import BuildCache, digest_of
-from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.compiler import find_compiler
 from aos_solver.building.compiler_run import internal_error, run_compiler
 
 __all__ = ["build_solver"]
@@ -17,12 +17,12 @@ _OBJECT = "sarsop.o"
 _EXECUTABLE = "sarsop"
 
 
-async def build_solver(cache_dir: Path, compiler: Compiler | None = None) -> Path:
+async def build_solver(cache_dir: Path) -> Path:
     """The executable, from the cache or compiled now.
 
     ModelError AOS202 when the compiler ran out of time, AOS203 without a compiler.
     """
-    compiler = compiler or await find_compiler()
+    compiler = await find_compiler()
     compilation = compiler.compilation(str(_SOURCE), _OBJECT, str(SOURCES), "-O3")
     texts = [path.read_text() for path in (*sorted(_SOURCE.parent.iterdir()), *_SHARED)]
     options = compiler.compilation("", "", "", "-O3")
