@@ -8,10 +8,10 @@ import logging
 import secrets
 from collections.abc import Awaitable, Callable
 
-from aos_protocol.errors import AosError, SkillError
 from aos_skills.dds.cyclone import HEADER, Endpoint, Participant, Writer
+from aos_skills.ros.faults import check_type, not_answered, not_served
 from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
-from aos_skills.ros.ros2_node import Ros2Node, check_type, not_served
+from aos_skills.ros.ros2_node import Ros2Node
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.wire import ros_type
 
@@ -25,7 +25,7 @@ _log = logging.getLogger("aos.dds")
 
 
 class DdsNode(Ros2Node):
-    """A `RosNode`. Belongs to the event loop that made it."""
+    """Belongs to the event loop that made it."""
 
     def __init__(
         self, types: RosTypes, *, domain: int = 0, interface: str = "lo", peers: tuple[str, ...] = ()
@@ -55,14 +55,7 @@ class DdsNode(Ros2Node):
     def subscribe(
         self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
     ) -> Callable[[], None]:
-        def on_payload(payload: bytes) -> None:
-            try:
-                fields = self.types.decoded(type_name, payload)
-            except AosError as error:
-                _log.warning("on %s: %s", topic, error)
-            else:
-                take(fields)
-
+        on_payload = self._decoding(topic, type_name, take)
         reader = self._participant.reader(f"rt{topic}", type_name, on_payload, qos)
         self._matched[topic] = reader.matched
         return reader.close
@@ -86,7 +79,7 @@ class DdsNode(Ros2Node):
             async with asyncio.timeout(timeout_s):
                 response = await self._clients[service].ask(encoded)
         except TimeoutError as error:
-            raise SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503") from error
+            raise not_answered(service, timeout_s) from error
         return self.types.decoded(f"{type_name}_Response", response)
 
     async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:

@@ -5,12 +5,16 @@ from __future__ import annotations
 import asyncio
 import uuid
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from aos_protocol.errors import AosError, SkillError
-from aos_skills.ros.node import DISCOVERY_S, ActionEnd, ActionRequest, Fields, RosNode, ServiceRequest
+from aos_skills.ros.faults import CANCEL_S, node_lost, not_cancelled, not_ended
+from aos_skills.ros.node import DISCOVERY_S, ActionEnd, ActionRequest, Fields, ServiceRequest
 
-__all__ = ["CANCEL_S", "STATUS", "ActionClient", "ServiceNode", "node_lost", "not_cancelled", "not_ended"]
+if TYPE_CHECKING:
+    from aos_skills.ros.ros2_node import Ros2Node  # It has a client.
+
+__all__ = ["STATUS", "ActionClient"]
 
 STATUS = {
     1: "accepted",
@@ -21,33 +25,11 @@ STATUS = {
     6: "aborted",
 }
 
-CANCEL_S = 1.8
-"""A node may take this long to end a goal after it was asked to: less than an adapter has for it."""
-
-
-class ServiceNode(RosNode, Protocol):
-    """A node of ROS 2, where actions are made of services and topics."""
-
-    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
-        """The type of a service that some node serves, which is as it is defined here, and the given one.
-
-        The errors are those of `RosNode.call`.
-        """
-        ...
-
-    async def until_heard(self, topic: str) -> None:
-        """Returns when what is published on a topic that is subscribed to arrives, as far as can be known."""
-        ...
-
-    async def service_gone(self, service: str) -> None:
-        """Returns once no node serves the service."""
-        ...
-
 
 class ActionClient:
     """A node's runs of actions, with one subscription to feedback for each action, however many goals run."""
 
-    def __init__(self, node: ServiceNode) -> None:
+    def __init__(self, node: Ros2Node) -> None:
         self._node = node
         self._takers: dict[str, dict[bytes, Callable[[Fields], None]]] = {}
 
@@ -154,29 +136,6 @@ class ActionClient:
 
 def _ignore(_: Fields) -> None:
     """Takes feedback that nobody wants."""
-
-
-def not_cancelled(action: str) -> SkillError:
-    """The error where a goal does not end although its end was asked for."""
-    return SkillError(
-        f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s",
-        code="AOS504",
-        hint="The robot may still move: look at it, and at the node's log",
-    )
-
-
-def not_ended(action: str, timeout_s: float) -> SkillError:
-    """The error where a goal took too long, and was cancelled."""
-    return SkillError(f"{action} did not end within {timeout_s:g} s and was cancelled", code="AOS503")
-
-
-def node_lost(action: str) -> SkillError:
-    """The error where the node of an action leaves while a goal runs."""
-    return SkillError(
-        f"the node that serves {action} has left while it ran",
-        code="AOS504",
-        hint="Whether the skill did its work is not known",
-    )
 
 
 def _first(group: BaseExceptionGroup[AosError]) -> AosError:

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 from aos_protocol.errors import AosError, DeployError, SkillError
 from aos_runtime.adapters import Call, Host
-from aos_skills.ros.action_client import CANCEL_S
 from aos_skills.ros.connect import connect
 from aos_skills.ros.documented import documented
+from aos_skills.ros.faults import CANCEL_S
 from aos_skills.ros.node import ActionRequest, Fields, RosNode, ServiceRequest
 
 __all__ = ["DdsAdapter", "Ros1Adapter", "Ros2Adapter", "RosAdapter", "Way", "way_to"]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+from abc import abstractmethod
 from collections.abc import Awaitable, Callable, Iterable
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
+
+from aos_runtime.closing import Closing
 
 __all__ = [
     "DEFAULT_QOS",
@@ -79,13 +82,14 @@ An AosError aborts the goal.
 """
 
 
-class RosNode(Protocol):
+class RosNode(Closing):
     """Names are full, `/robot1/chatter`; types too, `std_msgs/msg/String`; values are dicts of fields."""
 
+    @abstractmethod
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
         """Returns a function that publishes a message on a topic."""
-        ...
 
+    @abstractmethod
     def subscribe(
         self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
     ) -> Callable[[], None]:
@@ -93,24 +97,24 @@ class RosNode(Protocol):
 
         With a transient local quality of service, messages from before are taken as well.
         """
-        ...
 
+    @abstractmethod
     async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
         """Finds out what is published on a topic; None if nobody does within the time."""
-        ...
 
+    @abstractmethod
     async def call(self, request: ServiceRequest) -> Fields:
         """A service's response.
 
         SkillError AOS505 if no node serves it, AOS503 if it does not answer in time, AOS504 if it is lost.
         DeployError AOS806 if its type is not known, SkillError AOS509 if the server's definition is another.
         """
-        ...
 
+    @abstractmethod
     def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
         """Serves until closed: `handler(request)` runs as a task for each request and gives the response."""
-        ...
 
+    @abstractmethod
     async def run_action(self, request: ActionRequest) -> ActionEnd:
         """Sends a goal and waits for its end.
 
@@ -118,35 +122,30 @@ class RosNode(Protocol):
         SkillError AOS505 if no node serves the action, AOS502 if it refuses the goal, AOS503 if the time was
         over, AOS504 if the node is lost or does not end the goal although it was asked to.
         """
-        ...
 
+    @abstractmethod
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
         """Serves an action until closed. Any number of goals may run: `run` refuses what it cannot."""
-        ...
 
+    @abstractmethod
     def served(self) -> list[str]:
         """The names of all services and actions that some node serves now, without those of every node."""
-        ...
 
+    @abstractmethod
     def kind_of(self, name: str) -> str:
         """Returns what some node serves under a name now: "service", "action", or "" for nothing."""
-        ...
 
+    @abstractmethod
     async def check(self, name: str, type_name: str) -> None:
         """Looks whether what is served under a name can be called.
 
         DeployError AOS806 if its type is not known, SkillError AOS509 if it is another than given or defined
         differently, AOS505 if nobody serves it any more.
         """
-        ...
 
+    @abstractmethod
     async def changed(self) -> None:
         """Returns at the next change of who serves and publishes what."""
-        ...
-
-    async def close(self) -> None:
-        """Leaves the others."""
-        ...
 
 
 _GOAL = "/_action/send_goal"

@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
+import logging
 from abc import abstractmethod
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Callable
 
-from aos_protocol.errors import SkillError
-from aos_runtime.closing import Closing
+from aos_protocol.errors import AosError
 from aos_skills.ros.action_client import ActionClient
 from aos_skills.ros.action_server import ActionServer
-from aos_skills.ros.node import (
-    DEFAULT_QOS,
-    ActionEnd,
-    ActionRequest,
-    Fields,
-    Qos,
-    RunGoal,
-    ServiceRequest,
-    TopicFound,
-    named_skills,
-)
+from aos_skills.ros.node import ActionEnd, ActionRequest, Fields, RosNode, RunGoal, named_skills
 from aos_skills.ros.types import RosTypes
 
-__all__ = ["Ros2Node", "check_type", "not_served"]
+__all__ = ["Ros2Node"]
+
+_log = logging.getLogger("aos.ros2")
 
 
-class Ros2Node(Closing):
-    """A `RosNode` over a transport that gives topics, services and who is there; see `RosNode` for each."""
+class Ros2Node(RosNode):
+    """A node over a transport that gives topics, services and who is there."""
 
     def __init__(self, types: RosTypes) -> None:
         self.types = types
@@ -35,29 +27,15 @@ class Ros2Node(Closing):
     # --- by the transport ----------------------------------------------------------------------------
 
     @abstractmethod
-    def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]: ...
-
-    @abstractmethod
-    def subscribe(
-        self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
-    ) -> Callable[[], None]: ...
-
-    @abstractmethod
     async def until_heard(self, topic: str) -> None:
-        """Returns when whoever publishes a topic knows of the subscription to it."""
-
-    @abstractmethod
-    async def topic(self, topic: str, timeout_s: float) -> TopicFound | None: ...
-
-    @abstractmethod
-    async def call(self, request: ServiceRequest) -> Fields: ...
-
-    @abstractmethod
-    def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None: ...
+        """Returns when whoever publishes a topic knows of the subscription to it, as far as can be known."""
 
     @abstractmethod
     async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
-        """The type of a service, as it is defined here; SkillError AOS505 or AOS509."""
+        """The type of a service that some node serves, which is as it is defined here, and the given one.
+
+        The errors are those of `call`.
+        """
 
     @abstractmethod
     def serves(self, service: str) -> bool:
@@ -66,12 +44,6 @@ class Ros2Node(Closing):
     @abstractmethod
     def services(self) -> list[str]:
         """The names of all that some node serves now."""
-
-    @abstractmethod
-    async def changed(self) -> None: ...
-
-    @abstractmethod
-    async def close(self) -> None: ...
 
     # --- the same for all ----------------------------------------------------------------------------
 
@@ -99,17 +71,17 @@ class Ros2Node(Closing):
         while self.serves(service):
             await self.changed()
 
+    def _decoding(
+        self, topic: str, type_name: str, take: Callable[[Fields], None]
+    ) -> Callable[[bytes], None]:
+        """Takes the fields of payloads; those that cannot be decoded are left out."""
 
-def not_served(message: str, known: Iterable[str]) -> SkillError:
-    """The error where no node serves what is called."""
-    return SkillError(message, code="AOS505", hint=f"Served are: {', '.join(known) or 'none'}")
+        def on_payload(payload: bytes) -> None:
+            try:
+                fields = self.types.decoded(type_name, payload)
+            except AosError as error:
+                _log.warning("on %s: %s", topic, error)
+            else:
+                take(fields)
 
-
-def check_type(service: str, found: str, wanted: str) -> None:
-    """Raises SkillError AOS509 where a service is of another type than the wanted one, if any is."""
-    if wanted and found != wanted:
-        raise SkillError(
-            f"{service} is of type {found}, not {wanted}",
-            code="AOS509",
-            hint="Correct the type in the deploy file, or leave it out",
-        )
+        return on_payload

@@ -8,10 +8,17 @@ from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from aos_protocol.errors import AosError, SkillError
-from aos_runtime.closing import Closing
-from aos_skills.ros.action_client import CANCEL_S, node_lost, not_cancelled, not_ended
+from aos_protocol.errors import AosError
 from aos_skills.ros.definitions import definitions_in
+from aos_skills.ros.faults import (
+    CANCEL_S,
+    check_type,
+    node_lost,
+    not_answered,
+    not_cancelled,
+    not_ended,
+    not_served,
+)
 from aos_skills.ros.node import (
     DEFAULT_QOS,
     DISCOVERY_S,
@@ -19,6 +26,7 @@ from aos_skills.ros.node import (
     ActionRequest,
     Fields,
     Qos,
+    RosNode,
     RunGoal,
     ServiceRequest,
     TopicFound,
@@ -34,7 +42,7 @@ DEFAULT_PYTHON = "/usr/bin/python3"
 _log = logging.getLogger("aos.ros1")
 
 
-class Ros1Node(Closing):
+class Ros1Node(RosNode):
     """Belongs to the event loop that opened it."""
 
     def __init__(self) -> None:
@@ -97,7 +105,7 @@ class Ros1Node(Closing):
         try:
             response: Fields = await asyncio.wait_for(asked, timeout_s)
         except TimeoutError as error:
-            raise SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503") from error
+            raise not_answered(service, timeout_s) from error
         return response
 
     def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
@@ -213,16 +221,8 @@ class Ros1Node(Closing):
     async def _type(self, kind: str, name: str, type_name: str, timeout_s: float) -> str:
         found = await self._wait_for(kind, name, timeout_s)
         if not found:
-            known = ", ".join(sorted(self._names[kind])) or "none"
-            raise SkillError(
-                f"no ROS 1 node serves {name}", code="AOS505", hint=f"The {kind} there are: {known}"
-            )
-        if type_name and _ros1(type_name) != found:
-            raise SkillError(
-                f"{name} is of type {found}, not {_ros1(type_name)}",
-                code="AOS509",
-                hint="Correct the type in the deploy file, or leave it out",
-            )
+            raise not_served(f"no ROS 1 node serves {name}", sorted(self._names[kind]))
+        check_type(name, found, _ros1(type_name) if type_name else "")
         return found
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import itertools
-import logging
 import time
 from collections.abc import Awaitable, Callable
 from typing import Self
 
-from aos_protocol.errors import AosError, BusError, LateAnswerError, NobodyAnswersError, SkillError
+from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError, SkillError
 from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
+from aos_skills.ros.faults import check_type, node_lost, not_answered, not_served
 from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
-from aos_skills.ros.ros2_node import Ros2Node, check_type, not_served
+from aos_skills.ros.ros2_node import Ros2Node
 from aos_skills.ros.types import NO_HASH, RosTypes
 from aos_skills.ros2.graph import Graph
 from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
@@ -20,11 +20,9 @@ __all__ = ["Node"]
 
 _FIRST_ENTITY = 10
 
-_log = logging.getLogger("aos.ros2")
-
 
 class Node(Ros2Node):
-    """A `RosNode`. Belongs to the event loop that opened it."""
+    """Belongs to the event loop that opened it."""
 
     def __init__(self, bus: ForeignBus, types: RosTypes, name: str, domain: int) -> None:
         super().__init__(types)
@@ -66,15 +64,10 @@ class Node(Ros2Node):
     ) -> Undo:
         own = self._endpoint(Kind.SUBSCRIPTION, topic, type_name, self._hash(topic, type_name), qos)
 
-        def on_packet(packet: Packet) -> None:
-            try:
-                fields = self.types.decoded(type_name, packet.payload)
-            except AosError as error:
-                _log.warning("on %s: %s", topic, error)
-            else:
-                take(fields)
-
-        stop = self._bus.listen(own.key, on_packet, with_history=qos.is_transient_local)
+        on_payload = self._decoding(topic, type_name, take)
+        stop = self._bus.listen(
+            own.key, lambda packet: on_payload(packet.payload), with_history=qos.is_transient_local
+        )
         leave = self._bus.announce(own.token)
 
         def undo() -> None:
@@ -191,11 +184,7 @@ class _Client:
 
 def _skill_error(service: str, timeout_s: float, error: BusError) -> SkillError:
     if isinstance(error, LateAnswerError):
-        return SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503")
+        return not_answered(service, timeout_s)
     if isinstance(error, NobodyAnswersError):
-        return SkillError(
-            f"the node that serves {service} was lost during the call",
-            code="AOS504",
-            hint="Whether the skill did its work is not known",
-        )
+        return node_lost(service)
     return SkillError(error.message, code="AOS502", hint=error.hint)

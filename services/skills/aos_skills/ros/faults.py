@@ -1,0 +1,63 @@
+"""The errors of a robot's services and actions, whichever way its nodes are reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from aos_protocol.errors import SkillError
+
+__all__ = [
+    "CANCEL_S",
+    "check_type",
+    "node_lost",
+    "not_answered",
+    "not_cancelled",
+    "not_ended",
+    "not_served",
+]
+
+CANCEL_S = 1.8
+"""A node may take this long to end a goal after it was asked to: less than an adapter has for it."""
+
+
+def not_served(message: str, known: Iterable[str]) -> SkillError:
+    """The error where no node serves what is called."""
+    return SkillError(message, code="AOS505", hint=f"Served are: {', '.join(known) or 'none'}")
+
+
+def not_answered(service: str, timeout_s: float) -> SkillError:
+    """The error where a service took too long."""
+    return SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503")
+
+
+def check_type(name: str, found: str, wanted: str) -> None:
+    """Raises SkillError AOS509 where what is served is of another type than the wanted one, if any is."""
+    if wanted and found != wanted:
+        raise SkillError(
+            f"{name} is of type {found}, not {wanted}",
+            code="AOS509",
+            hint="Correct the type in the deploy file, or leave it out",
+        )
+
+
+def not_cancelled(action: str) -> SkillError:
+    """The error where a goal does not end although its end was asked for."""
+    return SkillError(
+        f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s",
+        code="AOS504",
+        hint="The robot may still move: look at it, and at the node's log",
+    )
+
+
+def not_ended(action: str, timeout_s: float) -> SkillError:
+    """The error where a goal took too long, and was cancelled."""
+    return SkillError(f"{action} did not end within {timeout_s:g} s and was cancelled", code="AOS503")
+
+
+def node_lost(action: str) -> SkillError:
+    """The error where the node of an action leaves while a goal runs."""
+    return SkillError(
+        f"the node that serves {action} has left while it ran",
+        code="AOS504",
+        hint="Whether the skill did its work is not known",
+    )
