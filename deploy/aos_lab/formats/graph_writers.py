@@ -64,98 +64,82 @@ def c_header(graph: PolicyGraph, name: str) -> str:
             code="AOS320",
             hint="Ask for fewer --nodes, or use the .policy file",
         )
-    return "\n".join(_header_lines(graph, symbols([name.lower()])[0])) + "\n"
+    return _header(graph, symbols([name.lower()])[0])
 
 
-def _header_lines(graph: PolicyGraph, prefix: str) -> Iterator[str]:
+def _header(graph: PolicyGraph, prefix: str) -> str:
     model = graph.model
-    actions, observations = symbols(model.actions), symbols(model.observations)
     upper = prefix.upper()
     start = "0" if len(graph.starts) == 1 else "k"
-    step = f"{prefix}_after(node, do_and_observe({prefix}_node_action[node]))"
-    value = f"{graph.value:.6g}, discounted by {model.discount:g} a step"
-    yield from (
-        f"// The policy of {_one_line(model.name)}, written by `aos solve`; do not edit.",
-        "//",
-        f"// From the start it gives {value}. To follow it:",
-        "//",
-        f"//   uint16_t node = {prefix}_start[{start}];",
-        f"//   while (node < {upper}_NODES) node = {step};",
-        "//",
-        f"// `{prefix}_after` gives {upper}_OVER once the mission is over, and {upper}_NO_NODE for an",
-        "// observation that the model holds impossible there.",
-    )
-    yield f"#ifndef {upper}_H"
-    yield f"#define {upper}_H"
-    yield ""
-    yield "#include <stdint.h>"
-    yield ""
-    yield from _enumeration(f"{prefix}_action", upper, "DO", actions, model.actions)
-    yield ""
-    yield from _enumeration(f"{prefix}_observation", upper, "SEE", observations, model.observations)
-    yield ""
-    yield f"enum {{ {upper}_NODES = {len(graph.nodes)}, {upper}_OVER = 0xfffe, {upper}_NO_NODE = 0xffff }};"
-    yield ""
-    if len(graph.starts) > 1:
-        yield "// The robot is told at the start which of these it is."
-    yield from _array(f"{prefix}_start", "uint16_t", [str(node) for node in graph.starts])
-    yield ""
-    yield from _array(f"{prefix}_node_action", "uint16_t", [str(node.action) for node in graph.nodes])
-    yield ""
-    yield from _edges(graph, prefix)
-    yield ""
-    yield from _after(prefix)
-    yield ""
-    yield "#endif"
+    told = "// The robot is told at the start which of these it is.\n" if len(graph.starts) > 1 else ""
+    return f"""\
+// The policy of {_one_line(model.name)}, written by `aos solve`; do not edit.
+//
+// From the start it gives {graph.value:.6g}, discounted by {model.discount:g} a step. To follow it:
+//
+//   uint16_t node = {prefix}_start[{start}];
+//   while (node < {upper}_NODES) node = {prefix}_after(node, do_and_observe({prefix}_node_action[node]));
+//
+// `{prefix}_after` gives {upper}_OVER once the mission is over, and {upper}_NO_NODE for an
+// observation that the model holds impossible there.
+#ifndef {upper}_H
+#define {upper}_H
+
+#include <stdint.h>
+
+{_enumeration(f"{prefix}_action", f"{upper}_DO", model.actions)}
+{_enumeration(f"{prefix}_observation", f"{upper}_SEE", model.observations)}
+enum {{ {upper}_NODES = {len(graph.nodes)}, {upper}_OVER = 0xfffe, {upper}_NO_NODE = 0xffff }};
+
+{told}{_array(f"{prefix}_start", "uint16_t", [str(node) for node in graph.starts])}
+{_array(f"{prefix}_node_action", "uint16_t", [str(node.action) for node in graph.nodes])}
+{_edges(graph, prefix)}
+// The node after an observation.
+static inline uint16_t {prefix}_after(uint16_t node, {prefix}_observation observation) {{
+  uint32_t low = {prefix}_first_edge[node];
+  uint32_t high = {prefix}_first_edge[node + 1];
+  while (low < high) {{
+    uint32_t middle = low + (high - low) / 2;
+    if ({prefix}_edge_observation[middle] == observation) return {prefix}_edge_node[middle];
+    if ({prefix}_edge_observation[middle] < observation) {{
+      low = middle + 1;
+    }} else {{
+      high = middle;
+    }}
+  }}
+  return {upper}_NO_NODE;
+}}
+
+#endif
+"""
 
 
-def _edges(graph: PolicyGraph, prefix: str) -> Iterator[str]:
+def _edges(graph: PolicyGraph, prefix: str) -> str:
     first, numbers, following = [0], [], []
     for node in graph.nodes:
         for observation, target in sorted(node.next.items()):
             numbers.append(str(observation))
             following.append(str(target) if target != OVER else f"{prefix.upper()}_OVER")
         first.append(len(numbers))
-    yield "// The edges of a node, by ascending observation, begin at its place in the first array."
-    yield from _array(f"{prefix}_first_edge", "uint32_t", [str(place) for place in first])
-    yield ""
-    yield from _array(f"{prefix}_edge_observation", "uint16_t", numbers or ["0"])
-    yield ""
-    yield from _array(f"{prefix}_edge_node", "uint16_t", following or ["0"])
+    return f"""\
+// The edges of a node, by ascending observation, begin at its place in the first array.
+{_array(f"{prefix}_first_edge", "uint32_t", [str(place) for place in first])}
+{_array(f"{prefix}_edge_observation", "uint16_t", numbers or ["0"])}
+{_array(f"{prefix}_edge_node", "uint16_t", following or ["0"])}"""
 
 
-def _after(prefix: str) -> Iterator[str]:
-    yield "// The node after an observation."
-    yield f"static inline uint16_t {prefix}_after(uint16_t node, {prefix}_observation observation) {{"
-    yield f"  uint32_t low = {prefix}_first_edge[node];"
-    yield f"  uint32_t high = {prefix}_first_edge[node + 1];"
-    yield "  while (low < high) {"
-    yield "    uint32_t middle = low + (high - low) / 2;"
-    yield f"    if ({prefix}_edge_observation[middle] == observation) return {prefix}_edge_node[middle];"
-    yield f"    if ({prefix}_edge_observation[middle] < observation) {{"
-    yield "      low = middle + 1;"
-    yield "    } else {"
-    yield "      high = middle;"
-    yield "    }"
-    yield "  }"
-    yield f"  return {prefix.upper()}_NO_NODE;"
-    yield "}"
+def _enumeration(name: str, prefix: str, meanings: tuple[str, ...]) -> str:
+    lines = "".join(
+        f"  {prefix}_{symbol.upper()} = {number},  // {_one_line(meaning)}\n"
+        for number, (symbol, meaning) in enumerate(zip(symbols(meanings), meanings, strict=True))
+    )
+    return f"typedef enum {{\n{lines}}} {name};\n"
 
 
-def _enumeration(
-    name: str, upper: str, verb: str, names: list[str], meanings: tuple[str, ...]
-) -> Iterator[str]:
-    yield "typedef enum {"
-    for number, (symbol, meaning) in enumerate(zip(names, meanings, strict=True)):
-        yield f"  {upper}_{verb}_{symbol.upper()} = {number},  // {_one_line(meaning)}"
-    yield f"}} {name};"
-
-
-def _array(name: str, kind: str, values: list[str]) -> Iterator[str]:
-    yield f"static const {kind} {name}[{len(values)}] = {{"
-    for begin in range(0, len(values), 16):
-        yield f"    {', '.join(values[begin : begin + 16])},"
-    yield "};"
+def _array(name: str, kind: str, values: list[str]) -> str:
+    rows = (values[begin : begin + 16] for begin in range(0, len(values), 16))
+    lines = "".join(f"    {', '.join(row)},\n" for row in rows)
+    return f"static const {kind} {name}[{len(values)}] = {{\n{lines}}};\n"
 
 
 def _one_line(text: str) -> str:
