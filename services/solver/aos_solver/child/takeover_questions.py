@@ -59,7 +59,7 @@ class TakeoverQuestions(Asking):
 
         `step` is the mission's, as in `update`.
         """
-        command = command_line("pass_time", steps=1, draws=self._draws.of(step))
+        command = command_line("pass_time", draws=self._draws.of(step))
         return await self._change_belief(command, BeliefUpdate)
 
     async def marginals(self) -> tuple[Marginal, ...]:

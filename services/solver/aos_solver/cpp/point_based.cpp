@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <stdexcept>
 
 #include "point_based/outlook.hpp"
 #include "point_based/regions.hpp"

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "aos/base/distributions.hpp"
-#include "aos/base/fault.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <poll.h>
-#include <signal.h>
 #include <sys/mman.h>
 #include <unistd.h>
 

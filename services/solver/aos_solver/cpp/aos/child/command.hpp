@@ -5,7 +5,6 @@
 #pragma once
 
 #include <charconv>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>

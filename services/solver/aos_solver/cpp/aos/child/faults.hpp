@@ -5,7 +5,6 @@
 #include <exception>
 #include <new>
 #include <string>
-#include <string_view>
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "aos/base/descriptor_file.hpp"

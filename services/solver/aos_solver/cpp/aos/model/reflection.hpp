@@ -16,7 +16,6 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
-#include <vector>
 
 #include "aos/base/mixed.hpp"
 #include "aos/model/text.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include "aos/base/distributions.hpp"
 #include "aos/base/observed_numbers.hpp"

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
-#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>

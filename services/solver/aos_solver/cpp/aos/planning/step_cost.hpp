@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
-#include <exception>
 
 #include "aos/base/directed.hpp"
 #include "aos/base/observed_numbers.hpp"

@@ -16,7 +16,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "aos/base/clock.hpp"
@@ -30,7 +29,6 @@
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/pomcp/best_action.hpp"
-#include "aos/planning/pomcp/exploration.hpp"
 #include "aos/planning/tree_planner.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "numbers/belief_key.hpp"

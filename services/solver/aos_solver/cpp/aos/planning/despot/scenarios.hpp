@@ -13,7 +13,6 @@
 #include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot/despot_constants.hpp"

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "aos/base/enumerator.hpp"
-#include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/state_numbers.hpp"

@@ -4,7 +4,6 @@
 // need not say what changes by itself. An action changes a variable where its result is another one.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

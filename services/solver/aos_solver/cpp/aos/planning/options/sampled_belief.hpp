@@ -1,7 +1,6 @@
 // A few states of a belief that stand for it, with weights, and what observations make of the weights.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>

@@ -3,10 +3,8 @@
 // random has the reports of one of its next states.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 

@@ -13,7 +13,6 @@
 
 #include "aos/base/switches.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/pomcp/best_action.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 

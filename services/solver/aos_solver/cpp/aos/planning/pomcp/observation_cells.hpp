@@ -16,7 +16,6 @@
 
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
-#include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "aos/planning/budget.hpp"
-#include "aos/planning/pomcp/best_action.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 
 namespace aos {
