@@ -66,6 +66,14 @@ class Subscription(Generic[T]):
             await self._changed.wait()
         return self._items.popleft()
 
+    async def batches(self, most: int) -> AsyncIterator[list[T]]:
+        """The items that are there together, so many at most."""
+        async for first in self:
+            batch = [first]
+            while self._items and len(batch) < most:
+                batch.append(self._items.popleft())
+            yield batch
+
     def push(self, item: T) -> None:
         """Puts an item into the queue; for the source of the stream."""
         if self._is_closed:

@@ -14,6 +14,7 @@ from typing import Any
 import msgspec
 
 from aos_middleware.evaluator import Evaluator, MappingFault
+from aos_middleware.frames import Observed
 from aos_middleware.heard_topics import QUEUE_SIZE, HeardTopics
 from aos_middleware.low_level import assigned_variables
 from aos_middleware.monitors import Monitored
@@ -135,12 +136,7 @@ class _Activation:
         observed = await self._evaluator.finish(result.fields)
         if observed.response is None:
             raise no_response(self._mapping, result.fields, observed.local_variables)
-        return _Observation(
-            observed.response,
-            observed.local_variables,
-            assigned_variables(observed.assigned, self._request),
-            observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
-        )
+        return self._observation(observed, observed.response)
 
     async def _fields(self) -> dict[str, Any]:
         """The fields of the call from the parameters; none where that fails and the adapter needs none."""
@@ -163,11 +159,8 @@ class _Activation:
             raise error from fault
         if observed.response is None:
             raise error
-        return _Observation(
-            observed.response,
-            observed.local_variables,
-            assigned_variables(observed.assigned, self._request),
-            failure=error,
+        return msgspec.structs.replace(
+            self._observation(observed, observed.response), numbers={}, failure=error
         )
 
     async def _observed_stop(self, error: AosError) -> _Observation:
@@ -177,12 +170,16 @@ class _Activation:
         observed = await self._evaluator.finish({}, "stopped", self.stop.reason)
         if observed.response is None:
             raise self.stop.unexplained(error)
+        return msgspec.structs.replace(
+            self._observation(observed, observed.response), stopped_by=self.stop.by
+        )
+
+    def _observation(self, observed: Observed, response: str) -> _Observation:
         return _Observation(
-            observed.response,
+            response,
             observed.local_variables,
             assigned_variables(observed.assigned, self._request),
             observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
-            stopped_by=self.stop.by,
         )
 
     async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:

@@ -52,10 +52,7 @@ class HeardTopics:
 
     async def take(self, messages: Subscription[tuple[str, TopicMessage]]) -> None:
         """Evaluates topic messages until the stream is closed and empty."""
-        async for first in messages:
-            batch = [first]
-            while messages.has_items and len(batch) < _BATCH:
-                batch.append(await anext(messages))
+        async for batch in messages.batches(_BATCH):
             await self._evaluate([(self._topic_of[key], message.fields) for key, message in batch])
             for key, message in batch:
                 self._last_numbers[key] = message.number

@@ -17,7 +17,7 @@ from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
-from aos_runtime.bus import Bus, Subscription
+from aos_runtime.bus import Bus
 from aos_runtime.subscription import merged
 
 __all__ = ["Monitored", "Monitors"]
@@ -151,8 +151,7 @@ class _Monitor:
             async with self._asking:
                 await self._begin()
             self.listens.set()
-            while True:
-                batch = await _next_batch(messages)
+            async for batch in messages.batches(_BATCH):
                 async with self._asking:
                     await self._evaluate([(topics[key], message.fields) for key, message in batch])
                 for key, message in batch:
@@ -206,11 +205,3 @@ class _Monitor:
         fault = self._fault
         await self._begin()
         self._fault = fault
-
-
-async def _next_batch(messages: Subscription[tuple[str, TopicMessage]]) -> list[tuple[str, TopicMessage]]:
-    """The messages that are there, at least one."""
-    batch = [await anext(messages)]
-    while messages.has_items and len(batch) < _BATCH:
-        batch.append(await anext(messages))
-    return batch

@@ -94,20 +94,16 @@ class ServedPaths:
 
     async def has_left(self, path: str, within_s: float) -> bool:
         """Waits until nobody serves a path, at most for a short time; returns whether that is so."""
-        try:
-            async with asyncio.timeout(within_s):
-                while self.servers(path):
-                    self._changed.clear()
-                    await self._changed.wait()
-        except TimeoutError:
-            return False
-        return True
+        return await self._comes_to(path, False, within_s)
 
     async def is_back(self, path: str, within_s: float) -> bool:
         """Says whether somebody serves a path, now or within some time."""
+        return await self._comes_to(path, True, within_s)
+
+    async def _comes_to(self, path: str, is_served: bool, within_s: float) -> bool:
         try:
             async with asyncio.timeout(within_s):
-                while not self.servers(path):
+                while bool(self.servers(path)) is not is_served:
                     self._changed.clear()
                     await self._changed.wait()
         except TimeoutError:
