@@ -18,7 +18,7 @@ async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
     """The compiled model of a bundle on the disk."""
     loaded = load_bundle(bundle)
     assert loaded.project is not None, loaded.diagnostics
-    return await build_project(loaded.project, cache_dir, lambda remark: None)
+    return await build_project(loaded.project, cache_dir)
 
 
 async def built_bundles(bundles: Sequence[Path], cache_dir: Path) -> BuiltModel:
@@ -31,7 +31,7 @@ async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:
     """The compiled model of documents given as text."""
     loaded = load_files({name: text.encode() for name, text in files.items()})
     assert loaded.project is not None, loaded.diagnostics
-    return await build_project(loaded.project, cache_dir, lambda remark: None)
+    return await build_project(loaded.project, cache_dir)
 
 
 @asynccontextmanager

@@ -72,7 +72,7 @@ async def _play(loaded: LoadedBundle, played: Played, steps: int, seed: int) -> 
         )
         return
     start = time.perf_counter()
-    built = await build_project(loaded.project, cache_dir(), lambda _: None)
+    built = await build_project(loaded.project, cache_dir())
     played.compile_s = time.perf_counter() - start
     engine = await Engine.start(built, seed=seed)
     try:

@@ -48,7 +48,7 @@ def twins(folder: Path, name: str, seed: int, cache: Path) -> Report:
 async def _compare(bundle: Path, seed: int, cache: Path, report: Report) -> None:
     project = load_bundle(bundle).project
     assert project is not None
-    built = await build_project(project, cache, lambda _: None)
+    built = await build_project(project, cache)
     chance = random.Random(f"twins {seed}")
     past: list[Update] = []
     twin, disturbed = await _started(built, seed), await _started(built, seed)

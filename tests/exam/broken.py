@@ -72,7 +72,7 @@ async def _mission(
 ) -> MissionState:
     loaded = load_files({name: text.encode() for name, text in files.items()})
     assert loaded.project is not None, loaded.diagnostics
-    built = await build_project(loaded.project, cache_dir, lambda remark: None)
+    built = await build_project(loaded.project, cache_dir)
     engine = await Engine.start(built, seed=1)
     try:
         await robot.start(engine)

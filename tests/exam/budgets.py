@@ -138,7 +138,7 @@ async def _row(folder: Path, arguments: argparse.Namespace, cache_dir: Path) -> 
     if loaded.project is None:
         print(f"| {_name(folder)} | no whole bundle |", flush=True)
         return 1.0
-    built = await build_project(loaded.project, cache_dir, lambda remark: None)
+    built = await build_project(loaded.project, cache_dir)
     costs = await costs_of(built, arguments.simulations, arguments.decisions, arguments.seed)
     ratio = ratio_of(costs)
     cells = [f"{cost.each_us:.2f} {cost.used}" if cost.counted else f"({cost.used})" for cost in costs]

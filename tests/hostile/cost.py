@@ -69,7 +69,7 @@ def main() -> int:
     print(f"a child: {with_ms:.1f} ms in the sandbox, {without_ms:.1f} ms without, {more_ms:.1f} ms more")
     project = load_bundle(BUNDLE).project
     assert project is not None
-    built = asyncio.run(build_project(project, cache_dir(), lambda remark: None))
+    built = asyncio.run(build_project(project, cache_dir()))
     sandbox = engine_child.confinement_of
 
     def measured(is_confined: bool) -> float:

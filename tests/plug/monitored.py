@@ -115,7 +115,7 @@ async def _beliefs(memory: MissionMemory) -> list[BeliefSummary]:
     """The posterior after each step, by another engine."""
     project = load_bundle(BUNDLE).project
     assert project is not None
-    built = await build_project(project, cache_dir(), lambda remark: None)
+    built = await build_project(project, cache_dir())
     engine = await Engine.start(built, seed=1)
     past = Past()
     past.steps += [

@@ -123,7 +123,7 @@ def with_constraints(project: Project, *constraints: str) -> Project:
 
 async def built(files: Mapping[str, str], cache_dir: Path, *constraints: str) -> BuiltModel:
     project = with_constraints(text_project(files), *constraints)
-    return await build_project(project, cache_dir, lambda remark: None)
+    return await build_project(project, cache_dir)
 
 
 async def risk_of(engine: Engine, action: str, constraint: int = 0) -> float:
@@ -218,10 +218,7 @@ async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path) ->
     project = with_constraints(text_project(HOB), f"0.9: {TOUCHES_HOT}")
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
     costly_project = msgspec.structs.replace(project, constraints=(costly,))
-    free, costs = [
-        await build_project(documents, cache_dir, lambda remark: None)
-        for documents in (project, costly_project)
-    ]
+    free, costs = [await build_project(documents, cache_dir) for documents in (project, costly_project)]
     values = []
     for model in (free, costs):
         async with engine_of(model) as engine:

@@ -137,7 +137,7 @@ async def test_defaults_and_initial_values_follow_from_what_is_set(
     project = msgspec.structs.replace(
         loaded.project, mission_values=tuple(map(mission_value_of_option, options))
     )
-    built = await build_project(project, cache_dir, lambda remark: None)
+    built = await build_project(project, cache_dir)
     async with engine_of(built) as engine:
         assert await exact_values(engine) == {"act": value}
 

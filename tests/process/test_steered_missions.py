@@ -234,7 +234,7 @@ async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_
     assert project is not None
     never = "open && state.tiger_behind == Left"
     constraint = constraint_of_option(f"0.1: {never}")
-    built = await build_project(constrained(project, [constraint]), cache_dir, lambda remark: None)
+    built = await build_project(constrained(project, [constraint]), cache_dir)
     around = Steered()
     said: list[SteeringError] = []
 

@@ -165,7 +165,7 @@ async def play(
         **budget,
     )
     project = _project(files)
-    built = await build_project(project, cache_dir, lambda text: None)
+    built = await build_project(project, cache_dir)
     engine = await Engine.start(built, seed=seed)
     world = await Engine.start(built, seed=seed + 1000)
     around = _World(world, beside)
@@ -176,7 +176,7 @@ async def play(
         parameters = engine.description.mission_parameters
         around.journal(BEGUN, MissionBegun("m", 1, seed, 1, running.digest, parameters))
         if then is not None:
-            other = await build_project(_project(then[1]), cache_dir, lambda text: None)
+            other = await build_project(_project(then[1]), cache_dir)
             model = RunningModel(2, await Engine.start(other, seed=seed))
             around.next = (then[0], Successor(model, around.clock))
         search = msgspec.structs.replace(msgspec.convert(settings, Search, from_attributes=True), seed=seed)

@@ -191,7 +191,7 @@ class Suite:
 
     @asynccontextmanager
     async def _engine(self, project: Project) -> AsyncIterator[Engine]:
-        built = await build_project(project, self._cache_dir, lambda remark: None, kind="thorough")
+        built = await build_project(project, self._cache_dir, kind="thorough")
         engine = await Engine.start(built, seed=self._effort.seed, keeps_belief=False)
         try:
             yield engine

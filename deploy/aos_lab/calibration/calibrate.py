@@ -83,7 +83,7 @@ async def calibrate(
             "the documents have errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
         )
     draws = draws_of(loaded.project)
-    built = await build_project(draws.keeping, cache_dir(), lambda remark: None)
+    built = await build_project(draws.keeping, cache_dir())
     engine = await Engine.start(built, seed=1, keeps_belief=False)
     try:
         lattices: list[Lattice] = []

@@ -105,7 +105,7 @@ async def _start(bundle: Path, mission_values: Mapping[str, Any]) -> Engine:
         )
     values = values_of_mapping(mission_values, Span("mission_values"))
     project = with_values(loaded.project, values)
-    built = await build_project(project, cache_dir(), lambda remark: None)
+    built = await build_project(project, cache_dir())
     return await Engine.start(built, seed=1)
 
 

@@ -61,10 +61,10 @@ class ModelPlayer:
     @classmethod
     async def prepared(cls, missions: ModelMissions) -> ModelPlayer:
         """Compiles the model; ModelError if that fails."""
-        model = await build_project(missions.project, cache_dir(), lambda remark: None)
+        model = await build_project(missions.project, cache_dir())
         if missions.world is None:
             return cls(missions, model)
-        return cls(missions, model, await build_project(missions.world, cache_dir(), lambda remark: None))
+        return cls(missions, model, await build_project(missions.world, cache_dir()))
 
     async def close(self) -> None:
         """Nothing is left of a mission."""

@@ -23,7 +23,7 @@ __all__ = ["build_project", "emitted_model", "lowered"]
 async def build_project(
     project: Project,
     cache_dir: Path,
-    on_progress: Callable[[str], None],
+    on_progress: Callable[[str], None] = lambda text: None,
     *,
     kind: BuildKind = "quick",
 ) -> BuiltModel:

@@ -49,7 +49,7 @@ async def built_with_conditions(project: Project, given: Sequence[str], cache_di
     constraints = tuple(Constraint(snippet, 0.0) for snippet in snippets)
     conditioned = msgspec.structs.replace(project, constraints=constraints)
     try:
-        return await build_project(conditioned, cache_dir, lambda remark: None)
+        return await build_project(conditioned, cache_dir)
     except ModelError as error:
         own = [found for found in error.diagnostics if found.span.file == OPTION]
         if not own:

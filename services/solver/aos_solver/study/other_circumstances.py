@@ -138,7 +138,7 @@ async def _engine(
     project = msgspec.structs.replace(
         loaded.project, constraints=replay.settings.constraints, mission_values=()
     )
-    built = await build_project(project, documents.cache_dir, lambda text: None)
+    built = await build_project(project, documents.cache_dir)
     begun = replay.mission.begun
     assert begun is not None
     known = built.emitted.parameters
