@@ -4,17 +4,53 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
+
 from aos_deploy.constraints import constrained
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.mission_values import with_values
+from aos_deploy.printing import from_here
 from aos_language.load import load_files, read_bundle_files
+from aos_language.merge import merge
 from aos_language.mission_parameters import declared_values, parameter_leaves
 from aos_language.reading.files import skills_of_files
-from aos_protocol.diagnostics import has_errors
+from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError
 
-__all__ = ["check_mission_of", "files_of_bundle", "project_of"]
+__all__ = ["BundledFiles", "check_mission_of", "files_of_bundle", "files_of_bundles", "project_of"]
+
+
+class BundledFiles(msgspec.Struct, frozen=True):
+    """The documents that several bundles make together, by file name, and the bundle of each."""
+
+    files: dict[str, bytes] = {}
+    bundles: dict[str, Path] = {}
+
+    def located(self, diagnostic: Diagnostic) -> Diagnostic:
+        """The diagnostic with a file name that leads to the file from here."""
+        bundle = self.bundles.get(diagnostic.span.file)
+        if bundle is None:
+            return diagnostic
+        span = msgspec.structs.replace(diagnostic.span, file=str(from_here(bundle) / diagnostic.span.file))
+        return msgspec.structs.replace(diagnostic, span=span)
+
+
+def files_of_bundles(bundles: tuple[Path, ...], leave_out: tuple[str, ...]) -> BundledFiles:
+    """Puts the documents of bundles together, in their order: each replaces the one of its kind and name.
+
+    A bundle need not be complete. DocumentError where one cannot be read, or be put over those before it.
+    """
+    together = BundledFiles()
+    for bundle in bundles:
+        files = files_of_bundle(bundle, leave_out)
+        merged = merge(together.files, files)
+        places = together.bundles | dict.fromkeys(files, bundle)
+        together = BundledFiles(merged.files, {name: places[name] for name in merged.files})
+        if has_errors(merged.diagnostics):
+            found = tuple(together.located(diagnostic) for diagnostic in merged.diagnostics)
+            raise DocumentError(f"the bundle {bundle} is refused", code="AOS120", diagnostics=found)
+    return together
 
 
 def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
@@ -33,9 +69,7 @@ def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
     constraints and what is set. Documents that only play the world need not have every mission parameter.
     """
-    files: dict[str, bytes] = {}
-    for bundle in deployment.bundles:
-        files |= files_of_bundle(bundle, deployment.file.leave_out)
+    files = files_of_bundles(deployment.bundles, deployment.file.leave_out).files
     loaded = load_files(files, name=deployment.path.name)
     if loaded.project is None:
         raise DocumentError(

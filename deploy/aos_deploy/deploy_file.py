@@ -256,10 +256,9 @@ def check_endpoint(endpoint: str) -> None:
 def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) -> Deployment:
     """The paths made absolute, and what the schema alone cannot see checked."""
     folder = path.parent
-    for key, name in (("robot", file.robot), ("project", file.project)):
-        if (name or key == "robot") and not _NAME.fullmatch(name):
-            hint = "Use letters, digits, - and _"
-            findings.error("AOS106", f"{name!r} is not a {key} name", _place(node, key), hint)
+    if not _NAME.fullmatch(file.robot):
+        hint = "Use letters, digits, - and _"
+        findings.error("AOS106", f"{file.robot!r} is not a robot name", _place(node, "robot"), hint)
     try:
         if file.bus.listen:
             check_endpoint(file.bus.listen)

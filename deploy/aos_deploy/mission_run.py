@@ -12,7 +12,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.bundle_files import check_mission_of, files_of_bundle
+from aos_deploy.bundle_files import BundledFiles, check_mission_of, files_of_bundles
 from aos_deploy.deploy_file import Deployment, with_whole_paths
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
@@ -28,7 +28,6 @@ from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp, worlds_text
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol import __version__
-from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
     BundleReport,
@@ -205,28 +204,29 @@ class MissionRun:
         if self._taken_up is not None and self._taken_up.has_begun:
             return  # The catalogue has them, and what came after them.
         await supervisor.until_ready("registry")
-        for bundle in self._deployment.bundles:
-            await self._push(supervisor, bundle)
+        bundles = self._deployment.bundles
+        together = await asyncio.to_thread(files_of_bundles, bundles, self._deployment.file.leave_out)
+        await self._push(supervisor, together, ", ".join(str(from_here(bundle)) for bundle in bundles))
 
-    async def _push(self, supervisor: Supervisor, bundle: Path) -> None:
-        """Brings a bundle into the registry; DocumentError with all diagnostics if it is refused."""
-        files = await asyncio.to_thread(files_of_bundle, bundle, self._deployment.file.leave_out)
-        self._own_pushes.add(str(bundle))
+    async def _push(self, supervisor: Supervisor, together: BundledFiles, named: str) -> None:
+        """Brings documents into the registry; DocumentError with all diagnostics if they are refused."""
+        self._own_pushes.add(named)
         report = await ask_until_answered(
             supervisor.bus,
             supervisor.keys.push_bundle,
-            PushBundle(files, str(bundle)),
+            PushBundle(together.files, named),
             BundleReport,
             server=supervisor.keys.live("registry"),
             timeout_s=_BUILD_TIMEOUT_S,
         )
-        found = tuple(_with_folder(diagnostic, bundle) for diagnostic in report.diagnostics)
+        found = tuple(together.located(diagnostic) for diagnostic in report.diagnostics)
         if not report.is_accepted:
-            raise DocumentError(f"the bundle {bundle} is refused", code="AOS120", diagnostics=found)
-        self._report(msgspec.structs.replace(report, diagnostics=found, source=str(from_here(bundle))))
+            refused = f"bundles {named} are" if "," in named else f"bundle {named} is"
+            raise DocumentError(f"the {refused} refused", code="AOS120", diagnostics=found)
+        self._report(msgspec.structs.replace(report, diagnostics=found))
         if report.project != self._deployment.project:
             raise DeployError(
-                f"{bundle} holds the project {report.project}, not {self._deployment.project}",
+                f"{named} holds the project {report.project}, not {self._deployment.project}",
                 code="AOS801",
                 hint=f"Write `project: {report.project}` into {self._deployment.path}",
             )
@@ -319,9 +319,3 @@ class MissionRun:
 
 def _nothing() -> None:
     """There is no record yet."""
-
-
-def _with_folder(diagnostic: Diagnostic, bundle: Path) -> Diagnostic:
-    """The diagnostic with a file name that leads to the file from here."""
-    span = msgspec.structs.replace(diagnostic.span, file=str(from_here(bundle) / diagnostic.span.file))
-    return msgspec.structs.replace(diagnostic, span=span)

@@ -128,6 +128,12 @@ int index = AOSUtils::SampleDiscrete(weights);
 if (AOSUtils::Bernoulli(0.5)) {state__.box_a.colour = AOS.SampleDiscrete(tColour, {0.1, 0.9})}
 state__.sum = side * 1000 + index * 100 + AOS.SampleDiscrete(Odd, {1, 1});
 state__.box_a.weight = AOS.SampleNormal(0, 1) + AOS.SampleUniform(2, 3);
+const auto& grid = state.grid;
+int fixed[] = {2, 4};
+state__.sum += 10000 * AOS.SampleDiscrete(state.grid, {1, 1, 1});
+state__.sum += 100000 * AOS.SampleDiscrete(grid, {1, 1, 1});
+state__.sum += 1000000 * AOS.SampleDiscrete(fixed, weights);
+state__.sum += 10000000 * AOS.SampleDiscrete(vector<int>{2, 3}, {1, 1});
 AOS.SetNull(state__.box_b.lid.place); __reward = AOS.IsInitialized(state.box_b.lid.place) ? 1 : 0;""",
         ),
         (),
@@ -242,9 +248,9 @@ def test_lists_of_objects_read_like_vectors_of_pointers(model: ScriptedModel) ->
     assert played.values("box_b.label") == ["none", "2/none"]
 
 
-def test_draws_over_declared_local_and_numbered_enums(model: ScriptedModel) -> None:
-    played = model.play("draw|1 1 1 2 1 0.25 2.5")
-    assert played.values("sum")[1] == "1107"
+def test_draws_over_declared_local_and_numbered_enums_and_over_lists(model: ScriptedModel) -> None:
+    played = model.play("draw|1 1 1 2 1 0.25 2.5 1 2 1 1")
+    assert played.values("sum")[1] == str(1107 + 50000 + 600000 + 4000000 + 30000000)
     assert played.values("box_a.colour")[1] == "eBlue"
     assert played.values("box_a.weight")[1] == "2.75"
 

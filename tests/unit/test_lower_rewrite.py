@@ -15,12 +15,6 @@ NAMES = Rewriting(
 )
 
 
-def test_a_draw_over_a_local_vector_gives_one_of_its_values() -> None:
-    code = "vector<int> values{1, 5}; n = AOS.SampleDiscrete(values, {0.5, 0.5});"
-    text, _ = rewrite(read_cpp(code), Rewriting(frozenset(), {}, containers=frozenset({"values"})), {})
-    assert text == "vector<int> values{1, 5}; n = AOS.SampleOf(values, {0.5, 0.5});"
-
-
 def rewritten(code: str) -> str:
     return piece_of(code).text
 
@@ -36,6 +30,7 @@ def piece_of(code: str) -> Piece:
     [
         "state__.x = state.y ? AOS.Bernoulli(0.5) : false;",
         "e = AOS.SampleDiscrete(enumEnding, {0.5, 0.5});",
+        "vector<int> values{1, n}; n = AOS.SampleDiscrete(values, {0.5, 0.5});",
         'note = "AOSUtils::x state.tBoxObjects";  // AOS.SampleDiscrete(tColour, {1})',
         "state.tColourObjects.size();",
         "vector<int> a{1, 2}; a[0] = 3;",

@@ -40,9 +40,9 @@ class ScriptedDraws {
   Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {
     return values.begin()[index(weights, true)];
   }
-  template <class Values, class Weights = std::initializer_list<double>>
-  decltype(auto) SampleOf(Values& values, const Weights& weights) {
-    return values.at(index(weights, true));
+  template <ListOfValues Values, class Weights = std::initializer_list<double>>
+  decltype(auto) SampleDiscrete(Values&& values, const Weights& weights) {
+    return element_of(std::forward<Values>(values), index(weights, true));
   }
   double SampleNormal(double mean, double sigma);
   double SampleUniform(double low, double high);

@@ -11,6 +11,7 @@
 #include "answers.hpp"
 #include "check.hpp"
 
+#include "action_values.cpp"
 #include "belief.cpp"
 #include "belief_tree.cpp"
 #include "budgets.cpp"

@@ -34,6 +34,22 @@ TEST("All states that can be reached are listed, and no others") {
   EXPECT(!space.reaches(aos::Ending::failure));
 }
 
+TEST("A drawn belief is listed, unless most of its states were drawn only once") {
+  Problem few = units::corridor(6, 0.9);
+  few.starts = {{0, 0.7}, {2, 0.2}, {4, 0.1}};
+  Problem many = units::world(20000, 1, 0.9);
+  many.starts.clear();
+  for (std::uint32_t state = 0; state < 20000; ++state) many.starts.push_back({state, 1 / 20000.0});
+  aos::Sampler random{1};
+  TableModel::take(few);
+  Space space;
+  EXPECT(space.reach(Belief::drawn(random)));
+  TableModel::take(many);
+  Space other;
+  EXPECT(!other.reach(Belief::drawn(random)));
+  EXPECT_EQUAL(other.obstacle(), std::string{"nearly all states of the belief differ"});
+}
+
 TEST("A row has the expected reward and the probabilities of the states after it; an ended one has no number") {
   Problem problem = units::world(3, 1, 0.9);
   problem.endings[2] = 2;

@@ -46,7 +46,6 @@ class Phase(msgspec.Struct, frozen=True):
     previous_copy: str = "state"
 
 
-_CONTAINER = re.compile(r"(?:const\s+)?(?:std\s*::\s*)?(?:vector|array)\s*<.*>\s*&?$", re.DOTALL)
 
 _LoopsByCode = Mapping[int, LoopsOfPiece]
 """The loops by the identity of the snippet, since two snippets of a section may be equal."""
@@ -188,8 +187,7 @@ class SectionLowering:
         self._types = types
         self._pieces = pieces
         self._findings = findings
-        self._containers = _local_containers([shared.cpp])
-        self.outside = Rewriting(object_types, known, values, self._containers, shared.drawing)
+        self.outside = Rewriting(object_types, known, values, shared.drawing)
         """The meanings of names in code that stands alone."""
 
     def section(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
@@ -198,8 +196,7 @@ class SectionLowering:
         if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
             return None
         enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
-        containers = self._containers | _local_containers(cpp for _, cpp in read)
-        rewriting = msgspec.structs.replace(self.outside, enums=enums, containers=containers)
+        rewriting = msgspec.structs.replace(self.outside, enums=enums)
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
         scope = _drawing(self.outside.drawing).with_variables(phase.changes | (names & _RESULTS))
         of_loops = _loops_of(assignments, scope)
@@ -285,12 +282,6 @@ def _looped_copies(phase: Phase, assignments: tuple[Assignment, ...]) -> frozens
     copies = {phase.previous_copy for assignment in assignments if assignment.over_previous}
     copies |= {phase.next_copy for assignment in assignments if assignment.over_next}
     return frozenset(copies)
-
-
-def _local_containers(snippets: Iterable[Cpp]) -> frozenset[str]:
-    """The vectors and arrays that a section's code declares."""
-    declarations = (declaration for cpp in snippets for declaration in cpp.declarations)
-    return frozenset(declaration.name for declaration in declarations if _CONTAINER.match(declaration.type))
 
 
 def _local_enums(snippets: Iterable[Cpp]) -> dict[str, EnumValues]:

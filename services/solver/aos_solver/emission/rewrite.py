@@ -28,14 +28,13 @@ class Rewriting(msgspec.Struct, frozen=True):
     """The meanings of names in a section.
 
     `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
-    constants that every section sees, `containers` the lists of values that the section's code declares,
-    `drawing` the shared functions that have a source of draws as their first parameter.
+    constants that every section sees, `drawing` the shared functions that have a source of draws as their
+    first parameter.
     """
 
     object_types: frozenset[str]
     enums: Mapping[str, EnumValues]
     values: frozenset[str] = frozenset()
-    containers: frozenset[str] = frozenset()
     drawing: frozenset[str] = frozenset()
 
 
@@ -66,8 +65,7 @@ def rewrite(
     - `AOSUtils::` becomes `AOSUtils.`
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `AOS.template SampleDiscrete<Enum>({...})`
-    - over a local vector `values` it becomes `AOS.SampleOf(values, {...})`, over an enum whose values have
-      numbers of their own `AOS.SampleOf({Enum::a, Enum::b}, {...})`
+    - over an enum whose values have numbers of their own it becomes `AOS.SampleOf({Enum::a, Enum::b}, {...})`
     - such a draw says so: `AOS.sensing().Bernoulli(p)`, `AOS.averaged().SampleNormal(mean, deviation)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
@@ -173,9 +171,7 @@ def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Exte
     name = _extent(code, call.function.end - len("SampleDiscrete"), call.function.end)
     over = code[first.start : first.end].strip()
     values = rewriting.enums.get(over)
-    if over in rewriting.containers:
-        yield name, "SampleOf"
-    elif values is not None:
+    if values is not None:
         yield name, "SampleOf"
         yield first, f"{{{', '.join(values)}}}"
     elif over in rewriting.enums:

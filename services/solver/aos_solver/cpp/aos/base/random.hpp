@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -21,6 +23,25 @@ namespace aos {
 
 // A sum of weights that is this close to 1 is meant to be 1: single precision explains the difference.
 inline constexpr double weight_rounding = 1e-5;
+
+// What has elements, also where documents give it as it is, as `vector<int>{2, 5}`.
+template <class Values>
+concept ListOfValues = requires(Values&& values) {
+  std::begin(values);
+  std::size(values);
+};
+
+// The element of that number; of a list that nobody keeps a copy of it. Throws std::out_of_range where there is none.
+template <class Values>
+decltype(auto) element_of(Values&& values, int number) {
+  if (static_cast<std::size_t>(number) >= std::size(values)) throw std::out_of_range{"there are fewer values than weights"};
+  if constexpr (std::is_lvalue_reference_v<Values>) {
+    return *std::next(std::begin(values), number);
+  } else {
+    auto element = *std::next(std::begin(values), number);
+    return element;
+  }
+}
 
 class Distribution;
 
@@ -68,10 +89,10 @@ class Draws {
   Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {
     return values.begin()[SampleDiscrete(-1, weights)];
   }
-  // Draws an element of a vector. Where there are fewer elements than weights, `at` tells it.
-  template <class Values, class Weights = std::initializer_list<double>>
-  decltype(auto) SampleOf(Values& values, const Weights& weights) {
-    return values.at(SampleDiscrete(-1, weights));
+  // Draws an element of a list or an array. Where there are fewer elements than weights, `element_of` tells it.
+  template <ListOfValues Values, class Weights = std::initializer_list<double>>
+  decltype(auto) SampleDiscrete(Values&& values, const Weights& weights) {
+    return element_of(std::forward<Values>(values), SampleDiscrete(-1, weights));
   }
 
   // Draws an index. The weights are not normalised: the index is -1 with the probability that they leave

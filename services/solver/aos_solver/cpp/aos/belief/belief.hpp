@@ -54,6 +54,18 @@ class Belief {
   bool is_exact() const { return error_bound_ <= negligible_error; }
   // Whether the states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
+  // Whether more than half of the states were drawn only once, so that there are others. A belief without lineages does not
+  // know; then it is enough that there are so many states.
+  bool is_mostly_drawn_once() const {
+    if (!is_drawn()) return false;
+    if (lineages_.empty()) return 2 * particles_.size() > particle_count;
+    std::size_t once = 0;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      // The squares of n samples of equal weight are an n-th of the square of their sum.
+      once += lineages_[i].squares > 0.75 * particles_[i].weight * particles_[i].weight;
+    }
+    return 2 * once > particles_.size();
+  }
   // How the particles of a drawn belief came to be, if that is known.
   const History<Model>& history() const { return history_; }
   const std::vector<Lineage>& lineages() const { return lineages_; }

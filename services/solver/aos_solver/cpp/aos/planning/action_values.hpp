@@ -76,10 +76,10 @@ inline void set_between(std::vector<ActionEstimate>& estimates, const std::vecto
                         const std::vector<double>& uppers, int choice) {
   static const double deviation_of_even = 1 / std::sqrt(12.0);
   const auto chosen = static_cast<std::size_t>(choice);
-  const double above = (uppers[chosen] - lowers[chosen]) / 2;
+  const double most = (lowers[chosen] + uppers[chosen]) / 2;
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     // The decision is by the lower bounds, and no action is told to be worth more than the one that was chosen.
-    estimates[a].q = std::min(lowers[a] + above, uppers[a]);
+    estimates[a].q = std::min((lowers[a] + uppers[a]) / 2, most);
     estimates[a].standard_error = (uppers[a] - lowers[a]) * deviation_of_even;
   }
 }

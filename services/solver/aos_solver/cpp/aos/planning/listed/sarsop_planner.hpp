@@ -44,7 +44,7 @@ class SarsopPlanner final : public Planner<Model> {
   std::uint64_t search(const Question<Model>& question, Sampler& /*random*/, std::string& why) override {
     const std::uint64_t simulations =
         used().search(question.budget, [&] { return this->choice(used().estimates(), question.horizon, question.barred); });
-    why += "; " + bounds_text(question.horizon, slack(question.belief, question.horizon));
+    why += "; " + bounds_text(question);
     if (const auto& policy = used().policy()) {
       why += "; a simple policy decides, since it returns " + rounded_down(policy->value) + " in played missions";
     }
@@ -85,15 +85,18 @@ class SarsopPlanner final : public Planner<Model> {
     return is_near_;
   }
 
-  std::string bounds_text(int horizon, double slack) const {
+  std::string bounds_text(const Question<Model>& question) const {
     const auto [lowest, highest] = used().bounds();
-    const double lower = lowest - slack, upper = highest + slack;
-    const std::string scope = used().is_endless() ? "without a horizon" : "with " + std::to_string(horizon) + " decisions to go";
+    const double unsure = slack(question.belief, question.horizon);
+    const double lower = lowest - unsure, upper = highest + unsure;
+    const std::string scope =
+        used().is_endless() ? "without a horizon" : "with " + std::to_string(question.horizon) + " decisions to go";
+    const std::string subject = question.belief.is_drawn() ? " the belief, which was drawn," : " the belief";
     if (used().tells_by_cells()) {
-      return scope + " the belief is worth at least " + rounded_down(lower) + ", telling numbers by " +
+      return scope + subject + " is worth at least " + rounded_down(lower) + ", telling numbers by " +
              std::to_string(used().cells()) + " cells";
     }
-    return scope + " the belief is worth between " + rounded_down(lower) + " and " + rounded_up(upper);
+    return scope + subject + " is worth between " + rounded_down(lower) + " and " + rounded_up(upper);
   }
 
   PointBased<Model>& used() { return is_near_ ? near_search_ : all_; }

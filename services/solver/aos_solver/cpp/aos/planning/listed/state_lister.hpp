@@ -52,14 +52,14 @@ class StateLister {
     return number;
   }
 
-  // Adds the running states of a belief. If a sampled belief has most of its states only once, there are more: NotEnumerable.
+  // Adds the running states of a belief. If most states of a drawn belief were drawn only once, there are more: NotEnumerable.
   void add_states_of(const Belief<Model>& belief) {
     begin();
     const std::size_t before = numbers_.size();
     for (const auto& [state, weight] : belief.particles()) {
       if (goes_on(state)) add(state);
     }
-    if (belief.is_drawn() && before == 0 && 2 * numbers_.size() > belief.particles().size()) {
+    if (belief.is_mostly_drawn_once() && before == 0 && 2 * numbers_.size() > belief.particles().size()) {
       throw NotEnumerable{"nearly all states of the belief differ"};
     }
   }

@@ -1,0 +1,52 @@
+"""Several bundles of a deploy file, which make one project together."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.bundle_files import files_of_bundles
+from aos_language.load import load_files
+from aos_protocol.errors import DocumentError
+
+ENVIRONMENT = "project: yard\nhorizon: 3\n\nstate_variable: bool open\n"
+SKILL = "project: yard\n\ndynamic_model:\nstate__.open = true;\n__reward = -1;\n"
+
+
+def bundle(folder: Path, name: str, **files: str) -> Path:
+    path = folder / name
+    path.mkdir()
+    for file, text in files.items():
+        (path / file.replace("_", ".")).write_text(text)
+    return path
+
+
+def test_one_may_hold_the_environment_alone(tmp_path: Path) -> None:
+    bundles = (bundle(tmp_path, "world", yard_ef=ENVIRONMENT), bundle(tmp_path, "skills", push_sd=SKILL))
+    together = files_of_bundles(bundles, ())
+    project = load_files(together.files, name="yard.yaml").project
+    assert project is not None
+    assert [skill.name for skill in project.skills] == ["push"]
+    assert together.bundles == {"yard.ef": bundles[0], "push.sd": bundles[1]}
+
+
+def test_a_later_document_replaces_the_one_of_its_kind_and_name_whatever_the_file_is_called(
+    tmp_path: Path,
+) -> None:
+    first = bundle(tmp_path, "first", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    second = bundle(tmp_path, "second", other_ef=ENVIRONMENT.replace("3", "7"))
+    together = files_of_bundles((first, second), ())
+    assert sorted(together.files) == ["other.ef", "push.sd"]
+    project = load_files(together.files, name="yard.yaml").project
+    assert project is not None
+    assert project.environment.horizon == 7
+
+
+def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bundle(tmp_path: Path) -> None:
+    first = bundle(tmp_path, "first", yard_ef=ENVIRONMENT.replace("\nhorizon", "\nversion: 2\nhorizon"))
+    second = bundle(tmp_path, "second", yard_ef=ENVIRONMENT.replace("\nhorizon", "\nversion: 1\nhorizon"))
+    with pytest.raises(DocumentError, match="second is refused") as refused:
+        files_of_bundles((first, second), ())
+    (found,) = refused.value.diagnostics
+    assert (found.code, Path(found.span.file).parts[-2:]) == ("AOS129", ("second", "yard.ef"))
