@@ -46,7 +46,6 @@ class Phase(msgspec.Struct, frozen=True):
     previous_copy: str = "state"
 
 
-
 _LoopsByCode = Mapping[int, LoopsOfPiece]
 """The loops by the identity of the snippet, since two snippets of a section may be equal."""
 
