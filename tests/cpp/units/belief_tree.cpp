@@ -1,6 +1,7 @@
 // Responses that are too many to list: sensing_tables.hpp, belief_tree.hpp.
 #include "aos/planning/belief_tree/belief_tree.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -170,6 +171,18 @@ TEST("A search of beliefs pays for what it would observe, and decides by it") {
   const auto decided = tree.searched(sure, 6, 300);
   EXPECT_NEAR(decided[3].q, 10.0, 1e-3);
   for (const std::size_t other : {0, 1, 2}) EXPECT(decided[3].q > decided[other].q);
+}
+
+TEST("An action that tells nothing and changes nothing is not worth what is earned by what is observed") {
+  const Problem problem = doors();
+  const Belief belief = initial_belief(problem);
+  Tree tree{belief, 12};
+  // Waiting costs nothing, so that after it all would be seen for nothing.
+  for (const std::uint64_t simulations : {30, 100, 300, 1000}) {
+    const auto values = tree.searched(belief, 12, simulations);
+    EXPECT(values[1].q <= 0.95 * std::max(values[0].q, values[1].q) + 1e-3);
+    EXPECT(values[0].q > values[1].q);
+  }
 }
 
 TEST("With one decision to go a search of beliefs has the exact values at once") {

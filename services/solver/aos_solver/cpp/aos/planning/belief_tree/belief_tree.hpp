@@ -6,6 +6,10 @@
 // (sensing_tables.hpp). Departures from the paper: an action's value is that of the beliefs after it on average, and a
 // belief's value that of its best action. A new belief is worth what it is if all is seen after one action (QMDP), so
 // actions that were never tried have the highest value that they can have.
+//
+// That promises too much of an action that costs little and tells nothing: all would be seen after it, too, and after the next
+// one like it. What a belief is worth less than its states if they are seen is a concave function of the belief, and never
+// below 0. So of a belief that has a share of another one in it, at least this share of what that one loses is lost.
 #pragma once
 
 #include <algorithm>
@@ -89,6 +93,7 @@ class BeliefTree final : public TreePlanner<Model> {
       simulate(random);
       if (i % between_looks == 0 && budget.seconds > 0 && seconds_since(start) >= budget.seconds) break;
     }
+    for (std::size_t a = 0; a < space_.actions(); ++a) renew(0, a);
     return Budget::simulations_of(work_, horizon);
   }
 
@@ -123,13 +128,15 @@ class BeliefTree final : public TreePlanner<Model> {
   static constexpr Operations per_outcome = 40;  // that is weighed by an observation
   static constexpr Operations per_visit = 60;
   static constexpr Operations per_action = 10;   // that is compared with others
+  static constexpr int most_rounds = 32;  // in which a value settles
+  static constexpr double settled = 1e-4;
 
   struct ActionNode {
     double q = 0;
     double reward = 0;
     double running = 0;  // the probability that the mission goes on
-    double sum = 0;      // of the values of the beliefs after it
-    double squares = 0;
+    double mean = 0;     // of the values of the beliefs after it
+    double squares = 0;  // of their distances from it, on average
     std::uint32_t n = 0;
     std::vector<std::uint32_t> children;  // as they were drawn: an equal belief comes again
   };
@@ -139,7 +146,10 @@ class BeliefTree final : public TreePlanner<Model> {
     BeliefKey key;
     std::uint32_t times = 0;  // how often it was drawn
     std::uint32_t n = 0;
-    double value = 0;
+    double seen = 0;   // its value if the state is seen
+    double value = 0;  // of its best action
+    std::uint32_t like = no_node;  // the belief on the way to it that it has the largest share of
+    double share = 0;
   };
   struct Visit {
     std::uint32_t node;
@@ -161,7 +171,12 @@ class BeliefTree final : public TreePlanner<Model> {
     states_.insert(states_.end(), belief.begin(), belief.end());
     actions_.resize(actions_.size() + space_.actions());
     double total = 0;
-    for (const auto& [state, weight] : belief) total += weight;
+    double seen = 0;
+    for (const auto& [state, weight] : belief) {
+      total += weight;
+      seen += weight * values_.value(state, left);
+    }
+    nodes_[number].seen = seen / total;
     for (std::size_t a = 0; a < space_.actions(); ++a) {
       ActionNode& action = actions_of(number)[a];
       for (const auto& [state, weight] : belief) {
@@ -171,7 +186,7 @@ class BeliefTree final : public TreePlanner<Model> {
       }
     }
     work_ += per_value * belief.size() * space_.actions();
-    nodes_[number].value = value(number);
+    nodes_[number].value = best_action(number).q;
     return number;
   }
 
@@ -217,16 +232,32 @@ class BeliefTree final : public TreePlanner<Model> {
     const bool goes_on = next_.draw(states, a, node == 0, random);
     work_ += per_outcome * next_.work();
     if (!goes_on) return false;
+    const auto [like, share] = most_like();
+    next_.keep(random);
     const std::vector<std::uint32_t>& known = actions_of(node)[a].children;
     const BeliefKey key = key_of(next_.after());
     const auto same = std::ranges::find_if(known, [&](std::uint32_t child) { return nodes_[child].key == key; });
-    const std::uint32_t child = same != known.end() ? *same : add_node(next_.after(), left);
+    const bool is_new = same == known.end();
+    const std::uint32_t child = is_new ? add_node(next_.after(), left) : *same;
+    if (is_new) {
+      nodes_[child].like = like;
+      nodes_[child].share = share;
+    }
     ++nodes_[child].times;
-    ActionNode& action = actions_of(node)[a];
-    action.children.push_back(child);
-    action.sum += nodes_[child].value;
-    action.squares += nodes_[child].value * nodes_[child].value;
+    actions_of(node)[a].children.push_back(child);
     return true;
+  }
+
+  // The belief of the simulation that the drawn one has the largest share of.
+  std::pair<std::uint32_t, double> most_like() {
+    std::pair<std::uint32_t, double> most{no_node, 0};
+    for (std::size_t i = visits_.size(); i-- > 0;) {
+      const Node& node = nodes_[visits_[i].node];
+      const bool is_last = i + 1 == visits_.size();
+      const double share = next_.share_of(is_last ? std::span{next_.before()} : std::span{states_.data() + node.first, node.last - node.first});
+      if (share > most.second) most = {visits_[i].node, share};
+    }
+    return most;
   }
 
   // Differences of weights that come from rounding do not count.
@@ -239,39 +270,60 @@ class BeliefTree final : public TreePlanner<Model> {
 
   void back_up(std::size_t i) {
     const auto [number, a] = visits_[i];
-    ActionNode& action = actions_of(number)[a];
-    if (!action.children.empty()) {
-      const double later = action.sum / static_cast<double>(action.children.size());
-      action.q = action.reward + Model::discount * action.running * later;
+    renew(number, a);
+    // Where beliefs after the best action lose what this one loses, its value falls with this one's.
+    for (int rounds = 0; rounds < most_rounds; ++rounds) {
+      const double before = nodes_[number].value;
+      const ActionNode& best = best_action(number);
+      nodes_[number].value = best.q;
+      if (best.q >= before - settled * std::abs(before)) break;
+      renew(number, static_cast<std::size_t>(&best - actions_of(number).data()));
     }
-    const double before = nodes_[number].value;
-    const double now = nodes_[number].value = value(number);
-    if (i == 0) return;
-    ActionNode& above = actions_of(visits_[i - 1].node)[visits_[i - 1].action];
-    above.sum += nodes_[number].times * (now - before);
-    above.squares += nodes_[number].times * (now * now - before * before);
   }
 
-  // The value of the best action with enough visits.
-  double value(std::uint32_t node) {
+  // Takes an action's value anew from the beliefs after it.
+  void renew(std::uint32_t number, std::size_t a) {
+    ActionNode& action = actions_of(number)[a];
+    if (action.children.empty()) return;
+    const auto count = static_cast<double>(action.children.size());
+    double sum = 0;
+    double squares = 0;
+    for (const std::uint32_t child : action.children) {
+      const double value = value_of(child);
+      sum += value;
+      squares += value * value;
+    }
+    action.mean = sum / count;
+    action.squares = std::max(squares / count - action.mean * action.mean, 0.0);
+    action.q = action.reward + Model::discount * action.running * action.mean;
+    work_ += action.children.size();
+  }
+
+  // What a belief is worth: no more than if it loses what it must.
+  double value_of(std::uint32_t number) const {
+    const Node& node = nodes_[number];
+    if (node.like == no_node) return node.value;
+    const Node& like = nodes_[node.like];
+    return std::min(node.value, node.seen - node.share * std::max(like.seen - like.value, 0.0));
+  }
+
+  // The best action with enough visits.
+  const ActionNode& best_action(std::uint32_t node) {
     std::uint32_t most = 0;
     for (const ActionNode& action : actions_of(node)) most = std::max(most, action.n);
-    double best = -std::numeric_limits<double>::infinity();
+    const ActionNode* best = nullptr;
     for (std::size_t a = 0; a < space_.actions(); ++a) {
       const ActionNode& action = actions_of(node)[a];
       if (is_barred(node, a) || (most > 0 && !is_well_visited(action.n, most))) continue;
-      best = std::max(best, action.q);
+      if (best == nullptr || action.q > best->q) best = &action;
     }
-    return best;
+    return best != nullptr ? *best : actions_of(node).front();
   }
 
   // The variance of what an action is worth after one observation.
   static double variance(const ActionNode& action) {
-    if (action.children.empty()) return 0;
-    const auto count = static_cast<double>(action.children.size());
-    const double mean = action.sum / count;
     const double later = Model::discount * action.running;
-    return later * later * std::max(action.squares / count - mean * mean, 0.0);
+    return later * later * action.squares;
   }
 
   // The action with the highest upper confidence bound; see exploration.hpp.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,7 +41,8 @@ class SensedBelief {
  public:
   SensedBelief(const StateSpace<Model>& space, SensingTables<Model>& tables) : space_(space), tables_(tables) {}
 
-  // Draws an observation and makes the belief after it. Returns false if the mission has ended for certain.
+  // Draws an observation and makes the belief after it, which `keep` makes small. Returns false if the mission has ended for
+  // certain.
   bool draw(std::span<const SmallBelief::value_type> before, std::size_t action, bool is_root, Sampler& random) {
     std::uint64_t version = 0;
     do {  // again where tables have changed meanwhile
@@ -55,11 +57,27 @@ class SensedBelief {
       tables_.draw(outcomes_[chosen].table, random, seen_);
       weigh(chosen);
     } while (version != tables_.version());
-    thin_out(after_, tree_states, random);
     return true;
   }
+  void keep(Sampler& random) { thin_out(after_, tree_states, random); }
 
+  // The states that the last draw began with.
+  const SmallBelief& before() const { return start_; }
   const SmallBelief& after() const { return after_; }
+  // The largest share of the belief after the draw, before `keep`, that is a belief of these states.
+  double share_of(std::span<const SmallBelief::value_type> states) const {
+    double least = std::numeric_limits<double>::infinity();
+    double total = 0;
+    for (const auto& [state, weight] : states) {
+      const std::uint32_t place = place_[state];
+      if (place >= after_.size() || after_[place].first != state) return 0;
+      least = std::min<double>(least, after_[place].second / weight);
+      total += weight;
+    }
+    double after = 0;
+    for (const auto& [state, weight] : after_) after += weight;
+    return std::min(least * total / after, 1.0);
+  }
   // How many outcomes were weighed by the last call.
   std::size_t work() const { return outcomes_.size(); }
 
