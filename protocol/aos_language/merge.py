@@ -60,11 +60,20 @@ def merge(
 
 
 def changed_skills(before: Project | None, after: Project) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The names of the skills that are new, and of those that say something else than before."""
+    """The names of the skills that are new, and of those that say something else than before.
+
+    Among the latter `the environment` stands for all documents that are of no skill.
+    """
     old = {skill.name: skill for skill in before.skills} if before is not None else {}
     added = tuple(skill.name for skill in after.skills if skill.name not in old)
     changed = tuple(skill.name for skill in after.skills if skill.name in old and old[skill.name] != skill)
+    if before is not None and _shared(before) != _shared(after):
+        changed = ("the environment", *changed)
     return added, changed
+
+
+def _shared(project: Project) -> tuple[object, ...]:
+    return project.environment, project.low_level, project.monitors
 
 
 def _has_name(document: Document) -> bool:

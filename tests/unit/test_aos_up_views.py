@@ -65,6 +65,8 @@ EVENTS: tuple[Event, ...] = (
     DECISION,
     OBSERVED,
     REFUSED,
+    BundleReport("armadillo", True, 2, changed=("the environment",), source="new"),
+    BundleReport("armadillo", True, 3, removed=("pick",)),
     MissionState("m", "ended", 1, 0.95, ending="goal", remark="the goal is reached"),
 )
 
@@ -99,6 +101,8 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
         "step  1: pick -> pick_succeeded  surprise 0.50  goal 0.100",
         "pick.sd:7:2: error[AOS110]: unknown name",
         "bundle new refused, nothing has changed",
+        "bundle new: armadillo revision 2, changed the environment",
+        "armadillo revision 3, removed pick",
         "mission ended: the goal is reached",
     ]
 
@@ -155,7 +159,8 @@ def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> N
             view(event)
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [line["event"] for line in lines] == [
-        "service", "service", "remark", "mission", "mission", "decision", "decision", "bundle", "mission",
+        "service", "service", "remark", "mission", "mission", "decision", "decision", "bundle", "bundle", "bundle",
+        "mission",
     ]  # fmt: skip
     assert lines[5]["actions"][1] == {
         "action": "pick",

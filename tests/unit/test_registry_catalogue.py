@@ -58,6 +58,15 @@ def test_new_and_changed_skills_are_told_apart(bundles: Path) -> None:
     assert len(changed_skills(None, finer)[0]) == 5
 
 
+def test_a_changed_environment_is_no_news_of_a_skill_and_is_told(files: dict[str, bytes]) -> None:
+    before = load_files(files, name="armadillo").project
+    files["armadillo.ef"] = files["armadillo.ef"].replace(b"horizon: 10", b"horizon: 9")
+    after = load_files(files, name="armadillo").project
+    assert before is not None
+    assert after is not None
+    assert changed_skills(before, after) == ((), ("the environment",))
+
+
 def test_the_digest_depends_on_names_and_bytes_and_not_on_the_order() -> None:
     files = {"a": b"1", "b": b"2"}
     assert bundle_digest(files, ["a", "b"]) == bundle_digest(files, ["b", "a"])

@@ -198,8 +198,9 @@ def _report_lines(report: BundleReport) -> list[str]:
         return [*lines, f"bundle {report.source} refused, nothing has changed{waits}"]
     new = [f"{verb} {', '.join(skills)}" for verb, skills in _news(report) if skills]
     revision = f"{report.project} revision {report.revision}"
-    return [*lines, f"bundle {report.source}: {revision}, {'; '.join(new) or 'nothing new'}"]
+    subject = f"bundle {report.source}: " if report.source else ""
+    return [*lines, f"{subject}{revision}, {'; '.join(new) or 'nothing new'}"]
 
 
 def _news(report: BundleReport) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    return (("added", report.added), ("changed", report.changed))
+    return (("added", report.added), ("changed", report.changed), ("removed", report.removed))
