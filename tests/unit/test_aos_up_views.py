@@ -159,8 +159,8 @@ def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> N
             view(event)
     lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [line["event"] for line in lines] == [
-        "service", "service", "remark", "mission", "mission", "decision", "decision", "bundle", "bundle", "bundle",
-        "mission",
+        "service", "service", "remark", "mission", "mission", "decision", "decision",
+        "bundle", "bundle", "bundle", "mission",
     ]  # fmt: skip
     assert lines[5]["actions"][1] == {
         "action": "pick",

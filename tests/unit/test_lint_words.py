@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from aos_language.load import load_files
@@ -135,6 +137,42 @@ def test_a_name_of_the_language_without_its_underscores_is_recognized(
     ]
     assert errors[0].mend is not None
     assert errors[0].mend.text == meant
+
+
+def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -> None:
+    skill = SKILL.replace("state__.second.x =", "if (steps == 1) __reward = 1;\nstate__.second.x ==")
+    (only,) = found(skill=skill)
+    assert (only.code, only.span.line, only.span.column) == ("AOS149", 10, 18)
+    assert only.mend is not None
+    assert (only.mend.length, only.mend.text) == (2, "=")
+
+
+def test_a_penalty_above_0_is_told() -> None:
+    assert finding_texts(skill=SKILL.replace("violate_penalty: -1", "violate_penalty: 2.5")) == [
+        "5 AOS147 walk earns 2.5 where this does not hold. A penalty is added to the reward: write -2.5"
+    ]
+
+
+def test_a_kind_of_type_in_capitals_is_read_and_no_type_is_unknown() -> None:
+    types = [{"TypeName": "Side", "Type": "Enum", "EnumValues": ["Left", "Right"]}]
+    variables = [{"Name": "side", "Type": "Side", "Default": "Right"}]
+    environment = {
+        "PlpMain": {"Project": "hall", "Name": "environment", "Type": "Environment"},
+        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
+        "GlobalVariableTypes": types,
+        "GlobalVariablesDeclaration": variables,
+        "SpecialStates": [],
+    }
+    skill = "project: hall\ndynamic_model:\nstate__.side = Left;\n"
+    files = {"environment.json": json.dumps(environment).encode(), "turn.sd": skill.encode()}
+    assert [f.message for f in load_files(files).diagnostics if f.code != "AOS139"] == ["the kind Enum"]
+
+
+def test_an_assignment_in_a_condition_is_told_what_to_write() -> None:
+    special = "special_state:\nstate_condition: state.second.x = 3\nreward: 10\nis_goal_state: true\n"
+    environment = ENVIRONMENT[: ENVIRONMENT.index("reward_code:")] + special
+    (only,) = (finding for finding in found(environment=environment) if finding.is_error)
+    assert only.hint == "It may only be read. To compare, write `==`"
 
 
 def test_own_variables_may_be_called_like_names_of_the_language_without_underscores() -> None:

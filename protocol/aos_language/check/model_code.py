@@ -176,7 +176,14 @@ class _BlockCheck:
             for body in self._scope.shared.bodies():
                 self._check_unset(read_cpp(body))
         elif not self._block.is_expression:
+            self._check_comparisons()
             self._check_unset(self._cpp)
+
+    def _check_comparisons(self) -> None:
+        for operator in self._cpp.idle_comparisons:
+            span = self._span(operator)
+            hint = "To set what stands before it, write `=`"
+            self._findings.warning("AOS149", "this comparison does nothing", span, hint, Mend(span, 2, "="))
 
     def _check_unset(self, cpp: Cpp) -> None:
         for read in unset_reads(cpp, frozenset(self._scope.enums)):
@@ -302,6 +309,8 @@ class _BlockCheck:
             self._findings.error("AOS123", f"there is no `{root}` in {role.title}", span, hint)
         elif is_write and root not in role.writes:
             hint = f"Only {quoted(role.writes)} may change there" if role.writes else "It may only be read"
+            if self._block.is_expression and mention.access is Access.WRITE:
+                hint += ". To compare, write `==`"
             self._findings.error("AOS123", f"`{mention.text}` is written in {role.title}", span, hint)
 
     def _check_state_path(self, mention: Mention) -> None:

@@ -1,4 +1,5 @@
-"""Preconditions that nothing keeps: a skill runs also where its precondition does not hold."""
+"""Preconditions that nothing keeps, or whose violation earns something: a skill runs also where its
+precondition does not hold."""
 
 from __future__ import annotations
 
@@ -14,7 +15,18 @@ _MEETS = "__meetPrecondition"
 
 
 def check_precondition(model: SkillModel, findings: Findings) -> None:
-    """Remarks on a precondition whose violation costs nothing and changes nothing in the model."""
+    """Remarks on a precondition whose violation costs nothing and changes nothing in the model.
+
+    Where it earns something, that is a warning.
+    """
+    if model.violation_penalty > 0 and model.precondition:
+        block = model.precondition[0]
+        findings.warning(
+            "AOS147",
+            f"{model.name} earns {model.violation_penalty:g} where this does not hold",
+            block.code.span if block.code is not None else block.span,
+            f"A penalty is added to the reward: write -{model.violation_penalty:g}",
+        )
     if model.violation_penalty or not _mentions(model.precondition) or _mentions(model.dynamic_model):
         return
     block = model.precondition[0]

@@ -98,7 +98,10 @@ class Declaration(msgspec.Struct, frozen=True):
 
 
 class Cpp(msgspec.Struct, frozen=True):
-    """A snippet as read; everything in text order."""
+    """A snippet as read; everything in text order.
+
+    `idle_comparisons` are the `==` of statements that only compare.
+    """
 
     code: str
     mentions: tuple[Mention, ...] = ()
@@ -109,6 +112,7 @@ class Cpp(msgspec.Struct, frozen=True):
     missing_semicolons: tuple[int, ...] = ()
     faults: tuple[Fault, ...] = ()
     is_empty: bool = False
+    idle_comparisons: tuple[Extent, ...] = ()
 
     def writes(self) -> Iterator[Mention]:
         """The mentions through which something changes or may change."""

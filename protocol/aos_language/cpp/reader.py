@@ -44,6 +44,7 @@ class TreeReader:
         self.declarations: list[Declaration] = []
         self.types: list[tuple[str, Extent]] = []
         self.faults: list[Fault] = []
+        self.idle_comparisons: list[Extent] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
         self._stack.append((root, Access.READ))
@@ -60,6 +61,7 @@ class TreeReader:
             literals=self._tokens.literals,
             missing_semicolons=self._tokens.missing_semicolons,
             faults=tuple(sorted(self.faults, key=_by_start)),
+            idle_comparisons=tuple(sorted(self.idle_comparisons, key=lambda extent: extent.start)),
         )
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
@@ -78,6 +80,13 @@ class TreeReader:
 
     def _push(self, nodes: Iterable[tree_sitter.Node | None], access: Access = Access.READ) -> None:
         self._stack += [(node, access) for node in nodes if node is not None]
+
+    def _statement(self, node: tree_sitter.Node, access: Access) -> None:
+        comparison = node.named_children[0] if node.named_children else None
+        operator = comparison.child_by_field_name("operator") if comparison is not None else None
+        if operator is not None and operator.type == "==":
+            self.idle_comparisons.append(self.extent(operator))
+        self._push(node.children)
 
     def _missing(self, node: tree_sitter.Node) -> None:
         self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self.extent(node)))
@@ -273,6 +282,7 @@ _HANDLERS = {
     "conditional_expression": TreeReader._conditional,
     "declaration": TreeReader._declaration,
     "enum_specifier": TreeReader._enum,
+    "expression_statement": TreeReader._statement,
     "field_expression": TreeReader._path,
     "for_range_loop": TreeReader._declaration,
     "identifier": TreeReader._path,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+import msgspec
+
 from aos_language.reading.code import dedented, guarded
 from aos_language.reading.document import array_type, check_name, enum_type, normal_type
 from aos_language.reading.json_blocks import read_block
@@ -30,6 +32,7 @@ from aos_protocol.documents import (
 __all__ = ["read_environment", "read_low_level"]
 
 _RANGE = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)")
+_KINDS = ("enum", "compound")
 _FORM_A = ("StateConditionCode", "Reward", "IsGoalState", "IsFailureState", "IsOneTimeReward")
 
 
@@ -124,6 +127,10 @@ def _types(record: Record) -> tuple[tuple[EnumType, ...], tuple[CompoundType, ..
         if name is None or kind is None:
             continue
         check_name(name, "a type", record.findings)
+        if kind.text not in _KINDS and kind.text.lower() in _KINDS:
+            hint = f"It is read as {kind.text.lower()}"
+            record.findings.warning("AOS127", f"the kind {kind.text}", kind.span, hint)
+            kind = msgspec.structs.replace(kind, text=kind.text.lower())
         if kind.text == "enum":
             if not values:
                 record.findings.error("AOS105", f"the enum {name.text} has no values", name.span)
