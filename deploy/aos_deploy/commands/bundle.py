@@ -13,6 +13,7 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_diagnostics, print_json
 from aos_deploy.running_system import System, on_system
+from aos_deploy.views.lines import changes_text
 from aos_language.load import read_bundle_files
 from aos_language.outline import outline
 from aos_protocol.diagnostics import has_errors
@@ -208,6 +209,4 @@ def _sentence(report: BundleReport, what: Path | str) -> str:
     if not report.is_accepted:
         still = f"; the project stays at revision {report.revision}" if report.revision else ""
         return f"{what}: refused{still}"
-    changes = {"added": report.added, "changed": report.changed, "removed": report.removed}
-    new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]
-    return f"{what}: project {report.project}, revision {report.revision}, {'; '.join(new) or 'nothing new'}"
+    return f"{what}: project {report.project}, revision {report.revision}, {changes_text(report)}"

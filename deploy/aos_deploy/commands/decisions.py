@@ -9,6 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import Mission
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import lines_of, on_one_line
@@ -38,9 +39,7 @@ def decisions(
     system: System,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
     follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
-    mission: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Of a system that stays: instead of the last")
-    ] = None,
+    mission: Mission = None,
 ) -> None:
     """Print every decision of a mission from its first step.
 

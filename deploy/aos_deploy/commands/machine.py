@@ -17,6 +17,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.options import AsJson
 from aos_deploy.program import cache_dir
 from aos_protocol import __version__
 from aos_protocol.errors import AosError
@@ -51,7 +52,7 @@ def doctor(
     deploy: Annotated[
         Path | None, typer.Argument(metavar="DEPLOY", help="A deploy file, whose needs are looked at, too")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Say what this machine has and lacks.
 

@@ -14,7 +14,7 @@ import typer
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.constraints import constraint_of_option
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.lines import risk_text
@@ -59,7 +59,6 @@ Never = Annotated[
     list[str] | None,
     typer.Option("--never", metavar="P:EXPRESSION", help="A constraint: no more probable than P; repeatable"),
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 
 
 def register(app: typer.Typer) -> None:

@@ -24,6 +24,7 @@ __all__ = [
     "JsonView",
     "PlainView",
     "adopted_line",
+    "changes_text",
     "decision_line",
     "effort_text",
     "endings_text",
@@ -196,11 +197,13 @@ def _report_lines(report: BundleReport) -> list[str]:
     if not report.is_accepted:
         waits = "; it is tried again when the project changes" if report.is_waiting else ""
         return [*lines, f"bundle {report.source} refused, nothing has changed{waits}"]
-    new = [f"{verb} {', '.join(skills)}" for verb, skills in _news(report) if skills]
     revision = f"{report.project} revision {report.revision}"
     subject = f"bundle {report.source}: " if report.source else ""
-    return [*lines, f"{subject}{revision}, {'; '.join(new) or 'nothing new'}"]
+    return [*lines, f"{subject}{revision}, {changes_text(report)}"]
 
 
-def _news(report: BundleReport) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    return (("added", report.added), ("changed", report.changed), ("removed", report.removed))
+def changes_text(report: BundleReport) -> str:
+    """Says which skills a bundle has brought, changed or taken away."""
+    changes = {"added": report.added, "changed": report.changed, "removed": report.removed}
+    new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]
+    return "; ".join(new) or "nothing new"

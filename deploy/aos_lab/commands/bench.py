@@ -8,7 +8,7 @@ from typing import Annotated, get_args
 
 import typer
 
-from aos_deploy.options import TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
@@ -52,7 +52,7 @@ def bench(
     quick: Annotated[
         bool, typer.Option("--quick", help="Short measurements, and 4 missions a return")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_json: AsJson = False,
     as_markdown: Annotated[bool, typer.Option("--markdown", help="Print a table for a page")] = False,
     trust_documents: TrustDocuments = False,
 ) -> None:

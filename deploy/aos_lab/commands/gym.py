@@ -11,7 +11,7 @@ import msgspec
 import typer
 
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
 from aos_protocol.errors import DeployError
@@ -57,7 +57,7 @@ def gym(
     worlds: Annotated[int, typer.Option(min=1, help="Worlds side by side")] = 1024,
     seed: Annotated[int, typer.Option(min=0, help="Of the worlds and the actions")] = 1,
     set_values: SetValues = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
     """Describe a bundle as a Gymnasium environment.

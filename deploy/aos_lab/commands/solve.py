@@ -19,7 +19,7 @@ from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress, waiting
@@ -110,7 +110,7 @@ def solve(
     ] = None,
     nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200,
     set_values: SetValues = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
     """Work out a policy before the mission.

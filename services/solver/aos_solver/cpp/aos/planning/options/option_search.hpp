@@ -52,6 +52,25 @@ double income(double earned, std::size_t steps) {
   return earned / shares;
 }
 
+// A state that a search for ways has come to: the node before it, the action from there, and what was earned since the start.
+template <class State>
+struct WayNode {
+  State state;
+  std::uint32_t before;
+  int action;
+  double earned;
+  std::uint32_t depth;
+};
+
+// The actions from the start, which is node 0, to a node, and one more.
+template <class State>
+Option way_through(const std::vector<WayNode<State>>& nodes, std::uint32_t node, int action) {
+  Option way{action};
+  for (; node != 0; node = nodes[node].before) way.push_back(nodes[node].action);
+  std::ranges::reverse(way);
+  return way;
+}
+
 template <class Model>
 class OptionSearch {
  public:
@@ -78,13 +97,6 @@ class OptionSearch {
   static constexpr std::uint32_t longer_by = 2;
   static constexpr std::uint32_t later_ends = 1;
 
-  struct Node {
-    State state;
-    std::uint32_t before;
-    int action;
-    double earned;
-    std::uint32_t depth;
-  };
   struct Found {
     std::uint32_t node;
     int action;
@@ -155,9 +167,7 @@ class OptionSearch {
   std::vector<Way> confirmed(const State& start, const std::vector<Found>& found, double& steps, Sampler& random) const {
     std::vector<Way> ways;
     for (const Found& last : found) {
-      Way way{{last.action}, 0, last.earned, 0};
-      for (std::uint32_t node = last.node; node != 0; node = nodes_[node].before) way.option.push_back(nodes_[node].action);
-      std::ranges::reverse(way.option);
+      Way way{way_through(nodes_, last.node, last.action), 0, last.earned, 0};
       for (int i = 0; i < tries; ++i) {
         State state = start;
         way.earned += taken_option<Model>(way.option, state, random).earned / tries;
@@ -186,7 +196,7 @@ class OptionSearch {
 
   const LeafCells<Model>& cells_;
   const DecisionClock& clock_;
-  std::vector<Node> nodes_;
+  std::vector<WayNode<State>> nodes_;
   std::vector<Found> found_;
   SeenCells seen_;
   std::vector<std::uint64_t> cells_before_;

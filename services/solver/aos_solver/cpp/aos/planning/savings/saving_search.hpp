@@ -85,13 +85,6 @@ class SavingSearch {
   static constexpr std::size_t max_found = 16;
   static constexpr int tries = 4;  // of each way that was found
 
-  struct Node {
-    State state;
-    std::uint32_t before;
-    int action;
-    double earned;
-    std::uint32_t depth;
-  };
   struct Worth {
     double earned;  // with the way to it
     double after;
@@ -146,9 +139,7 @@ class SavingSearch {
     search(start, width, steps, StepLuck{random});
     std::vector<Option> ways;
     for (const Found& last : found_) {
-      Option way{last.action};
-      for (std::uint32_t node = last.node; node != 0; node = nodes_[node].before) way.push_back(nodes_[node].action);
-      std::ranges::reverse(way);
+      Option way = way_through(nodes_, last.node, last.action);
       double sum = 0;
       for (int i = 0; i < tries; ++i) {
         const StepLuck luck{random};
@@ -180,7 +171,7 @@ class SavingSearch {
 
   const LeafCells<Model>& cells_;
   const RestValues<Model>& values_;
-  std::vector<Node> nodes_;
+  std::vector<WayNode<State>> nodes_;
   std::vector<Found> found_;
   SeenCells seen_;
   // Of the node at hand, by action:

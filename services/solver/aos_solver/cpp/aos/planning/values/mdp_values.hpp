@@ -22,7 +22,6 @@
 
 namespace aos {
 
-
 template <class Model>
 class MdpValues final : public StateValues<Model> {
  public:

@@ -33,7 +33,6 @@ namespace aos {
 // Outcomes are counted in words of four bytes.
 inline constexpr ListLimits wide_limits{
     .states = 8'000'000, .bytes = std::size_t{256} << 20, .outcomes = std::size_t{100} << 20, .work = 80'000'000};
-// Before a listing begins:
 
 template <class Model>
 class WideValues final : public StateValues<Model> {
