@@ -13,13 +13,13 @@ from pathlib import Path
 
 from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.program import cache_dir
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_directory import LATEST, RunDirectory
 from aos_protocol.errors import BusError, DeployError
 
-__all__ = ["RUNS", "chosen_run", "chosen_runs", "living_run", "living_runs", "noted"]
+__all__ = ["RUNS", "chosen_run", "chosen_runs", "living_run", "living_runs", "noted", "runs_here"]
 
 RUNS = Path("runs")
-"""Commands look for run directories here unless told otherwise."""
+"""Commands look for run directories here unless told otherwise, or in `runs_here`."""
 
 
 @contextmanager
@@ -49,11 +49,20 @@ def living_runs() -> list[RunDirectory]:
     return found
 
 
+def runs_here() -> Path:
+    """The folder of runs that commands mean here: `runs`, or where that is none the only one a folder below.
+
+    Runs of `deploy/robot.yaml` are in `deploy/runs`, unless the file says something else.
+    """
+    below = [] if RUNS.is_dir() else [latest.parent for latest in Path().glob(f"*/{RUNS}/{LATEST}")]
+    return below[0] if len(below) == 1 else RUNS
+
+
 def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     """The run that a command means: the one named, else the one that goes on, else the last one.
 
     What is named may also be a file of runs, as `aos export --format bundle` writes one, with one run.
-    `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere.
+    `runs` is the folder to look in; without one `runs_here` comes first, then whatever goes on anywhere.
     DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
     """
     if run is not None:
@@ -62,10 +71,11 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
         return named
     here, elsewhere = _living(runs)
     candidates = here or elsewhere
-    has_last = (runs or RUNS).joinpath("latest").exists()
+    folder = runs or runs_here()
+    has_last = folder.joinpath(LATEST).exists()
     if len(candidates) > 1 and (here or not has_last):
         raise _several(candidates)
-    return candidates[0] if len(candidates) == 1 else RunDirectory.latest(runs or RUNS)
+    return candidates[0] if len(candidates) == 1 else RunDirectory.latest(folder)
 
 
 def chosen_runs(named: Iterable[Path] | None, runs: Path | None) -> list[Path]:
@@ -115,7 +125,7 @@ def _opened(file: Path) -> Path:
 def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
     """The runs that go on in a folder, by default in ./runs, and those elsewhere if no folder is named."""
     going_on = living_runs()
-    here = [run for run in going_on if run.path.parent == (runs or RUNS).resolve()]
+    here = [run for run in going_on if run.path.parent == (runs or runs_here()).resolve()]
     return here, [run for run in going_on if run not in here] if runs is None else []
 
 

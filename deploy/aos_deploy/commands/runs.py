@@ -8,7 +8,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from aos_deploy.living_runs import RUNS, living_runs
+from aos_deploy.living_runs import living_runs, runs_here
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.pruning import Pruned, pruned
@@ -64,7 +64,7 @@ def runs(
         context.obj = folder
         return
     going_on = {run.path: run for run in living_runs()}
-    kept = {} if running else {run.path: run for run in _runs_in(folder or RUNS)}
+    kept = {} if running else {run.path: run for run in _runs_in(folder or runs_here())}
     entries = [_entry(run) for run in (kept | going_on).values()]
     entries.sort(key=lambda entry: entry.started)
     if as_json:
@@ -76,7 +76,7 @@ def runs(
         values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
         typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")
     if not entries:
-        where = "" if running else f", and there is no run in {folder or RUNS}"
+        where = "" if running else f", and there is no run in {folder or runs_here()}"
         typer.echo(f"No mission runs{where}.")
 
 
@@ -91,7 +91,7 @@ def prune(
 
     A run that goes on is never removed.
     """
-    folder = folder or context.obj or RUNS
+    folder = folder or context.obj or runs_here()
     done = pruned(folder, keep) if folder.is_dir() else Pruned((), 0)
     if as_json:
         print_json({"removed": done.removed, "kept": done.kept, "freed_bytes": done.freed_bytes})

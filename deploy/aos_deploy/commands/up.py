@@ -98,7 +98,7 @@ def up(
 
     from aos_deploy.deploy_file import read_deploy_file
     from aos_deploy.interruption import run_until_interrupted
-    from aos_deploy.living_runs import RUNS
+    from aos_deploy.living_runs import runs_here
     from aos_deploy.mission_run import MissionRun
     from aos_deploy.needed_here import check_needed_here, check_sandbox
     from aos_deploy.run_directory import RunDirectory
@@ -112,7 +112,7 @@ def up(
     if resume:
         flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
         _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
-        deployment, taken_up = take_up(deploy or RunDirectory.latest(RUNS).path)
+        deployment, taken_up = take_up(deploy or RunDirectory.latest(runs_here()).path)
     elif deploy is None:
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:

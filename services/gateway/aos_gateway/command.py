@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from aos_deploy.export.run_bundle import opened_bundle
-from aos_deploy.living_runs import RUNS
+from aos_deploy.living_runs import runs_here
 from aos_protocol.errors import DeployError
 
 __all__ = ["register", "serve"]
@@ -94,7 +94,7 @@ def serve(
         port=port,
         names=tuple(host or ()),
         is_private=not open_,
-        runs=tuple(runs or [RUNS]),
+        runs=tuple(runs or [runs_here()]),
         sent=tuple(sent),
         projects=tuple(projects or [Path()]),
         remote=tuple(zip(endpoints, robots, strict=True)),

@@ -1,0 +1,34 @@
+"""The run that a command means."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.living_runs import RUNS, chosen_run, runs_here
+from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_protocol.errors import BusError
+
+
+def run_in(folder: Path) -> Path:
+    """The directory of a run that is over."""
+    run = RunDirectory.create(folder, "r", 0)
+    run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1))
+    run.close()
+    return run.path
+
+
+def test_the_runs_of_a_deploy_file_in_a_folder_are_found_from_above(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BusError, match="there is no run in runs"):
+        chosen_run(None, None)
+    below = run_in(tmp_path / "deploy" / "runs")
+    assert chosen_run(None, None).path == below
+    # Of two folders nobody knows which one is meant.
+    run_in(tmp_path / "lab" / "runs")
+    assert runs_here() == RUNS
+    here = run_in(tmp_path / "runs")
+    assert chosen_run(None, None).path == here
