@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import os
 from collections.abc import Callable
 from contextlib import aclosing
-from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
@@ -18,16 +16,16 @@ from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.living_runs import noted
 from aos_deploy.page_address import page_address
-from aos_deploy.printing import from_here
+from aos_deploy.printing import from_here, time_text
 from aos_deploy.program import outsiders_of, programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
-from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
+from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.run_end import account_of, beginning_of, settled
+from aos_deploy.run_record import record_of
 from aos_deploy.spans.rest import send_rest
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp, worlds_text
 from aos_deploy.verdict import Account, Verdict
-from aos_protocol import __version__
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
     BundleReport,
@@ -81,8 +79,7 @@ class MissionRun:
         self._is_played = is_played or (taken_up is not None and taken_up.record.is_played)
         self._begun_s = clock.monotonic_s()
         self.error: AosError | None = None
-        now = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
-        self._started = now if taken_up is None else taken_up.record.started
+        self._started = time_text(clock.now_ns()) if taken_up is None else taken_up.record.started
         self._supervisor: Supervisor | None = None
         self._heard = Account()
         self._own_pushes: set[str] = set()
@@ -281,19 +278,9 @@ class MissionRun:
             self._first_decision_s = self._elapsed_s()
 
     def _write_record(self, run: RunDirectory, endpoint: str, supervisor: Supervisor) -> None:
+        pids = supervisor.pids
         run.write_record(
-            RunRecord(
-                robot=self._deployment.file.robot,
-                endpoint=endpoint,
-                deploy_file=str(self._deployment.path),
-                seed=self._deployment.file.solver.seed,
-                started=self._started,
-                pid=os.getpid(),
-                pids=supervisor.pids,
-                is_played=self._is_played,
-                sandbox=sandbox_text(),
-                version=__version__,
-            )
+            record_of(self._deployment, endpoint, self._started, pids, is_played=self._is_played)
         )
 
     def _summary(self, verdict: Verdict, folder: Path) -> Summary:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from datetime import UTC, datetime
 from pathlib import Path
 
 import msgspec
@@ -10,7 +11,7 @@ import typer
 
 from aos_protocol.diagnostics import Diagnostic, render
 
-__all__ = ["count", "from_here", "print_diagnostics", "print_json"]
+__all__ = ["count", "from_here", "print_diagnostics", "print_json", "time_text"]
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
@@ -27,6 +28,11 @@ def print_json(value: object) -> None:
 def count(number: int, noun: str) -> str:
     """`1 error`, `2 errors`."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def time_text(stamp_ns: int) -> str:
+    """A time as ISO 8601 writes it, in whole seconds of UTC."""
+    return datetime.fromtimestamp(stamp_ns / 1e9, UTC).isoformat(timespec="seconds")
 
 
 def from_here(path: Path) -> Path:

@@ -28,6 +28,7 @@ from typing import Any, BinaryIO
 import msgspec
 
 from aos_deploy.bus_socket import place_of_socket, remove_socket
+from aos_deploy.run_record import RunRecord
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
@@ -35,7 +36,7 @@ from aos_runtime.failpoints import reach
 from aos_runtime.mission_folders import mission_folder
 from aos_runtime.service_settings import fault_path
 
-__all__ = ["LATEST", "ProcessEnd", "RunDirectory", "RunRecord", "Summary", "SystemSummary"]
+__all__ = ["LATEST", "ProcessEnd", "RunDirectory", "Summary", "SystemSummary"]
 
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""
@@ -45,24 +46,6 @@ _TOLD_LOG_LINES = 8
 
 _ANEW = ("endpoint", "password_file", "dictionary", "parties", "ros2")
 """The settings that a run which goes on does not keep."""
-
-
-class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents, and
-    `sandbox` what confines the documents' code. `version` is that of AOS. Nodes of ROS 2 meet at `ros2`,
-    where a run serves them."""
-
-    robot: str
-    endpoint: str
-    deploy_file: str
-    seed: int
-    started: str
-    pid: int
-    pids: dict[str, int] = {}
-    is_played: bool = False
-    sandbox: str = ""
-    version: str = ""
-    ros2: str = ""
 
 
 class ProcessEnd(msgspec.Struct, frozen=True):

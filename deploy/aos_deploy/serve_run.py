@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
-from datetime import UTC, datetime
 
 import msgspec
 
@@ -13,9 +11,10 @@ from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Report, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.living_runs import noted
-from aos_deploy.printing import from_here
+from aos_deploy.printing import from_here, time_text
 from aos_deploy.program import outsiders_of, programs_of_deployment
-from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import record_of
 from aos_deploy.serving import serving_program
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_protocol.errors import AosError
@@ -100,7 +99,8 @@ class ServeRun:
             ) as all_of:
                 self._supervisor = all_of
                 await all_of.start()
-                run.write_record(self._record(endpoint, all_of))
+                started = time_text(self._clock.now_ns())
+                run.write_record(record_of(deployment, endpoint, started, all_of.pids, ros2=self._ros2))
                 await all_of.until_ready()
                 types = self._server.settings["types"]
                 for name, type_name in types.items():
@@ -109,18 +109,3 @@ class ServeRun:
                 await asyncio.Event().wait()
         except BaseExceptionGroup as group:
             raise root_cause(group) from group
-
-    def _record(self, endpoint: str, supervisor: Supervisor) -> RunRecord:
-        file = self._deployment.file
-        started = datetime.fromtimestamp(self._clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
-        return RunRecord(
-            robot=file.robot,
-            endpoint=endpoint,
-            deploy_file=str(self._deployment.path),
-            seed=file.solver.seed,
-            started=started,
-            pid=os.getpid(),
-            pids=supervisor.pids,
-            sandbox=sandbox_text(),
-            ros2=self._ros2,
-        )

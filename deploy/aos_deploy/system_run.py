@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from datetime import UTC, datetime
 from pathlib import Path
 
 import msgspec
@@ -11,6 +10,7 @@ import msgspec
 from aos_deploy.events import Event, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.mission_run import MissionRun
+from aos_deploy.printing import time_text
 from aos_deploy.run_directory import RunDirectory, Summary, SystemSummary
 from aos_deploy.run_end import settled
 from aos_deploy.supervisor import Supervisor
@@ -80,7 +80,7 @@ class SystemRun(MissionRun):
         summary = msgspec.structs.replace(
             self._summary(verdict, folder),
             seed=entry.seed,
-            started=_time_text(entry.begun_ns),
+            started=time_text(entry.begun_ns),
             services_ready_s=None,
             **_durations(folder / JOURNAL, entry.begun_ns),
             process_ends=(),
@@ -128,10 +128,6 @@ class SystemRun(MissionRun):
             over_probability=0.0,
             failure_probability=0.0,
         )
-
-
-def _time_text(stamp_ns: int) -> str:
-    return datetime.fromtimestamp(stamp_ns / 1e9, UTC).isoformat(timespec="seconds")
 
 
 def _durations(journal: Path, begun_ns: int) -> dict[str, float | None]:

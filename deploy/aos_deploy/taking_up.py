@@ -10,7 +10,8 @@ import msgspec
 from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
 from aos_deploy.history_check.check import MIDDLEWARE
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS
-from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
 from aos_protocol.messages import ActivationId
 from aos_runtime.journal import Journal, JournalRow

@@ -17,7 +17,8 @@ import msgspec
 from processes import descendants
 
 from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import RunRecord
 from aos_protocol.access import OPERATOR
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionEntry, PushBundle
 from aos_runtime.client import AosClient

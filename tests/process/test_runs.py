@@ -19,7 +19,8 @@ import pytest
 from processes import COMMAND_S, HANG_S
 
 from aos_deploy.endpoint import hold_endpoint
-from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import RunRecord
 from aos_protocol.errors import BusError
 
 BIN = Path(sys.executable).parent

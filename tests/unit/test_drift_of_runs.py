@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
 from aos_deploy.drift_of_runs import drift_of_runs
-from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import RunRecord
 from aos_protocol.messages import ActivationId, Outcome, PredictedObservation
 from aos_runtime.journal import Journal
 from aos_solver.mission.drift import DRIFT, begun

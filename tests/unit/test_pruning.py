@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from aos_deploy.pruning import pruned
-from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import RunRecord
 
 DAY_NS = 86_400 * 10**9
 

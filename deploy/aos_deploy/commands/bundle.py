@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,7 +10,7 @@ import typer
 from aos_deploy.commands.documents import Folder, refusal
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
-from aos_deploy.printing import print_diagnostics, print_json
+from aos_deploy.printing import print_diagnostics, print_json, time_text
 from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import changes_text
 from aos_language.load import read_bundle_files
@@ -107,7 +106,7 @@ def list_projects(
         print_json(catalogue)
         return
     for entry in catalogue.entries:
-        stored = _time(entry.stored_ns)
+        stored = time_text(entry.stored_ns)
         typer.echo(f"{entry.project}  revision {entry.revision}  {entry.digest[:12]}  {stored}")
         typer.echo(f"  {', '.join(entry.skills)}")
     if not catalogue.entries:
@@ -160,7 +159,7 @@ def history(
         return
     for entry in found.entries:
         state = entry.digest[:12] if entry.digest else "removed"
-        typer.echo(f"{found.project}  revision {entry.revision}  {state}  {_time(entry.stored_ns)}")
+        typer.echo(f"{found.project}  revision {entry.revision}  {state}  {time_text(entry.stored_ns)}")
         for sign, names in (("+", entry.added), ("~", entry.changed), ("-", entry.removed)):
             if names:
                 typer.echo(f"  {sign} {', '.join(_with_version(name, entry.versions) for name in names)}")
@@ -199,10 +198,6 @@ def remove(
 
 def _with_version(name: str, versions: dict[str, str]) -> str:
     return f"{name} ({versions[name]})" if name in versions else name
-
-
-def _time(stamp_ns: int) -> str:
-    return datetime.fromtimestamp(stamp_ns / 1e9, UTC).isoformat(timespec="seconds")
 
 
 def _sentence(report: BundleReport, what: Path | str) -> str:

@@ -12,8 +12,9 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.living_runs import living_runs
-from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
+from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.run_end import account_of
+from aos_deploy.run_record import RunRecord
 from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
 from aos_protocol.errors import AosError, DeployError, GatewayError
