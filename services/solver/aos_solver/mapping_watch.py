@@ -80,7 +80,8 @@ class MappingWatch:
             return
         self._stamp_ns = state.stamp_ns
         if state.unavailable != self.unavailable:
-            log.info("unavailable skills: %s", state.unavailable or "none")
+            why = "; ".join(f"{skill}: {reason}" for skill, reason in state.unavailable.items())
+            log.info("unavailable skills: %s", why or "none")
         self.unavailable, self.announced = state.unavailable, state.announced
         for revision in state.revisions:
             if revision not in self._revisions:

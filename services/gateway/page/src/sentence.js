@@ -1,12 +1,12 @@
 // The decision of a step in one sentence, and what was expected and seen in another.
 import { html } from "./ui.js";
 import { chance, isNumber, number, percent, plain, seconds, signed } from "./format.js";
-import { at, progress, record, state } from "./store.js";
+import { at, progress, record } from "./store.js";
 import { isAsked } from "./timeline.js";
 
 export function Sentence() {
   const step = at.value;
-  if (!step) return html`<p class="sentence muted">${state.value?.remark ? `${state.value.remark}.` : "No decision has been made yet."}</p>`;
+  if (!step) return html`<p class="sentence muted">No decision has been made yet.</p>`;
   return html`<div class="decision">
     <p class="sentence"><span class="action">${step.action}</span> ${worth(step)}</p>
     <p class="came">${came(step)}</p>

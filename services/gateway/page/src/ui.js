@@ -22,7 +22,7 @@ export const Findings = ({ problem }) =>
       ${problem.diagnostics?.length > 0 && html`<ul class="findings">
         ${problem.diagnostics.slice(0, 50).map((found) => html`<li>
           <span class="code">${found.code}</span> <span class="place">${place(found.span)}</span> ${found.message}
-          ${found.hint && html`<span class="hint"> ${found.hint}</span>`}
+          ${found.hint && html`<p class="hint">${found.hint}</p>`}
           ${found.excerpt && html`<pre tabindex="0">${found.excerpt}</pre>`}
         </li>`)}
       </ul>`}
