@@ -10,7 +10,7 @@ from aos_language.findings import Findings
 from aos_language.load import load_files, read_bundle_files, with_excerpts
 from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.source import open_source
-from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.diagnostics import Diagnostic, Severity
 from aos_solver.emission.lower import lower
 
 __all__ = ["check_folder", "end_column", "lines_of"]
@@ -23,8 +23,9 @@ def check_folder(
 ) -> dict[str, tuple[list[str], list[Diagnostic]]]:
     """Returns for each file of the bundle its lines and what is wrong with it.
 
-    `open_texts` are texts by file name. What belongs to no file is told at the first open one. Empty where
-    the folder holds no AOS documents; the C++ compiler is not asked, for it takes seconds.
+    `open_texts` are texts by file name. What belongs to no file is told at the first open one; that files which
+    are no documents are left out is told at none. Empty where the folder holds no AOS documents; the C++
+    compiler is not asked, for it takes seconds.
     """
     files, remarks = read_bundle_files(folder)
     files.update((name, text.encode("utf-8", "replace")) for name, text in open_texts.items())
@@ -40,6 +41,8 @@ def check_folder(
     fallback = min(open_texts, default=min(checked))
     for diagnostic in found:
         name = diagnostic.span.file
+        if name not in checked and diagnostic.severity is Severity.REMARK:
+            continue
         checked[name if name in checked else fallback][1].append(diagnostic)
     return checked
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from aos_editor.checking import check_folder
 from aos_editor.documents import meaning_at, outline, proposals_at
 from aos_editor.meanings import SECTIONS
 from aos_language.reading.sdl_sections import GRAMMARS
@@ -33,6 +35,15 @@ def test_a_part_is_explained_as_part_of_its_section() -> None:
     assert found[0] == "code:"
     assert "at the start" in found[1]
     assert meaning_at("p.ef", text, 4, 7) is None
+
+
+def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "armadillo"
+    shutil.copytree(bundles / "armadillo-finer", folder)
+    (folder / "runs").mkdir()
+    (folder / "up.yaml").write_text("aos: 1\n")
+    checked = check_folder(folder, {"navigate.sd": (folder / "navigate.sd").read_text()})
+    assert [found for _, findings in checked.values() for found in findings if found.code == "AOS107"] == []
 
 
 def test_built_ins_are_completed_within_code() -> None:
