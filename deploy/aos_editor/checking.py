@@ -23,8 +23,8 @@ def check_folder(
 ) -> dict[str, tuple[list[str], list[Diagnostic]]]:
     """Returns for each file of the bundle its lines and what is wrong with it.
 
-    `open_texts` are texts by file name. What belongs to no file is told at the first open one; that files which
-    are no documents are left out is told at none. Empty where the folder holds no AOS documents; the C++
+    `open_texts` are texts by file name. What belongs to no file is told at the first open one; that files
+    are left out which are no documents, at none. Empty where the folder holds no AOS documents; the C++
     compiler is not asked, for it takes seconds.
     """
     files, remarks = read_bundle_files(folder)

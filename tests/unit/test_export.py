@@ -289,6 +289,9 @@ def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path: Path
     target.write_text("no archive")
     with pytest.raises(DeployError, match="cannot be opened"):
         opened_bundle(target)
+    with pytest.raises(DeployError, match="is a folder") as refused:
+        opened_bundle(tmp_path)
+    assert refused.value.hint.endswith(f"--runs {tmp_path}")
 
 
 def test_a_run_that_is_named_twice_is_taken_once(tmp_path: Path) -> None:

@@ -53,6 +53,14 @@ def test_the_margin_is_over_the_best_of_the_other_actions() -> None:
     )
 
 
+def test_a_choice_that_bounds_tell_apart_is_proven_whatever_the_errors_are() -> None:
+    chosen = ActionValue("look", 38.0, 1, 19.0, 37.9, 38.1)
+    apart = (chosen, ActionValue("open", 31.7, 1, 19.0, 31.6, 31.8))
+    assert row_of(decided(1, actions=apart)).is_proven
+    assert not row_of(decided(1, actions=(chosen, ActionValue("open", 31.7, 1, 19.0, 31.6, 38.0)))).is_proven
+    assert not row_of(decided(1, actions=(chosen, ActionValue("open", 31.7, 1, 19.0)))).is_proven
+
+
 def test_an_action_whose_value_nobody_knows_is_no_second() -> None:
     values = (ActionValue("look", 2.5, 9, 0.1), ActionValue("go", float("-inf"), 0, 0.0))
     assert row_of(decided(1, actions=values)).margin is None

@@ -62,6 +62,9 @@ def opened_bundle(path: Path) -> list[Path]:
 
     DeployError AOS801 for a file that is no bundle, has ways out of it, or more than such a file may have.
     """
+    if path.is_dir():
+        hint = f"A folder of runs goes behind an option: --runs {path}"
+        raise DeployError(f"{path} is a folder, and no file of runs", code="AOS801", hint=hint)
     try:
         digest = hashlib.blake2b(path.read_bytes(), digest_size=16).hexdigest()
         folder = cache_dir() / "opened" / digest

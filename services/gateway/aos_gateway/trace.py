@@ -37,7 +37,8 @@ class Step(msgspec.Struct, omit_defaults=True):
     """One step of a mission.
 
     `sequence` is that of the newest record about it. `value` and `error` are of the chosen action, `second`
-    is the best of the others, `margin` is how much better the chosen one is. `predicted` are the responses
+    is the best of the others, `margin` is how much better the chosen one is, and `is_proven` says that it is
+    proven to be no worse. `predicted` are the responses
     with their probabilities, `seen` is the response, `expected` its probability. `belief` are the variables
     whose distribution is another one than before this decision, `after` those that the outcome has changed:
     value to probability, with `…` for all values that are not listed, or the quantiles of a number, as in
@@ -56,6 +57,7 @@ class Step(msgspec.Struct, omit_defaults=True):
     second_value: float | None = None
     second_error: float | None = None
     margin: float | None = None
+    is_proven: bool = False
     actions: int = 0
     planner: str = ""
     simulations: int = 0
@@ -140,6 +142,7 @@ class Steps:
                 _short(second.stderr),
             )
             row.margin = _short(chosen.q - second.q) if chosen is not None else None
+            row.is_proven = chosen is not None and _is_proven(chosen, second)
         if record.adopted is not None:
             row.adopted = f"revision {record.adopted.revision}, its belief by {record.adopted.by}"
         if record.outcome is None:
@@ -197,6 +200,12 @@ def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:
 def _second(record: DecisionRecord) -> ActionValue | None:
     others = [value for value in record.actions if value.action != record.action and math.isfinite(value.q)]
     return max(others, key=lambda value: value.q, default=None)
+
+
+def _is_proven(chosen: ActionValue, second: ActionValue) -> bool:
+    """Returns whether what is proven of both actions tells that the chosen one is no worse."""
+    least, most = chosen.at_least, second.at_most
+    return least is not None and most is not None and least >= most
 
 
 def _told(marginal: Marginal) -> Told:

@@ -25,7 +25,7 @@ function worth(step) {
   if (!step.second) return html`${value}; nothing else can be done. ${note}`;
   const error = Math.hypot(step.error ?? 0, step.second_error ?? 0);
   const other = html`<span class="other">${step.second}</span>`;
-  if (isNumber(step.margin) && Math.abs(step.margin) < 2 * error) return html`${value}, too close to call against ${other}. ${note}`;
+  if (isNumber(step.margin) && !step.is_proven && Math.abs(step.margin) < 2 * error) return html`${value}, too close to call against ${other}. ${note}`;
   if (step.margin < 0) return html`${value}, ${plain(-step.margin)} less than ${other}. ${note}`;
   if (step.margin === 0) return html`${value}, as much as ${other}. ${note}`;
   return html`${value}, <b>${plain(step.margin)}</b> more than ${other}. ${note}`;
