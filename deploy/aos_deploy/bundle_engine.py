@@ -8,10 +8,11 @@ from pathlib import Path
 
 import typer
 
+from aos_deploy.bundle_files import planned_of
 from aos_deploy.constraints import constrained
 from aos_deploy.mission_values import with_values
 from aos_deploy.program import cache_dir
-from aos_language.load import load_bundle, read_bundle_files, with_excerpts
+from aos_language.load import load_files, with_excerpts
 from aos_protocol.diagnostics import Severity, render
 from aos_protocol.documents import Constraint, MissionValue
 from aos_protocol.errors import DocumentError, ModelError
@@ -33,9 +34,11 @@ async def engine_of_bundle(
 ) -> AsyncIterator[Engine]:
     """The engine of a bundle, compiled if need be, for missions with these constraints and values.
 
-    The bundle's mistakes come as one DocumentError; faults of its model show the line of the document.
+    A deploy file stands for its bundles, and adds its own constraints and values. Mistakes in documents come
+    as one DocumentError; faults of the model show the line of the document.
     """
-    loaded = load_bundle(bundle)
+    planned = planned_of(bundle)
+    loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
     if loaded.project is None:
         raise DocumentError(
             f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
@@ -45,7 +48,11 @@ async def engine_of_bundle(
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(
-            with_values(constrained(loaded.project, constraints), values),
+            with_values(
+                constrained(loaded.project, (*planned.constraints, *constraints), planned.sources),
+                (*planned.values, *values),
+                planned.sources,
+            ),
             cache_dir(),
             lambda remark: typer.echo(f"aos: {remark}", err=True),
             kind=kind,
@@ -56,5 +63,5 @@ async def engine_of_bundle(
         finally:
             await engine.close()
     except ModelError as error:
-        error.diagnostics = with_excerpts(error.diagnostics, read_bundle_files(bundle)[0])
+        error.diagnostics = with_excerpts(error.diagnostics, planned.files)
         raise

@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.constraints import constrained
-from aos_deploy.deploy_file import Deployment
+from aos_deploy.deploy_file import Deployment, read_deploy_file
 from aos_deploy.mission_values import with_values
 from aos_deploy.printing import from_here
 from aos_language.load import load_files, read_bundle_files
@@ -15,10 +15,18 @@ from aos_language.merge import merge
 from aos_language.mission_parameters import declared_values, parameter_leaves
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Diagnostic, has_errors
-from aos_protocol.documents import Project
+from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import DocumentError
 
-__all__ = ["BundledFiles", "check_mission_of", "files_of_bundle", "files_of_bundles", "project_of"]
+__all__ = [
+    "BundledFiles",
+    "Planned",
+    "check_mission_of",
+    "files_of_bundle",
+    "files_of_bundles",
+    "planned_of",
+    "project_of",
+]
 
 
 class BundledFiles(msgspec.Struct, frozen=True):
@@ -61,6 +69,34 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
         raise DocumentError(f"the bundle {bundle} cannot be read", code=found[0].code, diagnostics=found)
     skills = skills_of_files(files) if leave_out else {}
     return {name: data for name, data in files.items() if skills.get(name) not in leave_out}
+
+
+class Planned(msgspec.Struct, frozen=True):
+    """The documents that a command plans with, and what a deploy file sets for the mission.
+
+    `sources` are the files in which constraints and values stand.
+    """
+
+    files: dict[str, bytes]
+    remarks: tuple[Diagnostic, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
+    values: tuple[MissionValue, ...] = ()
+    sources: tuple[Path, ...] = ()
+
+
+def planned_of(path: Path) -> Planned:
+    """Reads a bundle, or the bundles of a deploy file; errors are those of `read_deploy_file`."""
+    if path.suffix not in (".yaml", ".yml") or not path.is_file():
+        files, remarks = read_bundle_files(path)
+        return Planned(files, tuple(remarks))
+    deployment = read_deploy_file(path)
+    together = files_of_bundles(deployment.bundles, deployment.file.leave_out)
+    return Planned(
+        together.files,
+        constraints=deployment.constraints,
+        values=deployment.mission_values,
+        sources=(deployment.path,),
+    )
 
 
 def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:

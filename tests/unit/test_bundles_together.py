@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
-from aos_deploy.bundle_files import files_of_bundles
+from aos_deploy.bundle_files import files_of_bundles, planned_of
+from aos_deploy.cli import aos_app
 from aos_language.load import load_files
 from aos_protocol.errors import DocumentError
 
@@ -41,6 +43,21 @@ def test_a_later_document_replaces_the_one_of_its_kind_and_name_whatever_the_fil
     project = load_files(together.files, name="yard.yaml").project
     assert project is not None
     assert project.environment.horizon == 7
+
+
+def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path: Path) -> None:
+    bundle(tmp_path, "world", yard_ef=ENVIRONMENT + "\nmission_parameter: int laps\ndefault_value: 2\n")
+    bundle(tmp_path, "skills", push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    constraint = '{never: "state.open", probability: 0.1}'
+    mission = f"{{set: {{laps: 3}}, constraints: [{constraint}]}}"
+    deploy.write_text(f"aos: 1\nrobot: yard\nbundles: [world, skills]\nmission: {mission}\n")
+    planned = planned_of(deploy)
+    assert sorted(planned.files) == ["push.sd", "yard.ef"]
+    assert [(value.name, value.text) for value in planned.values] == [("laps", "3")]
+    assert [constraint.never.code for constraint in planned.constraints] == ["state.open"]
+    linted = CliRunner().invoke(aos_app(), ["lint", str(deploy), "--no-compile"])
+    assert (linted.exit_code, "0 errors" in linted.stdout) == (0, True)
 
 
 def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bundle(tmp_path: Path) -> None:

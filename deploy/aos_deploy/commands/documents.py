@@ -11,11 +11,12 @@ from typing import Annotated
 import msgspec
 import typer
 
+from aos_deploy.bundle_files import planned_of
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_deploy.sarif import sarif_log
-from aos_language.load import load_bundle, load_files, read_bundle_files, with_excerpts
+from aos_language.load import load_bundle, load_files, with_excerpts
 from aos_language.outline import outline
 from aos_language.reading.picture_file import PICTURE
 from aos_protocol import __version__
@@ -67,6 +68,8 @@ def lint(
 ) -> None:
     """Check a bundle and print everything that is wrong.
 
+    Of a deploy file all bundles are checked together.
+
     Where the documents are in order, the model is generated and compiled too, and mistakes in its C++ are
     told at their place in the documents; the built model is kept for later. Exit code 0: clean, or warnings
     only. 1: errors.
@@ -106,9 +109,9 @@ def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnosti
     files: dict[str, bytes] = {}
     remarks: list[Diagnostic] = []
     for bundle in bundles:
-        found, its_remarks = read_bundle_files(bundle)
-        files |= found
-        remarks += its_remarks
+        planned = planned_of(bundle)
+        files |= planned.files
+        remarks += planned.remarks
     return files, remarks
 
 

@@ -41,7 +41,13 @@ RATE_REPETITIONS = 10
 
 T = TypeVar("T")
 
-Bundle = Annotated[Path, typer.Argument(metavar="BUNDLE", help="A directory of documents")]
+Bundle = Annotated[
+    Path,
+    typer.Argument(
+        metavar="BUNDLE",
+        help="A directory of documents; or a deploy file, for its bundles, constraints and values together",
+    ),
+]
 Simulations = Annotated[int, typer.Option(min=1, help="Planning budget of a decision, in simulations")]
 Time = Annotated[float | None, typer.Option("--time", min=0.001, help="Planning budget in seconds, instead")]
 Horizon = Annotated[

@@ -89,7 +89,9 @@ class Report(msgspec.Struct):
 
 
 def solve(
-    target: Annotated[Path, typer.Argument(metavar="TARGET", help="A bundle, or a .pomdpx or .pomdp file")],
+    target: Annotated[
+        Path, typer.Argument(metavar="TARGET", help="A bundle, a deploy, .pomdpx or .pomdp file")
+    ],
     time_s: Annotated[float, typer.Option("--time", min=0.001, help="Seconds of computing at most")] = 60.0,
     precision: Annotated[float, typer.Option(min=0, help="Enough when the bounds are so near")] = 1e-3,
     discount: Annotated[
