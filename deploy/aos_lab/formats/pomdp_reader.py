@@ -23,7 +23,11 @@ Distribution = dict[int, float]
 
 def read_pomdp(name: str, data: bytes) -> ExplicitModel:
     """The model in a file; DocumentError with all findings, at their line and column, if it has mistakes."""
-    text = data.decode("latin-1").replace("\r\n", "\n")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    text = text.replace("\r\n", "\n")
     findings = ProblemFindings(name, text)
     model = None
     with contextlib.suppress(TooManyFindingsError):
@@ -42,6 +46,7 @@ class _Reader:
         self._numbers: dict[str, dict[str, int]] = {}
         self._discount = 1.0
         self._sign = 1.0
+        self._is_seen = False
         self._start: Distribution | None = None
         self._transitions: dict[tuple[int, int], Distribution] = {}
         self._sensing: dict[tuple[int, int], Distribution] = {}
@@ -50,12 +55,16 @@ class _Reader:
     def read(self, statements: Sequence[Statement]) -> ExplicitModel | None:
         """Reads the statements into a model; None where what is needed to go on is missing."""
         keywords = {statement.keyword.text for statement in statements}
+        self._is_seen = not keywords & {"observations", "O"}
         for kind in ("discount", "states", "actions", "observations"):
-            if kind not in keywords:
+            if kind not in keywords and not (kind == "observations" and self._is_seen):
                 self._findings.error("AOS105", f"there is no `{kind}:`", 1)
         for statement in statements:
             if statement.keyword.text in ("discount", "values", "states", "actions", "observations"):
                 self._preamble(statement)
+        if self._is_seen and "states" in self._names:
+            # The file of an MDP: whoever acts sees the state.
+            self._names["observations"] = self._names["states"]
         if len(self._names) < 3 or not all(self._names.values()):
             return None
         self._rewards = RewardRules()
@@ -71,6 +80,8 @@ class _Reader:
             return None
         everywhere = {(action, state) for action in self._all("actions") for state in self._all("states")}
         self._check("T", self._transitions, everywhere)
+        if self._is_seen:
+            self._sensing = {(action, state): {state: 1.0} for action, state in everywhere}
         reached = {(action, after) for (action, _), row in self._transitions.items() for after in row}
         self._check("O", self._sensing, reached)
         return None if self._findings.has_any else self._model()
@@ -136,7 +147,7 @@ class _Reader:
         kinds = {
             "T": ("actions", "states", "states"),
             "O": ("actions", "states", "observations"),
-            "R": ("actions", "states", "states", "observations"),
+            "R": ("actions", "states", "states", *(() if self._is_seen else ("observations",))),
         }[keyword]
         fields = statement.fields
         least = 2 if keyword == "R" else 1
@@ -190,8 +201,12 @@ class _Reader:
         ]
 
     def _reward(self, statement: Statement, chosen: list[Sequence[int]]) -> None:
-        """A number, a row over observations, or a matrix over next states and observations."""
-        after, observations = self._all("states"), self._all("observations")
+        """A number, a row over observations, or a matrix over next states and observations.
+
+        An MDP's rewards know no observations: a row is over next states.
+        """
+        after = self._all("states")
+        observations = range(1) if self._is_seen else self._all("observations")
         numbers = [self._sign * self._number(word) for word in statement.words]
         rest = [after, observations][len(chosen) - 2 :]
         wanted = int(np.prod([len(part) for part in rest], dtype=int))
@@ -202,6 +217,11 @@ class _Reader:
         after_fields = statement.fields[2:]
         everywhere = [word.text == "*" for word in after_fields]
         whole_after = None if everywhere[:1] == [True] else (chosen[2] if after_fields else after)
+        if self._is_seen:
+            for state, number in zip(range(wanted), numbers, strict=True):
+                next_states = whole_after if after_fields else [state]
+                self._rewards.add(chosen[0], chosen[1], next_states, None, number)
+            return
         if len(chosen) == 4:
             whole_observations = None if everywhere[1] else chosen[3]
             self._rewards.add(chosen[0], chosen[1], whole_after, whole_observations, numbers[0])
@@ -218,7 +238,10 @@ class _Reader:
         for action, state in sorted(needed):
             row = table.get((action, state), {})
             total = sum(row.values())
-            if abs(total - 1) > _SUM_TOLERANCE:
+            if not row and (keyword, action, state) not in self._last_rule:
+                where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
+                self._findings.error("AOS105", f"there is no `{where}`", 1)
+            elif abs(total - 1) > _SUM_TOLERANCE:
                 where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
                 message = f"the probabilities of `{where}` sum to {total:g}"
                 rule = self._last_rule.get((keyword, action, state), Word("", 1, 0))
@@ -304,8 +327,6 @@ class _Reader:
             np.array([number for row in known for number, _ in row], dtype=np.int64),
             np.array([probability for row in known for _, probability in row]),
         )
-        assert self._start is not None
-        start = StartBelief(1.0, np.array(list(self._start)), np.array(list(self._start.values())))
         return ExplicitModel(
             name=self._name,
             discount=self._discount,
@@ -316,8 +337,18 @@ class _Reader:
             outcomes=Ragged(np.array(first), np.array(after), np.array(chances)),
             sensings=np.array(sensings),
             likelihoods=likelihoods,
-            starts=(start,),
+            starts=self._starts(),
         )
+
+    def _starts(self) -> tuple[StartBelief, ...]:
+        assert self._start is not None
+        if self._is_seen:
+            one = np.ones(1)
+            return tuple(
+                StartBelief(probability, np.array([state]), one)
+                for state, probability in sorted(self._start.items())
+            )
+        return (StartBelief(1.0, np.array(list(self._start)), np.array(list(self._start.values()))),)
 
     def _sensing_of(self, action: int) -> Callable[[int], Distribution]:
         return lambda state: self._sensing[action, state]

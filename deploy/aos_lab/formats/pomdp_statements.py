@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 import msgspec
 
@@ -35,7 +36,7 @@ def statements_of(text: str, findings: ProblemFindings) -> Iterator[Statement]:
     if words and (not starts or starts[0] > 0):
         hint = "Expected discount:, values:, states:, actions: or observations:"
         findings.error("AOS102", f"{words[0].text} is no keyword", words[0].line, words[0].column, hint)
-    for begin, end in zip(starts, [*starts[1:], len(words)], strict=True):
+    for begin, end in pairwise([*starts, len(words)]):
         yield _statement(words[begin:end])
 
 

@@ -1,0 +1,70 @@
+"""What `.pomdp` files of other programs hold: no model at all, a byte order mark, or an MDP."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from aos_lab.formats.problem_files import read_problem
+from aos_protocol.errors import DocumentError
+
+MDP = """\
+discount: 0.9
+values: cost
+states: a b c
+actions: go stay
+start: 0.25 0 0.75
+T: go
+0.5 0.5 0   0 0.5 0.5   0.5 0 0.5
+T: stay identity
+R: * : * : * 1
+R: go : a : b 3
+R: stay : c
+1 2 4
+"""
+
+
+@pytest.mark.parametrize("text", ["", "# nothing\n", "hello world\n"])
+def test_a_file_without_statements_has_mistakes(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "empty.pomdp"
+    file.write_text(text)
+    with pytest.raises(DocumentError) as caught:
+        read_problem(file)
+    assert {finding.code for finding in caught.value.diagnostics} <= {"AOS102", "AOS105"}
+
+
+def test_a_rule_that_is_missing_is_told_as_missing(tmp_path: Path) -> None:
+    file = tmp_path / "missing.pomdp"
+    file.write_text("discount: 0.5\nstates: a b\nactions: go\nobservations: x\nT: go : a 0 1\nO: * uniform")
+    with pytest.raises(DocumentError) as caught:
+        read_problem(file)
+    assert [finding.message for finding in caught.value.diagnostics] == ["there is no `T: go : b`"]
+
+
+def test_names_beyond_ascii_are_read_with_and_without_a_byte_order_mark(tmp_path: Path) -> None:
+    file = tmp_path / "marked.pomdp"
+    text = "discount: 0.5\nstates: größe b\nactions: go\nobservations: x\nT: go identity\nO: * uniform\n"
+    for encoding in ("utf-8", "utf-8-sig", "latin-1"):
+        file.write_text(text, encoding=encoding)
+        assert read_problem(file).states == ("größe", "b"), encoding
+
+
+def test_without_observations_the_state_is_seen(tmp_path: Path) -> None:
+    file = tmp_path / "mdp.pomdp"
+    file.write_text(MDP)
+    model = read_problem(file)
+    assert model.observations == model.states
+    assert [(start.weight, list(start.states)) for start in model.starts] == [(0.25, [0]), (0.75, [2])]
+    np.testing.assert_allclose(model.rewards, [[-2, -1], [-1, -1], [-1, -4]])
+    for state, sensing in zip(model.outcomes.numbers, model.sensings, strict=True):
+        assert list(model.likelihoods.row(sensing)[0]) == [state]
+
+
+def test_a_file_with_sensing_needs_observations(tmp_path: Path) -> None:
+    file = tmp_path / "unnamed.pomdp"
+    file.write_text(MDP + "O: * uniform\n")
+    with pytest.raises(DocumentError, match=r"has mistakes") as caught:
+        read_problem(file)
+    assert caught.value.diagnostics[0].message == "there is no `observations:`"
