@@ -1,4 +1,4 @@
-"""What `.pomdp` files of other programs hold: no model at all, a byte order mark, or an MDP."""
+"""Tests `.pomdp` files of other programs: without a model, with a byte order mark, and of MDPs."""
 
 from __future__ import annotations
 
