@@ -115,7 +115,9 @@ def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running
     called = mission.aos("skill", "call", "/take", "side=Right")
     assert '"success": true' in called
     assert "executing   50%  reaching out" in called
-    assert "the lens is dirty" in mission.aos("skill", "call", "/look")
+    assert "the lens is dirty" in mission.aos("skill", "call", "look")
+    nobody = mission.aos("skill", "call", "lok")
+    assert "AOS505: no adapter serves /lok. Did you mean `look`?" in nobody
     assert "there is no skill tke" in mission.aos("skill", "info", "tke")
     assert mission.aos("skill", "cancel") == "nothing was moving\n"
 

@@ -28,6 +28,7 @@ from aos_protocol.messages import (
     SkillProgress,
     SkillResult,
 )
+from aos_protocol.spelling import did_you_mean, quoted
 from aos_runtime.client import AosClient
 from aos_runtime.served import served
 from aos_runtime.subscription import Subscription
@@ -100,7 +101,7 @@ def info(
 @on_system
 def call(
     system: System,
-    path: Annotated[str, typer.Argument(help="The path that an adapter serves")],
+    name: Annotated[str, typer.Argument(metavar="PATH", help="The path that somebody serves, or a skill")],
     fields: Annotated[list[str] | None, typer.Argument(help="NAME=VALUE; values are JSON, or texts")] = None,
     deadline: Annotated[float, typer.Option(min=0.1, help="Seconds that it may take")] = 60.0,
     anyway: Annotated[bool, typer.Option("--anyway", help="Also while the mission moves the robot")] = False,
@@ -116,6 +117,7 @@ def call(
         if state is not None and state.phase in ("planning", "acting") and not anyway:
             hint = "Let it hold or end first, or use --anyway"
             raise DeployError("the mission moves the robot", code="AOS502", hint=hint)
+        path = await _served_path(aos, name)
         request = SkillCall(ActivationId("by-hand", time.time_ns()), path, _values(fields or []), deadline)
         async with aos.bus.listen(aos.keys.progress(path), SkillProgress) as progress:
             telling = asyncio.create_task(_tell(progress, as_json))
@@ -137,17 +139,20 @@ def call(
 @on_system
 def cancel(
     system: System,
-    path: Annotated[str, typer.Argument(help="Only what runs there; else whatever moves")] = "",
+    name: Annotated[
+        str, typer.Argument(metavar="[PATH]", help="Only what runs there, or that skill; else whatever moves")
+    ] = "",
 ) -> None:
     """Stop what moves; the mission goes on with that outcome."""
 
     async def work(aos: AosClient) -> None:
-        paths = [path] if path else sorted({server.path for server in await served(aos.bus, aos.keys)})
+        everything = {server.path for server in await served(aos.bus, aos.keys)}
+        paths = [await _served_path(aos, name)] if name else sorted(everything)
         answers = await asyncio.gather(*(_stop(aos, path) for path in paths), return_exceptions=True)
         stopped = {id for answer in answers if isinstance(answer, Cancelled) for id in answer.ids}
         typer.echo(f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving")
         for answered in answers:
-            if isinstance(answered, AosError) and path:
+            if isinstance(answered, AosError) and name:
                 raise answered
 
     system.do(work)
@@ -176,6 +181,21 @@ async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:
     revision = await bus.ask(keys.project, ProjectQuery(), ProjectRevision, timeout_s=_ASK_S)
     state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
     return revision.project, state, await served(aos.bus, aos.keys)
+
+
+async def _served_path(aos: AosClient, name: str) -> str:
+    """The path that is named, or that of the skill; SkillError AOS505 where no adapter serves it."""
+    paths = {server.path for server in await served(aos.bus, aos.keys)}
+    path = "/" + name.strip("/")
+    if path in paths:
+        return path
+    project, _, _ = await _known(aos)
+    of_skills = {skill.name: "/" + skill.mapping.activation.path.strip("/") for skill in project.skills}
+    path = of_skills.get(name, path)
+    if path not in paths:
+        hint = did_you_mean(name, (*paths, *of_skills)) or f"Served are {quoted(sorted(paths))}"
+        raise SkillError(f"no adapter serves {path}", code="AOS505", hint=hint)
+    return path
 
 
 async def _mission_state(aos: AosClient) -> MissionState | None:
