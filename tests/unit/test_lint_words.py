@@ -147,6 +147,45 @@ def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -
     assert (only.mend.length, only.mend.text) == (2, "=")
 
 
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (
+            "__reward = -1,5;",
+            "9 AOS149 the number behind this comma does nothing. A decimal is written with a point",
+        ),
+        (
+            "if (AOS.Bernoulli(0,3)) __reward = 1;",
+            "9 AOS110 `AOS.Bernoulli` takes a probability, not 2 values. A decimal is written with a point",
+        ),
+        (
+            "__reward = AOS.SampleNormal(1);",
+            "9 AOS110 `AOS.SampleNormal` takes a mean and a deviation, not 1 value. ",
+        ),
+        (
+            "if state.first.x > 0:\n    __reward = 1\nelse:\n    __reward = 2",
+            "9 AOS108 `if ...:` is Python. The model's code is C++: `if (...) { ... } else { ... }`",
+        ),
+    ],
+)
+def test_what_other_languages_write_is_told_once(code: str, told: str) -> None:
+    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == [told]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "for (int i :\n {1, 2}) __reward += i;",
+        "// if the door is open:\n__reward = 1;",
+        "switch (steps) { case 1: __reward = 1; break; default: __reward = 2; }",
+        "for (int i = 0, n = 3; i < n; i++, n--) __reward += i;",
+        'const char* text = R"(\nif it rains:\n)"; __reward = text[0];',
+    ],
+)
+def test_code_of_cpp_is_no_python_and_no_decimal(code: str) -> None:
+    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
+
+
 def test_a_penalty_above_0_is_told() -> None:
     assert finding_texts(skill=SKILL.replace("violate_penalty: -1", "violate_penalty: 2.5")) == [
         "5 AOS147 walk earns 2.5 where this does not hold. A penalty is added to the reward: write -2.5"

@@ -22,6 +22,12 @@ BUILT_INS = {
 }  # fmt: skip
 _BY_LOWER = {name.lower(): name for name in BUILT_INS["AOS"]}
 _OWNER_BY_LOWER = {owner.lower(): owner for owner in BUILT_INS}
+_ARGUMENTS = {
+    "Bernoulli": (1, "a probability"),
+    "SampleNormal": (2, "a mean and a deviation"),
+    "SampleUniform": (2, "a lower and an upper bound"),
+}
+_DECIMAL_COMMA = re.compile(r"\d+\s*,\s*\d+")
 _WITH_TYPE = re.compile(r"[\w.\s]+<\s*(?P<type>[\w:]+)\s*>")
 _ALIKE = 0.85
 """A share of a function's name, from 0 to 1: with that much of a built-in's name it is taken for a
@@ -31,7 +37,10 @@ misspelling. Any function of C++ may stand there as well."""
 def check_built_in(
     call: Call, code: str, declared: Collection[str], span_of: Callable[[Extent], Span], findings: Findings
 ) -> None:
-    """Reports AOS110 for a built-in that is not there, lacks its owner, or has it in another spelling."""
+    """Reports AOS110 for a built-in that is not there, lacks its owner, or has it in another spelling.
+
+    One with too many values or too few is told as well.
+    """
     owner, name = call.name[0] if len(call.name) == 2 else "", call.name[-1] if call.name else ""
     span = span_of(call.function)
     text = code[call.function.start : call.function.end]
@@ -44,6 +53,12 @@ def check_built_in(
         findings.unknown(name, known, f"{owner} has no `{name}`", of_name, f"It has {quoted(known)}")
     elif owner in BUILT_INS and (written := _WITH_TYPE.fullmatch(text)):
         _typed(owner, name, written["type"], call, code, span, findings)
+    elif owner in BUILT_INS and len(call.arguments) != _ARGUMENTS.get(name, (len(call.arguments), ""))[0]:
+        given = code[call.function.end : call.extent.end]
+        comma = " A decimal is written with a point" if _DECIMAL_COMMA.search(given) else ""
+        count = len(call.arguments)
+        message = f"`{text}` takes {_ARGUMENTS[name][1]}, not {count} value{'s' if count != 1 else ''}"
+        findings.error("AOS110", message, span, comma.strip())
     elif owner == "AOS" and "::" in text:
         _written_otherwise(f"`{text}` is not how AOS writes it", "AOS", name, text, span, findings)
     elif len(call.name) == 2 and owner not in BUILT_INS and owner not in declared:

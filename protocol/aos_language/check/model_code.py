@@ -176,14 +176,19 @@ class _BlockCheck:
             for body in self._scope.shared.bodies():
                 self._check_unset(read_cpp(body))
         elif not self._block.is_expression:
-            self._check_comparisons()
+            self._check_idle_operators()
             self._check_unset(self._cpp)
 
-    def _check_comparisons(self) -> None:
-        for operator in self._cpp.idle_comparisons:
+    def _check_idle_operators(self) -> None:
+        for operator in self._cpp.idle_operators:
             span = self._span(operator)
-            hint = "To set what stands before it, write `=`"
-            self._findings.warning("AOS149", "this comparison does nothing", span, hint, Mend(span, 2, "="))
+            if self._cpp.code[operator.start] == ",":
+                hint = "A decimal is written with a point"
+                message, mend = "the number behind this comma does nothing", Mend(span, 1, ".")
+            else:
+                hint = "To set what stands before it, write `=`"
+                message, mend = "this comparison does nothing", Mend(span, 2, "=")
+            self._findings.warning("AOS149", message, span, hint, mend)
 
     def _check_unset(self, cpp: Cpp) -> None:
         for read in unset_reads(cpp, frozenset(self._scope.enums)):

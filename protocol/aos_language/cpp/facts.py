@@ -100,7 +100,8 @@ class Declaration(msgspec.Struct, frozen=True):
 class Cpp(msgspec.Struct, frozen=True):
     """A snippet as read; everything in text order.
 
-    `idle_comparisons` are the `==` of statements that only compare.
+    `idle_operators` are the `==` of statements that only compare, and the comma before a number that does
+    nothing, as in `x = 1,5;`.
     """
 
     code: str
@@ -112,7 +113,7 @@ class Cpp(msgspec.Struct, frozen=True):
     missing_semicolons: tuple[int, ...] = ()
     faults: tuple[Fault, ...] = ()
     is_empty: bool = False
-    idle_comparisons: tuple[Extent, ...] = ()
+    idle_operators: tuple[Extent, ...] = ()
 
     def writes(self) -> Iterator[Mention]:
         """The mentions through which something changes or may change."""

@@ -44,7 +44,7 @@ class TreeReader:
         self.declarations: list[Declaration] = []
         self.types: list[tuple[str, Extent]] = []
         self.faults: list[Fault] = []
-        self.idle_comparisons: list[Extent] = []
+        self.idle_operators: list[Extent] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
         self._stack.append((root, Access.READ))
@@ -61,7 +61,7 @@ class TreeReader:
             literals=self._tokens.literals,
             missing_semicolons=self._tokens.missing_semicolons,
             faults=tuple(sorted(self.faults, key=_by_start)),
-            idle_comparisons=tuple(sorted(self.idle_comparisons, key=lambda extent: extent.start)),
+            idle_operators=tuple(sorted(self.idle_operators, key=lambda extent: extent.start)),
         )
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
@@ -82,10 +82,12 @@ class TreeReader:
         self._stack += [(node, access) for node in nodes if node is not None]
 
     def _statement(self, node: tree_sitter.Node, access: Access) -> None:
-        comparison = node.named_children[0] if node.named_children else None
-        operator = comparison.child_by_field_name("operator") if comparison is not None else None
-        if operator is not None and operator.type == "==":
-            self.idle_comparisons.append(self.extent(operator))
+        whole = node.named_children[0] if node.named_children else None
+        parts = whole.children if whole is not None else []
+        for part in parts:
+            is_decimal = part.type == "," and parts[-1].type == "number_literal"
+            if part.type == "==" or is_decimal:
+                self.idle_operators.append(self.extent(part))
         self._push(node.children)
 
     def _missing(self, node: tree_sitter.Node) -> None:

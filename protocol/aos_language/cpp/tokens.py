@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -63,6 +64,11 @@ _IN_PLACE_OF = {
 """Directives that people write, with what there is in their place."""
 
 
+_PYTHON_LINE = re.compile(
+    r"^[ \t]*(?P<word>if|elif|else|for|while|def)\b(?P<head>[^;{}?\n]*):[ \t]*(?://.*|#.*)?$", re.MULTILINE
+)
+
+
 class FaultKind(StrEnum):
     """The reasons why a snippet cannot be placed in a function. SYNTAX is a hint, the compiler decides."""
 
@@ -71,6 +77,7 @@ class FaultKind(StrEnum):
     COMMENT = "comment"
     PREPROCESSOR = "preprocessor"
     SIZE = "size"
+    PYTHON = "python"
     SYNTAX = "syntax"
 
 
@@ -154,6 +161,7 @@ def cut(code: str) -> Tokens:
             faults.append(Fault(FaultKind.QUOTE, f"this {match.group()} has no partner on its line", extent))
             position = _end_of_line(code, position)
     faults += brackets.still_open()
+    faults += _python_lines(code, lines, (*comments, *literals))
     faults.sort(key=lambda fault: fault.extent.start)
     return Tokens(tuple(comments), tuple(literals), tuple(faults), statements.missing_semicolons())
 
@@ -248,6 +256,17 @@ def _directive(text: str, extent: Extent) -> Fault:
 def _no_comment(extent: Extent) -> Fault:
     message = "`#` does not begin a comment in C++"
     return Fault(FaultKind.PREPROCESSOR, message, extent, "Write `//` instead", "//")
+
+
+def _python_lines(code: str, lines: Lines, elsewhere: Sequence[Extent]) -> Iterator[Fault]:
+    """The first line with a statement of Python that C++ does not have."""
+    for match in _PYTHON_LINE.finditer(code):
+        extent = lines.extent(*match.span("word"))
+        is_text = any(part.start <= extent.start < part.end for part in elsewhere)
+        if not is_text and match["head"].count("(") == match["head"].count(")"):
+            hint = "The model's code is C++: `if (...) { ... } else { ... }`"
+            yield Fault(FaultKind.PYTHON, f"`{match['word']} ...:` is Python", extent, hint)
+            return
 
 
 def _end_of_line(code: str, position: int) -> int:
