@@ -44,9 +44,44 @@ void report(Sarsop& solver, const char* ending) {
   std::fflush(stdout);
 }
 
-const char* improve(Sarsop& solver, double precision, double seconds, std::size_t memory_bytes) {
+// What ends the search, also in the middle of a trial: one trial of a large model may take minutes.
+class Limits {
+ public:
+  Limits(const Sarsop& solver, double seconds, std::size_t memory_bytes)
+      : solver_(solver), seconds_(seconds), memory_bytes_(memory_bytes) {}
+
+  // Why the search is over; empty as long as it is not.
+  const char* ending() {
+    if (*ending_ != '\0') return ending_;
+    const double now = cpu_seconds();
+    if (now >= seconds_) {
+      ending_ = "time";
+    } else if (solver_.graph().bytes() >= memory_bytes_) {
+      ending_ = "memory";
+    } else if (is_told_to_stop()) {
+      ending_ = "stopped";
+    }
+    if (*ending_ != '\0') late_from_ = grace * now;
+    return ending_;
+  }
+  bool is_over() { return *ending() != '\0'; }
+  // Whether what was found out can no longer be put to use.
+  bool is_late() const { return *ending_ != '\0' && cpu_seconds() >= late_from_; }
+
+ private:
+  static constexpr double grace = 1.1;  // of the time used up, for the backups of the last trial
+
+  const Sarsop& solver_;
+  double seconds_;
+  std::size_t memory_bytes_;
+  const char* ending_ = "";
+  double late_from_ = 0;
+};
+
+const char* improve(Sarsop& solver, double precision, Limits& limits) {
   double next_line = 0;
-  const auto never = [] { return false; };
+  const auto is_over = [&] { return limits.is_over(); };
+  const auto is_late = [&] { return limits.is_late(); };
   for (;;) {
     if (const double now = cpu_seconds(); now >= next_line) {
       report(solver, "");
@@ -54,10 +89,8 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
       next_line = now + std::clamp(0.25 * now, 0.005, 2.0);
     }
     if (solver.upper() - solver.lower() <= precision) return "precision";
-    if (cpu_seconds() >= seconds) return "time";
-    if (solver.graph().bytes() >= memory_bytes) return "memory";
-    if (is_told_to_stop()) return "stopped";
-    if (!solver.improve(precision, never, never)) return "settled";
+    if (limits.is_over()) return limits.ending();
+    if (!solver.improve(precision, is_over, is_late)) return limits.is_over() ? limits.ending() : "settled";
   }
 }
 
@@ -72,8 +105,9 @@ int main(int argc, char** argv) {
     const FlatModel model = read_flat_model(argv[1]);
     const Regions regions{model};
     Sarsop solver{model, regions};
-    const char* ending = improve(solver, std::atof(argv[3]), std::atof(argv[4]), std::strtoull(argv[5], nullptr, 10));
-    solver.prune();
+    Limits limits{solver, std::atof(argv[4]), std::strtoull(argv[5], nullptr, 10)};
+    const char* ending = improve(solver, std::atof(argv[3]), limits);
+    solver.prune([&] { return limits.is_late(); });
     write_policy(std::atoi(argv[2]), regions, solver);
     report(solver, ending);
   } catch (const CrossedBounds& crossed) {

@@ -1,0 +1,34 @@
+"""Limits of solving hold in the middle of a trial, which takes long in a large model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from aos_lab.formats.problem_files import read_problem
+from aos_solver.offline.solving import SolvingLimits, solve
+
+_STATES = 4000
+
+
+def large_file(path: Path) -> Path:
+    """A robot that is soon anywhere, and sees little of where it is."""
+    draw = np.random.default_rng(1)
+    lines = [f"discount: 0.95\nstates: {_STATES}\nactions: 4\nobservations: 10\nstart include: 0 1 2 3"]
+    for state in range(_STATES):
+        lines += [f"O: * : {state} : * 0.02", f"O: * : {state} : {state % 10} 0.82"]
+        for action in range(4):
+            first, second = draw.choice(_STATES, 2, replace=False)
+            lines += [f"T: {action} : {state} : {first} 0.5", f"T: {action} : {state} : {second} 0.5"]
+    lines.append("R: * : * : * : * -1\nR: * : * : 77 : * 100\n")
+    path.write_text("\n".join(lines))
+    return path
+
+
+async def test_time_is_not_exceeded_by_a_trial(tmp_path: Path, cache_dir: Path) -> None:
+    model = read_problem(large_file(tmp_path / "large.pomdp"))
+    solution = await solve(model, SolvingLimits(cpu_s=0.5), cache_dir=cache_dir)
+    assert solution.bounds.ending == "time"
+    assert solution.bounds.seconds < 1.0
+    assert solution.bounds.lower > solution.history[0].lower
