@@ -9,6 +9,7 @@ from itertools import pairwise
 import msgspec
 
 from aos_lab.formats.problem_text import ProblemFindings, Word
+from aos_protocol.spelling import did_you_mean
 
 __all__ = ["Statement", "statements_of"]
 
@@ -30,14 +31,21 @@ class Statement(msgspec.Struct, frozen=True):
 
 
 def statements_of(text: str, findings: ProblemFindings) -> Iterator[Statement]:
-    """The statements in order; words outside of any are findings."""
+    """The statements in order; words outside of any, and keywords that there are not, are findings."""
     words = list(_words(text))
-    starts = [place for place in range(len(words)) if _begins(words, place)]
-    if words and (not starts or starts[0] > 0):
-        hint = "Expected discount:, values:, states:, actions: or observations:"
-        findings.error("AOS102", f"{words[0].text} is no keyword", words[0].line, words[0].column, hint)
+    starts = [place for place in range(len(words)) if _begins(words, place) or _is_no_keyword(words, place)]
+    if words and starts[:1] != [0]:
+        starts.insert(0, 0)
     for begin, end in pairwise([*starts, len(words)]):
-        yield _statement(words[begin:end])
+        if _begins(words, begin):
+            yield _statement(words[begin:end])
+        else:
+            word = words[begin]
+            hint = (
+                did_you_mean(word.text, _KEYWORDS)
+                or "Expected discount:, values:, states:, T: and their like"
+            )
+            findings.error("AOS102", f"{word.text} is no keyword", word.line, word.column, hint)
 
 
 def _words(text: str) -> Iterator[Word]:
@@ -55,6 +63,15 @@ def _begins(words: list[Word], place: int) -> bool:
     if following[:1] == [":"]:
         return True
     return words[place].text == "start" and following[0:1] in (["include"], ["exclude"]) and ":" in following
+
+
+def _is_no_keyword(words: list[Word], place: int) -> bool:
+    """Returns whether a line begins here as a statement does, with a word that is no keyword."""
+    word, following = words[place], words[place + 1 : place + 2]
+    before = words[place - 1] if place > 0 else None
+    is_first = before is None or (before.line < word.line and before.text != ":")
+    is_keyword = word.text in _KEYWORDS or word.text == ":"
+    return is_first and not is_keyword and [each.text for each in following] == [":"]
 
 
 def _statement(words: list[Word]) -> Statement:
