@@ -13,6 +13,7 @@ from processes import COMMAND_S
 pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
 
 import numpy as np
+from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.utils.env_checker import check_env
 
 from aos_lab.gym import AosEnv, AosVectorEnv
@@ -163,3 +164,38 @@ def test_a_world_has_the_values_of_mission_parameters(root: Path) -> None:
     assert "give(to=bob)" in environment.action_names
     assert "give(to=alice)" not in environment.action_names
     environment.close()
+
+
+@pytest.mark.parametrize(
+    ("action", "message"),
+    [(-1, "no action -1: they are numbered from 0 to 0"), (1, "no action 1"), (0.5, "1 whole numbers")],
+)
+def test_an_action_that_there_is_not_is_refused(kettle: Path, action: float, message: str) -> None:
+    world = AosEnv(kettle)
+    world.reset(seed=1)
+    with pytest.raises(InvalidAction, match=message):
+        world.step(action)
+    world.close()
+    with pytest.raises(ClosedEnvironmentError):
+        world.step(0)
+
+
+def test_a_vector_takes_an_action_and_a_seed_for_each_world(kettle: Path) -> None:
+    worlds = AosVectorEnv(kettle, num_envs=2, max_episode_steps=1)
+    with pytest.raises(ValueError, match="2 seeds are needed, one for each world, and not 3"):
+        worlds.reset(seed=[1, 2, 3])
+    worlds.reset(seed=[1, 2])
+    for actions in (np.zeros(3, np.int64), np.array([0, 1]), 0):
+        with pytest.raises(InvalidAction):
+            worlds.step(actions)
+    worlds.step(np.zeros(2, np.int64))
+    # Both episodes are cut here, and a world that starts anew needs no action.
+    worlds.step(np.array([-1, 7]))
+    worlds.close()
+
+
+def test_no_worlds_and_no_steps_are_refused(kettle: Path) -> None:
+    with pytest.raises(ValueError, match="num_envs needs to be at least 1"):
+        AosVectorEnv(kettle, num_envs=0)
+    with pytest.raises(ValueError, match="max_episode_steps needs to be at least 1"):
+        AosEnv(kettle, max_episode_steps=0)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from aos_lab.gym.number_columns import Numbers
 from aos_lab.gym.spaces import Observation, observation_space, observations
-from aos_lab.gym.worlds import ENDINGS, HiddenWorlds
+from aos_lab.gym.worlds import ENDINGS, HiddenWorlds, check_at_least_one
 
 __all__ = ["AosEnv"]
 
@@ -39,6 +39,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
         array_room: int = 16,
         mission_values: Mapping[str, Any] | None = None,
     ) -> None:
+        check_at_least_one("max_episode_steps", max_episode_steps)
         self._worlds = HiddenWorlds(Path(bundle), array_room, mission_values)
         self._max_steps = max_episode_steps
         self._steps = 0
@@ -60,7 +61,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Runs a grounded action."""
-        done = self._worlds.step(np.array([action]))
+        done = self._worlds.step(self._worlds.numbers_of([action], 1))
         self._steps += 1
         text = done.texts[0] if done.texts else ""
         info = {

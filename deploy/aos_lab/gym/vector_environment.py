@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from aos_lab.gym.environment import MAX_SEED
 from aos_lab.gym.spaces import observation_space, observations
-from aos_lab.gym.worlds import HiddenWorlds
+from aos_lab.gym.worlds import HiddenWorlds, check_at_least_one
 
 __all__ = ["AosVectorEnv"]
 
@@ -38,6 +38,8 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
         array_room: int = 16,
         mission_values: Mapping[str, Any] | None = None,
     ) -> None:
+        check_at_least_one("num_envs", num_envs)
+        check_at_least_one("max_episode_steps", max_episode_steps)
         self._worlds = HiddenWorlds(Path(bundle), array_room, mission_values)
         self._max_steps = max_episode_steps
         self.num_envs = num_envs
@@ -57,6 +59,8 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
     ) -> tuple[Any, dict[str, Any]]:
         """New episodes everywhere; a list gives each world a seed of its own."""
         if isinstance(seed, list):
+            if len(seed) != self.num_envs:
+                raise ValueError(f"{self.num_envs} seeds are needed, one for each world, and not {len(seed)}")
             seeds = [int(np.random.default_rng(number).integers(MAX_SEED)) for number in seed]
         else:
             super().reset(seed=seed)
@@ -68,7 +72,7 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
 
     def step(self, actions: Numbers) -> tuple[Any, Numbers, Numbers, Numbers, dict[str, Any]]:
         """Runs an action in each world."""
-        done = self._worlds.step(np.where(self._is_over, -1, actions))
+        done = self._worlds.step(self._worlds.numbers_of(actions, self.num_envs, self._is_over))
         self._steps = np.where(self._is_over, 0, self._steps + 1)
         is_terminated = done.endings != 0
         is_truncated = np.zeros(self.num_envs, np.bool_)

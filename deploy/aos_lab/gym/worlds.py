@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from numpy.typing import NDArray
 
 from aos_deploy.mission_values import values_of_mapping, with_values
@@ -19,7 +20,7 @@ from aos_protocol.errors import DocumentError
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 
-__all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]
+__all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes", "check_at_least_one"]
 
 ENDINGS = ("", "goal", "failure", "over")
 """The endings of an episode, by number."""
@@ -28,6 +29,12 @@ TEXT_BYTES = 62
 """A text observation has room for this many bytes; shorter ones end in zeros."""
 
 T = TypeVar("T")
+
+
+def check_at_least_one(name: str, number: int | None) -> None:
+    """Raises ValueError if a number is below 1; None is no limit."""
+    if number is not None and number < 1:
+        raise ValueError(f"{name} needs to be at least 1, and is {number}")
 
 
 class Steps(NamedTuple):
@@ -87,6 +94,26 @@ class HiddenWorlds:
             self._columns.rows(numbered, done),
         )
 
+    def numbers_of(
+        self, actions: Any, worlds: int, is_ignored: NDArray[np.bool_] | None = None
+    ) -> NDArray[np.int64]:
+        """The action of each world, as `step` takes them: -1 where what was given is ignored.
+
+        Gymnasium's InvalidAction for what is no array of so many numbers of actions.
+        """
+        numbers = np.asarray(actions)
+        if numbers.shape != (worlds,) or numbers.dtype.kind not in "iu":
+            raise InvalidAction(
+                f"{worlds} whole numbers are needed, one for each world, and not {actions!r:.200}"
+            )
+        ignored = np.zeros(worlds, np.bool_) if is_ignored is None else is_ignored
+        wrong = ((numbers < 0) | (numbers >= len(self.actions))) & ~ignored
+        if wrong.any():
+            raise InvalidAction(
+                f"there is no action {numbers[wrong][0]}: they are numbered from 0 to {len(self.actions) - 1}"
+            )
+        return np.where(ignored, -1, numbers).astype(np.int64)
+
     def close(self) -> None:
         """Ends the child. Closing twice does nothing."""
         if not self._loop.is_closed():
@@ -94,6 +121,9 @@ class HiddenWorlds:
             self._loop.close()
 
     def _run(self, work: Coroutine[Any, Any, T]) -> T:
+        if self._loop.is_closed():
+            work.close()
+            raise ClosedEnvironmentError("the environment is closed")
         return self._loop.run_until_complete(work)
 
 
