@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from aos_lab.calibration.records import RecordedMission, RecordedStep
@@ -105,6 +106,12 @@ def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_
     assert "`aos it`, 2026-11-22, a machine; aos 1, commit abc." in text
     assert "![steps](plots/steps.svg)" in text
     assert "<svg" in whole.read_text()
+
+
+def test_a_part_whose_optimum_cannot_be_worked_out_says_why_beside_the_others(tmp_path: Path) -> None:
+    part = msgspec.structs.replace(part_of("model"), no_optimum="what is observed are numbers")
+    page, _ = write_report(results_of(part), {}, tmp_path)
+    assert "| one | 3 |  |  | what is observed are numbers |  |  |" in page.read_text()
 
 
 def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
     lines += [around.text(results.command), ""]
     lines += ["## Claims", "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
     lines += ["Steps of a mission, and how missions ended and began:", "", *_doings(results), ""]
-    if any(part.regret for part in results.parts):
+    if any(part.regret or part.no_optimum for part in results.parts):
         lines += ["## Beside the optimum", "", _REGRET, "", *_regrets(results), ""]
     lines += ["Values in brackets are the ends of 95 % intervals.", ""]
     lines += [line for title, file in pictures.items() for line in (f"![{title}]({file})", "")]
@@ -95,6 +95,8 @@ def _regrets(results: Results) -> Iterator[str]:
         "missing, as a share of the range",
     )
     for part in results.parts:
+        if part.no_optimum:
+            yield row(part.name, str(part.figures.missions), "", "", part.no_optimum, "", "")
         if (regret := part.regret) is not None:
             optimum = regret.optimum
             yield row(

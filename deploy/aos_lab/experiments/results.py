@@ -49,7 +49,10 @@ class Figures(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class PartResult(msgspec.Struct, frozen=True, kw_only=True):
-    """One part as one of the two played it; `by` is `model` or `system`."""
+    """One part as one of the two played it; `by` is `model` or `system`.
+
+    `no_optimum` says why the optimum that was asked for cannot be worked out.
+    """
 
     name: str
     by: str
@@ -61,6 +64,7 @@ class PartResult(msgspec.Struct, frozen=True, kw_only=True):
     verdicts: tuple[Verdict, ...]
     broken: dict[str, str]
     regret: Regret | None = None
+    no_optimum: str = ""
     picture: str = ""
 
 

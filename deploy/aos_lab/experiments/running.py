@@ -17,6 +17,7 @@ from aos_lab.experiments.statistics import ScriptedStep, Statistics, steps_of
 from aos_lab.trials.campaign import Place, play_campaign
 from aos_lab.trials.files import Experiment, Part, ScriptFile
 from aos_lab.trials.setting import Player, Setting, deployment_of
+from aos_protocol.errors import IntractableError
 
 __all__ = ["Begin", "ExperimentRun", "statistics_of"]
 
@@ -54,7 +55,10 @@ class ExperimentRun(msgspec.Struct, frozen=True):
         )
         result = result_of(name, part, by, played, self.experiment)
         if by == "model" and self.experiment.optimum:
-            optimum = _known_optimum(out, played.digest, setting, self.path.parent)
+            try:
+                optimum = _known_optimum(out, played.digest, setting, self.path.parent)
+            except IntractableError as error:
+                return msgspec.structs.replace(result, no_optimum=error.message)
             return msgspec.structs.replace(result, regret=regret_of(optimum, played.trials))
         target = self.folder / "pictures" / f"{name}.png"
         if by == "system" and keep_picture(out / "runs", result.seeds, target):
