@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +11,18 @@ import typer
 from aos_protocol import __version__
 from aos_runtime.sandbox.support import trust_documents
 
-__all__ = ["HELP_NAMES", "AsJson", "Connect", "Mission", "Robot", "Run", "Runs", "TrustDocuments", "Version"]
+__all__ = [
+    "HELP_NAMES",
+    "AsJson",
+    "Connect",
+    "Mission",
+    "Robot",
+    "Run",
+    "Runs",
+    "TrustDocuments",
+    "Version",
+    "finite",
+]
 
 HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 """The context settings of a program."""
@@ -25,6 +37,13 @@ def _print_version(is_asked: bool) -> None:
 Version = Annotated[
     bool, typer.Option("--version", help="Print the version and end", callback=_print_version, is_eager=True)
 ]
+
+
+def finite(value: float | None) -> float | None:
+    """The callback of an option with a number: nan, which passes every range, and infinity are none."""
+    if value is not None and not math.isfinite(value):
+        raise typer.BadParameter(f"{value} is not a finite number")
+    return value
 
 
 def _trust(is_trusted: bool) -> bool:

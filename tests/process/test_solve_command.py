@@ -80,7 +80,15 @@ def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path,
     result = run(app, "solve", tiger, "--export", tmp_path / "tiger.txt")
     assert result.exit_code == 2
     assert "needs to end in .pomdp or .pomdpx" in result.output
+    for option in ("--out", "--graph", "--c-header"):
+        result = run(app, "solve", tiger, option, tmp_path / "none" / "tiger.dot")
+        assert result.exit_code == 2
+        assert "there is no folder" in result.output
+    for option in ("--time", "--precision", "--discount", "--stop-value"):
+        assert "nan is not a finite number" in run(app, "solve", tiger, option, "nan").output
     assert isinstance(run(app, "solve", tmp_path / "none.pomdp").exception, DocumentError)
+    few = run(app, "solve", tiger, "--states", "1").exception
+    assert "has 2 states, more than 1" in str(few)
     refused = run(app, "solve", tiger, "--discount", "1").exception
     assert isinstance(refused, PlanningError)
     assert refused.code == "AOS320"

@@ -14,7 +14,7 @@ import typer
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.constraints import constraint_of_option
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.lines import risk_text
@@ -49,7 +49,10 @@ Bundle = Annotated[
     ),
 ]
 Simulations = Annotated[int, typer.Option(min=1, help="Planning budget of a decision, in simulations")]
-Time = Annotated[float | None, typer.Option("--time", min=0.001, help="Planning budget in seconds, instead")]
+Time = Annotated[
+    float | None,
+    typer.Option("--time", min=0.001, callback=finite, help="Planning budget in seconds, instead"),
+]
 Horizon = Annotated[
     int | None, typer.Option(min=1, help="Look-ahead in decisions; else the environment document's")
 ]
@@ -209,10 +212,12 @@ def simulate(
     policy: PolicyFile = None,
     never: Never = None,
     set_values: SetValues = None,
-    goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
+    goal_probability: Annotated[
+        float, typer.Option(callback=finite, help="Ends a mission when passed")
+    ] = 0.9,
     step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
     stop_below_value: Annotated[
-        float | None, typer.Option(help="Ends a mission when no action can return so much")
+        float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
     ] = None,
     states: Annotated[
         bool, typer.Option("--states", help="Also tell the world's state at each step")
@@ -260,7 +265,8 @@ def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
         "failure_rate": sum(run.world_ending == "failure" for run in runs) / len(runs),
         "believed_goal_rate": sum(run.believed_ending == "goal" for run in runs) / len(runs),
         "mean_discounted_return": statistics.fmean(returns),
-        "stderr": statistics.stdev(returns) / len(runs) ** 0.5 if len(runs) > 1 else 0.0,
+        # One mission says nothing of how much missions differ.
+        **({"stderr": statistics.stdev(returns) / len(runs) ** 0.5} if len(runs) > 1 else {}),
         "mean_steps": statistics.fmean(run.steps for run in runs),
         **{
             f"violation_rate of {never}": sum(never in run.violated for run in runs) / len(runs)

@@ -101,10 +101,11 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
         table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
     out = console(is_wide=True)
     out.print(table)
+    error = f" ± {summary['stderr']:.2f}" if "stderr" in summary else ""
     out.print(
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
         f"believed in {summary['believed_goal_rate']:.0%}, failure in {summary['failure_rate']:.0%}, "
-        f"discounted return {summary['mean_discounted_return']:+.2f} ± {summary['stderr']:.2f}, "
+        f"discounted return {summary['mean_discounted_return']:+.2f}{error}, "
         f"{summary['mean_steps']:.1f} steps"
     )
 

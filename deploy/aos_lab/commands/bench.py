@@ -8,7 +8,7 @@ from typing import Annotated, get_args
 
 import typer
 
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.printing import print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
@@ -22,6 +22,10 @@ __all__ = ["register"]
 PLANNERS: tuple[Planner, ...] = get_args(Planner)
 
 _QUICK_RUNS = 4
+
+Time = Annotated[
+    float, typer.Option("--time", min=0.001, callback=finite, help="Processor seconds of a decision")
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -43,7 +47,7 @@ def bench(
     runs: Annotated[
         int | None, typer.Option(min=1, help="Missions for a return; else 50 to 200, as the problem needs")
     ] = None,
-    time_s: Annotated[float, typer.Option("--time", min=0.001, help="Processor seconds of a decision")] = 0.1,
+    time_s: Time = 0.1,
     planner: Annotated[
         list[str] | None, typer.Option(help=f"Of {', '.join(PLANNERS)}, repeatable; else auto")
     ] = None,

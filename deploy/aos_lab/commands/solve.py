@@ -8,7 +8,7 @@ import math
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated
@@ -19,7 +19,7 @@ from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress, waiting
@@ -38,6 +38,17 @@ from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
 
 __all__ = ["register"]
+
+Time = Annotated[
+    float, typer.Option("--time", min=0.001, callback=finite, help="Seconds of computing at most")
+]
+Precision = Annotated[float, typer.Option(min=0, callback=finite, help="Enough when the bounds are so near")]
+Discount = Annotated[
+    float | None, typer.Option(min=0, max=1, callback=finite, help="Instead of the documents' own discount")
+]
+StopValue = Annotated[
+    float | None, typer.Option(callback=finite, help="To end the mission is worth so much, at any time")
+]
 
 _TOLD_NAMES = 12
 _GRAPH_ENDINGS = (".dot", ".svg")
@@ -92,15 +103,10 @@ def solve(
     target: Annotated[
         Path, typer.Argument(metavar="TARGET", help="A bundle, a deploy, .pomdpx or .pomdp file")
     ],
-    time_s: Annotated[float, typer.Option("--time", min=0.001, help="Seconds of computing at most")] = 60.0,
-    precision: Annotated[float, typer.Option(min=0, help="Enough when the bounds are so near")] = 1e-3,
-    discount: Annotated[
-        float | None, typer.Option(min=0, max=1, help="Instead of the documents' own discount")
-    ] = None,
-    stop_value: Annotated[
-        float | None,
-        typer.Option(help="To end the mission is worth so much, at any time"),
-    ] = None,
+    time_s: Time = 60.0,
+    precision: Precision = 1e-3,
+    discount: Discount = None,
+    stop_value: StopValue = None,
     states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MAX_STATES,
     out: Annotated[Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate")] = None,
     export: Annotated[
@@ -121,6 +127,7 @@ def solve(
     SARSOP. Ctrl-C ends it early and keeps the best so far. Values are discounted and without a horizon.
     """
     _check_names(export or [], graph)
+    _check_folders({"--out": out, "--graph": graph, "--c-header": header})
     if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
         if set_values:
             raise typer.BadParameter("a problem file has no mission parameters", param_hint="--set")
@@ -163,6 +170,15 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
             code="AOS805",
             hint="Install it (apt install graphviz), or write a .dot file",
         )
+
+
+def _check_folders(files: Mapping[str, Path | None]) -> None:
+    """Refuses files that cannot be written for want of a folder, as the work before may take hours."""
+    for option, path in files.items():
+        if path is not None and not path.parent.is_dir():
+            raise typer.BadParameter(f"there is no folder {path.parent}", param_hint=option)
+        if path is not None and path.is_dir():
+            raise typer.BadParameter(f"{path} is a folder", param_hint=option)
 
 
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:

@@ -8,7 +8,7 @@ from pathlib import Path
 from aos_lab.formats.factored_model import MAX_STATES, flatten
 from aos_lab.formats.pomdp_reader import read_pomdp
 from aos_lab.formats.pomdpx_reader import read_pomdpx
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel
 
 __all__ = ["PROBLEM_ENDINGS", "read_problem"]
@@ -29,4 +29,7 @@ def read_problem(
         raise DocumentError(f"cannot read {path}: {error.strerror}", code="AOS101") from error
     if path.suffix == ".pomdpx":
         return flatten(read_pomdpx(str(path), data), max_states=max_states, on_progress=on_progress)
-    return read_pomdp(str(path), data)
+    model = read_pomdp(str(path), data)
+    if model.size.states > max_states:
+        raise IntractableError(f"{path} has {model.size.states} states, more than {max_states}")
+    return model
