@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from aos_lab.formats.problem_files import read_problem
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DocumentError, IntractableError
 
 MDP = """\
 discount: 0.9
@@ -68,3 +68,27 @@ def test_a_file_with_sensing_needs_observations(tmp_path: Path) -> None:
     with pytest.raises(DocumentError, match=r"has mistakes") as caught:
         read_problem(file)
     assert caught.value.diagnostics[0].message == "there is no `observations:`"
+
+
+def test_a_row_for_all_changes_where_a_later_line_says_so(tmp_path: Path) -> None:
+    file = tmp_path / "shared.pomdp"
+    lines = ["discount: 0.5", "states: a b", "actions: go stay", "observations: x", "O: * uniform"]
+    lines += [
+        "T: * : * 0.3 0.7",
+        "T: go : a : a 0.6",
+        "T: go : a : b 0.4",
+        "T: stay : * 0 1",
+        "T: stay : b : a 0",
+    ]
+    file.write_text("\n".join(lines))
+    model = read_problem(file)
+    rows = [model.outcomes.row(number) for number in range(4)]  # go and stay in a, then in b
+    assert [list(numbers) for numbers, _ in rows] == [[0, 1], [1], [0, 1], [1]]
+    np.testing.assert_allclose(np.concatenate([chances for _, chances in rows]), [0.6, 0.4, 1, 0.3, 0.7, 1])
+
+
+def test_a_short_file_of_a_model_that_is_too_large_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "dense.pomdp"
+    file.write_text("discount: 0.9\nstates: 3000\nactions: 4\nobservations: 1\nT: * uniform\nO: * uniform\n")
+    with pytest.raises(IntractableError, match="36,000,000 outcomes"):
+        read_problem(file)

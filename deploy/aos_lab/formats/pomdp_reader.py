@@ -10,13 +10,15 @@ import numpy as np
 from aos_lab.formats.pomdp_rewards import RewardRules
 from aos_lab.formats.pomdp_statements import Statement, statements_of
 from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
 
 __all__ = ["read_pomdp"]
 
 _SUM_TOLERANCE = 1e-4
 _MAX_NAMES = 2_000_000
+_MAX_OUTCOMES = 20_000_000
+"""A line such as `T: * uniform` has as many as actions times the square of the states."""
 
 Distribution = dict[int, float]
 
@@ -51,6 +53,7 @@ class _Reader:
         self._transitions: dict[tuple[int, int], Distribution] = {}
         self._sensing: dict[tuple[int, int], Distribution] = {}
         self._last_rule: dict[tuple[str, int, int], Word] = {}
+        self._own: set[tuple[str, int, int]] = set()
 
     def read(self, statements: Sequence[Statement]) -> ExplicitModel | None:
         """Reads the statements into a model; None where what is needed to go on is missing."""
@@ -80,6 +83,9 @@ class _Reader:
             return None
         everywhere = {(action, state) for action in self._all("actions") for state in self._all("states")}
         self._check("T", self._transitions, everywhere)
+        outcomes = sum(len(row) for row in self._transitions.values())
+        if outcomes > _MAX_OUTCOMES:
+            raise IntractableError(f"{self._name} has {outcomes:,} outcomes of actions in states")
         if self._is_seen:
             self._sensing = {(action, state): {state: 1.0} for action, state in everywhere}
         reached = {(action, after) for (action, _), row in self._transitions.items() for after in row}
@@ -165,15 +171,19 @@ class _Reader:
             value = self._probability(self._single(statement))
             for action in chosen[0]:
                 for state in chosen[1]:
-                    row = table.setdefault((action, state), {})
-                    _put(row, chosen[2], value)
+                    if (keyword, action, state) not in self._own:
+                        # A row of a rule with wildcards is shared until one of its numbers changes.
+                        table[action, state] = dict(table.get((action, state), {}))
+                        self._own.add((keyword, action, state))
+                    _put(table[action, state], chosen[2], value)
                     self._last_rule[keyword, action, state] = statement.keyword
             return
         states = chosen[1] if len(fields) == 2 else self._all("states")
         rows = self._rows(statement, kinds[2], states, is_matrix=len(fields) == 1)
         for action in chosen[0]:
             for state, row in zip(states, rows, strict=True):
-                table[action, state] = dict(row)
+                table[action, state] = row
+                self._own.discard((keyword, action, state))
                 self._last_rule[keyword, action, state] = statement.keyword
 
     def _rows(
@@ -235,9 +245,12 @@ class _Reader:
         self, keyword: str, table: dict[tuple[int, int], Distribution], needed: set[tuple[int, int]]
     ) -> None:
         """Probabilities sum to 1 where that matters, and exactly so afterwards."""
+        rows = {id(row): row for row in table.values()}
+        totals = {number: sum(row.values()) for number, row in rows.items()}
+        scaled: dict[int, Distribution] = {}
         for action, state in sorted(needed):
             row = table.get((action, state), {})
-            total = sum(row.values())
+            total = totals.get(id(row), 0.0)
             if not row and (keyword, action, state) not in self._last_rule:
                 where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
                 self._findings.error("AOS105", f"there is no `{where}`", 1)
@@ -247,7 +260,9 @@ class _Reader:
                 rule = self._last_rule.get((keyword, action, state), Word("", 1, 0))
                 self._error("AOS122", message, rule, "They have to sum to 1")
             elif total != 1:
-                table[action, state] = {number: p / total for number, p in row.items()}
+                if id(row) not in scaled:
+                    scaled[id(row)] = {number: p / total for number, p in row.items()}
+                table[action, state] = scaled[id(row)]
 
     # --- words -----------------------------------------------------------------------------------------
 
