@@ -55,8 +55,8 @@ class _Frame:
         self.origin = np.arange(rows)
         self.probability = np.ones(rows)
 
-    def draw(self, table: Table, factor: Factor, name: str) -> None:
-        """Follows every outcome of a distribution; `name` is the model's, for errors."""
+    def draw(self, table: Table, factor: Factor, name: str, action: Mapping[str, str] | None = None) -> None:
+        """Follows every outcome of a distribution; the model's `name` and the `action` are for errors."""
         row_count = len(self.origin)
         rows, values, chances = factor.outcomes(self.columns, row_count)
         totals = np.bincount(rows, chances, minlength=row_count)
@@ -64,7 +64,7 @@ class _Frame:
             row = int(np.argmax(wrong))
             raise DocumentError(
                 f"{name}:{table.line}: the probabilities of {table.own} sum to {totals[row]:g}"
-                f"{self._given(table, factor, row)}",
+                f"{self._given(table, factor, row, action or {})}",
                 code="AOS122",
                 hint="They have to sum to 1",
             )
@@ -73,9 +73,10 @@ class _Frame:
         self.origin = self.origin[rows]
         self.probability = self.probability[rows] * chances / totals[rows]
 
-    def _given(self, table: Table, factor: Factor, row: int) -> str:
+    def _given(self, table: Table, factor: Factor, row: int, action: Mapping[str, str]) -> str:
         variables = {variable.name: variable for variable in table.variables}
-        parents = [f"{axis}={variables[axis].values[self.columns[axis][row]]}" for axis in factor.axes[:-1]]
+        parents = [f"{name}={value}" for name, value in action.items() if name in variables]
+        parents += [f"{axis}={variables[axis].values[self.columns[axis][row]]}" for axis in factor.axes[:-1]]
         return f" for {', '.join(parents)}" if parents else ""
 
     def look_up(self, factor: Factor) -> Floats:
@@ -138,6 +139,7 @@ class _Action:
     """The tables with one action chosen, ready to be looked up."""
 
     def __init__(self, model: FactoredModel, chosen: Mapping[str, int]) -> None:
+        self.values = {variable.name: variable.values[chosen[variable.name]] for variable in model.actions}
         seen_names = {state.after.name for state in model.states if state.is_seen}
         by_name = {v.name: v for s in model.states for v in (s.before, s.after)}
         self.transitions = [(table, table.given(chosen)) for table in _ordered(model.transitions)]
@@ -225,7 +227,7 @@ class _Flattening:
     def _frame_after(self, action: _Action, codes: Integers) -> _Frame:
         frame = _Frame(self._before.decode(codes), len(codes))
         for table, factor in action.transitions:
-            frame.draw(table, factor, self._model.name)
+            frame.draw(table, factor, self._model.name, action.values)
         return frame
 
     def _steps_of(self, action: _Action, codes: Integers) -> _Steps:
@@ -245,7 +247,7 @@ class _Flattening:
             keys = _keys(found)
             frame = _Frame(action.sensing_code.decode(keys), len(keys))
             for table, factor in action.sensing:
-                frame.draw(table, factor, self._model.name)
+                frame.draw(table, factor, self._model.name, action.values)
             firsts.append(count)
             rows.append(count + frame.origin)
             sights.append(self._sight.encode(frame.columns, len(frame.origin)))
@@ -272,7 +274,7 @@ class _Flattening:
     def _frame_with_sights(self, action: _Action, codes: Integers) -> _Frame:
         frame = self._frame_after(action, codes)
         for table, factor in action.sensing:
-            frame.draw(table, factor, self._model.name)
+            frame.draw(table, factor, self._model.name, action.values)
         return frame
 
 
