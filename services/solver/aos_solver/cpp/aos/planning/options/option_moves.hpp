@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -61,7 +62,42 @@ class OptionMoves {
     if (best >= 0) add_way(candidates, {move, best}, steps, random);
   }
 
+  // How much of the regret an observation spares after one of the likely options, but for what it tells of that option; as much as `here` for a test that
+  // tells the same there.
+  double spared_after(const Option& option, std::size_t likely, const Option& way, double here, double& steps, Sampler& random) {
+    std::vector<State> now = belief_.states();
+    StateWeights start = belief_.weights();
+    double share = 0;
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      start[k] *= taken_option<Model>(option, now[k], random).goes_on;
+      share += start[k];
+    }
+    steps -= static_cast<double>(option.size() * now.size());
+    if (share <= 0) return 0;
+    for (double& weight : start) weight /= share;
+    std::vector<std::vector<StepReports>> reports(way.size(), std::vector<StepReports>(now.size()));
+    for (std::size_t step = 0; step < way.size(); ++step) {
+      for (std::size_t k = 0; k < now.size(); ++k) {
+        if (start[k] > 0 && Model::ending(now[k]) == Ending::running) step_.take(now[k], way[step], reports[step][k], steps, random);
+      }
+    }
+    steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
+    const bool is_repeated = !tests_.is_move(way.front()) && std::ranges::count(way, way.front()) == std::ssize(way);
+    if (is_repeated && tells_alike(reports.front(), tests_.reports_of(way.front()))) return here;
+    const RepeatedObservation last{is_repeated ? reports.front() : tell_nothing(reports) ? reports.back() : std::vector<StepReports>{}};
+    const auto told = regret_.after(last, is_repeated ? static_cast<int>(way.size()) : 1, start, steps, random, [&](std::size_t k, StateWeights& weights) {
+      for (const auto& of_step : reports) {
+        if (!of_step[k].branches().empty()) observe(of_step, of_step[k].drawn(random), weights);
+      }
+    });
+    return regret_.after(start) - told.regret - told.avoided[likely];
+  }
+
  private:
+  // Whether a test tells the same, as far as the mission goes on.
+  static bool tells_alike(const std::vector<StepReports>& there, const std::vector<StepReports>& here) {
+    return std::ranges::equal(there, here, [](const StepReports& one, const StepReports& other) { return one.branches().empty() || one.is_like(other); });
+  }
   // Adds actions in a row, where at least half of the missions go on after them.
   void add_way(std::vector<OptionCandidate>& candidates, const Option& way, double& steps, Sampler& random) {
     std::vector<State> now = belief_.states();
@@ -87,7 +123,9 @@ class OptionMoves {
     // What is at stake grows as the mission comes closer to what it can earn.
     const double seen = share * (regret_.value_seen() + values_.gain_of(now, way.size(), steps, random));
     const double stake = regret_.value_seen() > 0 ? std::max(seen / regret_.value_seen(), 0.0) : 1;
-    candidates.push_back({way.front(), earned + discount * (seen - stake * told.regret), discount, "what can be observed elsewhere", told.avoided});
+    candidates.push_back({way.front(), earned + discount * (seen - stake * told.regret), discount, "what can be observed elsewhere", told.avoided,
+                          way, regret_.now() - told.regret});
+    if (share > 1 - 1e-9) candidates.back().reports = std::move(reports);
   }
 
   // Whether nothing is observed on the way but at its last step.

@@ -29,6 +29,7 @@
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_library.hpp"
 #include "aos/planning/options/option_moves.hpp"
+#include "aos/planning/options/option_pairs.hpp"
 #include "aos/planning/options/option_regret.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/option_tests.hpp"
@@ -82,15 +83,9 @@ class OptionPolicy {
     const std::vector<std::size_t> likely = likely_options(barred);
     regret_.watch(likely);
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
-    const double blind = regret_.value_seen() - regret_.now();
-    for (std::size_t i = 0, count = candidates_.size(); i < likely.size(); ++i) {
-      double gained = 0;
-      for (std::size_t c = 0; c < count; ++c) {
-        const OptionCandidate& candidate = candidates_[c];
-        gained = std::max(gained, candidate.value - candidate.discount * (blind + candidate.avoided[i]));
-      }
-      add_option(likely[i], gained);
-    }
+    const std::size_t observing = candidates_.size();
+    for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
+    pairs_.add_to(candidates_, observing, left, random);
     settle(belief.probability_of(Ending::running));
     taken_ = affordable_ - left;
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
@@ -121,6 +116,7 @@ class OptionPolicy {
   static constexpr double enough_found = 0.5;  // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
+  static constexpr std::size_t most_after = 4;  // observations that are tried after an option
 
   // What keeps the policy from deciding in this model.
   std::string obstacle_of_model(Sampler& random) {
@@ -158,8 +154,30 @@ class OptionPolicy {
     return options;
   }
 
-  // What can be gained by observing now can be gained after the option, too, while the mission goes on, but for what is told of
-  // the option itself. So of both comes first what brings more.
+  // What can be gained by observing now can be gained after the option, too, but for what is told of the option itself, and as
+  // far as as much is told there: a look into a room tells of another one where the option leads elsewhere. What is not tried
+  // there counts in full.
+  double gained_after(std::size_t option, std::size_t likely, std::size_t observing, double& left, Sampler& random) {
+    const double blind = regret_.value_seen() - regret_.now();
+    std::vector<std::pair<double, const OptionCandidate*>> gains;
+    for (std::size_t c = 0; c < observing; ++c) {
+      const OptionCandidate& candidate = candidates_[c];
+      const double gain = candidate.value - candidate.discount * (blind + candidate.avoided[likely]);
+      if (gain > 0) gains.emplace_back(gain, &candidate);
+    }
+    sort_stably(gains, [](const auto& one, const auto& other) { return one.first > other.first; });
+    double gained = 0;
+    for (std::size_t i = 0; i < gains.size() && gains[i].first > gained; ++i) {
+      const auto& [gain, candidate] = gains[i];
+      if (i >= most_after || left <= 0 || clock_.is_over()) return gain;
+      const double here = candidate->spared - candidate->avoided[likely];
+      const double there = moves_.spared_after(library_.options()[option], likely, candidate->way, here, left, random);
+      gained = std::max(gained, gain - candidate->discount * std::max(here - there, 0.0));
+    }
+    return gained;
+  }
+
+  // While the mission goes on, what can be observed is gained after the option. So of both comes first what brings more.
   void add_option(std::size_t option, double gained) {
     const StateWeights after = gains_.after(option, belief_.weights());
     const double goes_on = std::accumulate(after.begin(), after.end(), 0.0);
@@ -215,6 +233,7 @@ class OptionPolicy {
   OptionTests<Model> tests_{belief_, regret_, changes_, clock_};
   OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
+  OptionPairs<Model> pairs_{belief_, regret_, tests_, clock_};
   std::vector<int> tried_moves_;
   bool are_for_views_ = false;
   std::vector<OptionCandidate> candidates_;

@@ -12,6 +12,7 @@
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/repeated_observation.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/options/step_reports.hpp"
 
 namespace aos {
 
@@ -22,6 +23,9 @@ struct OptionCandidate {
   double discount;  // of what comes after it
   const char* reason;
   std::vector<double> avoided{};  // of each likely option: what is not lost by it, since the observation tells of it
+  std::vector<int> way{};         // by which it observes
+  double spared = 0;              // of the regret, by what is observed
+  std::vector<std::vector<StepReports>> reports{};  // of a move that goes on for certain: [step][state]
 };
 
 template <class Model>
@@ -48,6 +52,7 @@ class OptionRegret {
   void watch(std::vector<std::size_t> likely) { likely_ = std::move(likely); }
   double value_seen(std::size_t state) const { return seen_[state]; }
   double value_seen() const { return value_seen_; }
+  double value_seen(const StateWeights& weights) const { return mean(weights); }
   double now() const { return regret_; }
   // The standard error of `value_seen`, since few states are drawn.
   double error() const {
@@ -65,19 +70,24 @@ class OptionRegret {
   // draws from state k what is observed. `steps` is counted down.
   template <class See>
   Told after(const RepeatedObservation& observation, int times, double& steps, Sampler& random, See&& see) const {
+    return after(observation, times, belief_.weights(), steps, random, see);
+  }
+  // The same from other weights.
+  template <class See>
+  Told after(const RepeatedObservation& observation, int times, const StateWeights& before, double& steps, Sampler& random, See&& see) const {
     Told told;
-    for (const std::size_t option : likely_) told.avoided.push_back(-std::max(gains_.earned(option, belief_.weights()), 0.0));
+    for (const std::size_t option : likely_) told.avoided.push_back(-std::max(gains_.earned(option, before), 0.0));
     const auto note = [&](double probability, const StateWeights& weights) {
       told.regret += probability * after(weights);
       for (std::size_t i = 0; i < likely_.size(); ++i) told.avoided[i] += probability * std::max(gains_.earned(likely_[i], weights), 0.0);
       steps -= steps_of_best();
     };
     if (observation.is_listed(times)) {
-      observation.for_each(belief_.weights(), times, note);
+      observation.for_each(before, times, note);
       return told;
     }
-    draw_states(belief_.weights(), observations, random, [&](std::size_t k) {
-      StateWeights weights = belief_.weights();
+    draw_states(before, observations, random, [&](std::size_t k) {
+      StateWeights weights = before;
       see(k, weights);
       note(1.0 / observations, weights);
     });

@@ -75,6 +75,8 @@ class OptionTests {
   // The actions that change the state, those that are barred left out.
   const std::vector<int>& moves() const { return moves_; }
   bool is_move(int action) const { return changes_.is_move(action); }
+  // By state: what an action that is no move may report.
+  const std::vector<StepReports>& reports_of(int action) const { return reports_[static_cast<std::size_t>(action)]; }
   double information_of(int action) const { return informations_[static_cast<std::size_t>(action)]; }
 
   // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
@@ -115,7 +117,8 @@ class OptionTests {
     const auto told = regret_.after(observation, repeats, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
     });
-    candidates.push_back({test.action, paid + discount * (regret_.value_seen() - told.regret), discount, "what can be observed", told.avoided});
+    candidates.push_back({test.action, paid + discount * (regret_.value_seen() - told.regret), discount, "what can be observed", told.avoided,
+                          std::vector<int>(static_cast<std::size_t>(repeats), test.action), regret_.now() - told.regret});
   }
 
   // Takes an action from all states. Returns the mean reward.

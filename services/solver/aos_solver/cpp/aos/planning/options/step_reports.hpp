@@ -59,6 +59,13 @@ class StepReports {
   }
   const std::vector<Branch>& branches() const { return branches_; }
 
+  // Whether the same is reported with the same probabilities.
+  bool is_like(const StepReports& other) const {
+    return std::ranges::equal(branches_, other.branches_, [](const Branch& one, const Branch& two) {
+      return one.response == two.response && one.numbers == two.numbers && std::abs(one.probability - two.probability) < 1e-9;
+    });
+  }
+
   Seen drawn(Sampler& random) const {
     double place = random.uniform();
     const Branch* chosen = &branches_.back();
