@@ -92,3 +92,14 @@ def test_a_short_file_of_a_model_that_is_too_large_is_refused(tmp_path: Path) ->
     file.write_text("discount: 0.9\nstates: 3000\nactions: 4\nobservations: 1\nT: * uniform\nO: * uniform\n")
     with pytest.raises(IntractableError, match="36,000,000 outcomes"):
         read_problem(file)
+
+
+def test_rewards_for_each_of_many_next_states_are_one_entry_each(tmp_path: Path) -> None:
+    count = 1500
+    lines = [f"discount: 0.5\nstates: {count}\nactions: 20\nobservations: x\nT: * identity\nO: * uniform"]
+    lines += [f"R: * : * : {state} : * {state}" for state in range(count)]
+    file = tmp_path / "many.pomdp"
+    file.write_text("\n".join([*lines, "R: 3 : * : 7 : * -1", "R: 3 : 8 : * : * -2"]))
+    rewards = read_problem(file).rewards
+    np.testing.assert_allclose(rewards[:, 0], range(count))
+    assert list(rewards[6:10, 3]) == [6, -1, -2, 9]

@@ -215,31 +215,23 @@ class _Reader:
 
         An MDP's rewards know no observations: a row is over next states.
         """
-        after = self._all("states")
         observations = range(1) if self._is_seen else self._all("observations")
         numbers = [self._sign * self._number(word) for word in statement.words]
-        rest = [after, observations][len(chosen) - 2 :]
+        rest = [self._all("states"), observations][len(chosen) - 2 :]
         wanted = int(np.prod([len(part) for part in rest], dtype=int))
         if len(numbers) != wanted:
             message = f"{len(numbers)} numbers where {wanted} are needed"
             self._error("AOS106", message, statement.keyword)
             return
-        after_fields = statement.fields[2:]
-        everywhere = [word.text == "*" for word in after_fields]
-        whole_after = None if everywhere[:1] == [True] else (chosen[2] if after_fields else after)
-        if self._is_seen:
-            for state, number in zip(range(wanted), numbers, strict=True):
-                next_states = whole_after if after_fields else [state]
-                self._rewards.add(chosen[0], chosen[1], next_states, None, number)
-            return
-        if len(chosen) == 4:
-            whole_observations = None if everywhere[1] else chosen[3]
-            self._rewards.add(chosen[0], chosen[1], whole_after, whole_observations, numbers[0])
-            return
+        if not all(chosen):
+            return  # a name that is unknown has been told
+        words = zip(statement.fields, chosen, strict=True)
+        choices = [None if word.text == "*" else numbers_of[0] for word, numbers_of in words]
         for place, number in enumerate(numbers):
             row, column = divmod(place, len(observations))
-            next_states = whole_after if after_fields else [row]
-            self._rewards.add(chosen[0], chosen[1], next_states, [column], number)
+            observation = None if self._is_seen else column
+            action, state, *tail = [*choices, *[row, observation][len(choices) - 2 :]]
+            self._rewards.add(action, state, tail[0], tail[1], number)
 
     def _check(
         self, keyword: str, table: dict[tuple[int, int], Distribution], needed: set[tuple[int, int]]

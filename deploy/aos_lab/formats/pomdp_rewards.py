@@ -2,52 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-
-import msgspec
+from collections.abc import Callable, Mapping
 
 __all__ = ["RewardRules"]
 
-
-class _Rule(msgspec.Struct, frozen=True):
-    """A reward for some next states and observations; None is all of them."""
-
-    after: frozenset[int] | None
-    observations: frozenset[int] | None
-    reward: float
-
-    def fits(self, after: int, observation: int) -> bool:
-        return (self.after is None or after in self.after) and (
-            self.observations is None or observation in self.observations
-        )
+Choice = int | None
+"""A number, or None for all."""
+Tail = tuple[Choice, Choice]
+"""A next state and an observation."""
 
 
 class RewardRules:
-    """Rules by action and state, in the order of the file."""
+    """Rules by what they are for. A rule for all of a kind is one entry, however many that are."""
 
     def __init__(self) -> None:
-        self._rules: dict[tuple[int, int], list[_Rule]] = {}
+        self._rules: dict[tuple[Choice, Choice], dict[Tail, tuple[int, float]]] = {}
+        self._count = 0
 
-    def add(
-        self,
-        actions: Sequence[int],
-        states: Sequence[int],
-        after: Sequence[int] | None,
-        observations: Sequence[int] | None,
-        reward: float,
-    ) -> None:
+    def add(self, action: Choice, state: Choice, after: Choice, observation: Choice, reward: float) -> None:
         """A rule that overrides those before it."""
-        rule = _Rule(
-            None if after is None else frozenset(after),
-            None if observations is None else frozenset(observations),
-            reward,
-        )
-        for action in actions:
-            for state in states:
-                rules = self._rules.setdefault((action, state), [])
-                if rule.after is None and rule.observations is None:
-                    rules.clear()
-                rules.append(rule)
+        self._count += 1
+        self._rules.setdefault((action, state), {})[after, observation] = self._count, reward
 
     def expected(
         self,
@@ -57,14 +32,16 @@ class RewardRules:
         sensing: Callable[[int], Mapping[int, float]],
     ) -> float:
         """The expected reward; `sensing` gives the observations of a next state."""
-        rules = self._rules.get((action, state), [])
-        if not rules:
-            return 0.0
-        if len(rules) == 1 and rules[0].after is None and rules[0].observations is None:
-            return rules[0].reward
+        heads = ((action, state), (action, None), (None, state), (None, None))
+        tables = [self._rules[head] for head in heads if head in self._rules]
+        plain = max((table[None, None] for table in tables if (None, None) in table), default=(0, 0.0))
+        tables = [table for table in tables if len(table) > ((None, None) in table)]
+        if not tables:
+            return plain[1]
         total = 0.0
         for after, probability in transitions.items():
             for observation, chance in sensing(after).items():
-                fitting = (rule.reward for rule in reversed(rules) if rule.fits(after, observation))
-                total += probability * chance * next(fitting, 0.0)
+                tails = ((after, observation), (after, None), (None, observation))
+                fitting = (table[tail] for table in tables for tail in tails if tail in table)
+                total += probability * chance * max((plain, *fitting))[1]
         return total
