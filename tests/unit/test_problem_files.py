@@ -144,6 +144,7 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("tiger.pomdp", replaced("left right", "left left"), "4:9 AOS103 left is there twice"),
         ("tiger.pomdp", replaced("# A tiger", "A tiger"), "1:1 AOS102 A is no keyword"),
         ("tiger.pomdp", replaced("values: reward", "vaules: reward"), "3:1 AOS102 vaules is no keyword"),
+        ("tiger.pomdp", replaced("start:", "start"), "7:1 AOS102 start begins a line without a colon"),
         ("tiger.pomdp", replaced("T: * : *", "T: * : * : * "), "9:1 AOS106 `T:` has 4 fields"),
         (
             "rover.pomdpx",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
 from aos_lab.formats.pomdp_rewards import RewardRules
-from aos_lab.formats.pomdp_statements import Statement, statements_of
+from aos_lab.formats.pomdp_statements import KEYWORDS, Statement, statements_of
 from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
 from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
@@ -110,6 +111,9 @@ class _Reader:
             self._read_names(kind, words)
 
     def _read_names(self, kind: str, words: Sequence[Word]) -> None:
+        for before, word in pairwise(words):
+            if word.text in KEYWORDS and word.line > before.line:
+                self._error("AOS102", f"{word.text} begins a line without a colon", word)
         if len(words) == 1 and words[0].text.isdecimal():
             count = int(words[0].text)
             if not 0 < count <= _MAX_NAMES:

@@ -11,10 +11,10 @@ import msgspec
 from aos_lab.formats.problem_text import ProblemFindings, Word
 from aos_protocol.spelling import did_you_mean
 
-__all__ = ["Statement", "statements_of"]
+__all__ = ["KEYWORDS", "Statement", "statements_of"]
 
 _WORD = re.compile(r"[^\s:]+|:")
-_KEYWORDS = frozenset({"discount", "values", "states", "actions", "observations", "start", "T", "O", "R"})
+KEYWORDS = frozenset({"discount", "values", "states", "actions", "observations", "start", "T", "O", "R"})
 
 
 class Statement(msgspec.Struct, frozen=True):
@@ -42,8 +42,7 @@ def statements_of(text: str, findings: ProblemFindings) -> Iterator[Statement]:
         else:
             word = words[begin]
             hint = (
-                did_you_mean(word.text, _KEYWORDS)
-                or "Expected discount:, values:, states:, T: and their like"
+                did_you_mean(word.text, KEYWORDS) or "Expected discount:, values:, states:, T: and their like"
             )
             findings.error("AOS102", f"{word.text} is no keyword", word.line, word.column, hint)
 
@@ -57,7 +56,7 @@ def _words(text: str) -> Iterator[Word]:
 def _begins(words: list[Word], place: int) -> bool:
     """Returns whether a statement begins here: a keyword that a colon follows, and that is no field
     itself."""
-    if words[place].text not in _KEYWORDS or (place > 0 and words[place - 1].text == ":"):
+    if words[place].text not in KEYWORDS or (place > 0 and words[place - 1].text == ":"):
         return False
     following = [word.text for word in words[place + 1 : place + 3]]
     if following[:1] == [":"]:
@@ -70,7 +69,7 @@ def _is_no_keyword(words: list[Word], place: int) -> bool:
     word, following = words[place], words[place + 1 : place + 2]
     before = words[place - 1] if place > 0 else None
     is_first = before is None or (before.line < word.line and before.text != ":")
-    is_keyword = word.text in _KEYWORDS or word.text == ":"
+    is_keyword = word.text in KEYWORDS or word.text == ":"
     return is_first and not is_keyword and [each.text for each in following] == [":"]
 
 
