@@ -14,15 +14,7 @@ class RepeatedObservation {
  public:
   // `reports` are by state.
   explicit RepeatedObservation(const std::vector<StepReports>& reports) {
-    std::vector<Observation> responses;
-    for (const StepReports& report : reports) {
-      for (const auto& branch : report.branches()) {
-        has_numbers_ = has_numbers_ || !branch.numbers.empty();
-        if (std::ranges::find(responses, branch.response) == responses.end()) responses.push_back(branch.response);
-      }
-    }
-    if (has_numbers_ || responses.size() > most_responses) return;
-    for (const Observation response : responses) {
+    for (const Observation response : few_responses(reports)) {
       std::vector<double>& likelihoods = likelihoods_.emplace_back();
       for (const StepReports& report : reports) likelihoods.push_back(report.likelihood({response, {}}));
     }
@@ -43,7 +35,6 @@ class RepeatedObservation {
   }
 
  private:
-  static constexpr std::size_t most_responses = 8;
   static constexpr double most_combinations = 64;
 
   // `weights` have the probability of what was observed so far, in each of its orders.
@@ -70,7 +61,6 @@ class RepeatedObservation {
     }
   }
 
-  bool has_numbers_ = false;
   std::vector<std::vector<double>> likelihoods_;  // [response][state]; empty if they are too many
 };
 

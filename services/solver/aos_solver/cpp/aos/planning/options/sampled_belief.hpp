@@ -39,16 +39,26 @@ inline void observe(const std::vector<StepReports>& reports, const Seen& seen, S
   for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = after[k] / sum;
 }
 
-// The mutual information of the state and what is observed, in nats, estimated from drawn observations.
+// The mutual information of the state and what is observed, in nats; estimated from drawn observations where not all can be listed.
 inline double information(const StateWeights& weights, const std::vector<StepReports>& reports, int draws, Sampler& random) {
+  const auto told = [&](const Seen& seen, std::size_t k) { return weights[k] > 0 ? reports[k].likelihood(seen) : 0; };
+  const std::vector<Observation> responses = few_responses(reports);
   double sum = 0;
+  for (const Observation response : responses) {
+    double all = 0;
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const double own = told({response, {}}, k);
+      all += weights[k] * own;
+      if (own > 0) sum += weights[k] * own * std::log(own);
+    }
+    if (all > 0) sum -= all * std::log(all);
+  }
+  if (!responses.empty()) return sum;
   draw_states(weights, draws, random, [&](std::size_t k) {
     const Seen seen = reports[k].drawn(random);
     double all = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (weights[i] > 0) all += weights[i] * reports[i].likelihood(seen);
-    }
-    const double own = reports[k].likelihood(seen);
+    for (std::size_t i = 0; i < weights.size(); ++i) all += weights[i] * told(seen, i);
+    const double own = told(seen, k);
     if (own > 0 && all > 0) sum += std::log(own / all);
   });
   return sum / draws;

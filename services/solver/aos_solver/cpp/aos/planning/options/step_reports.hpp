@@ -96,6 +96,18 @@ class StepReports {
   std::vector<Branch> branches_;
 };
 
+// All responses that may be observed; none if they are more than 8, or numbers are reported.
+inline std::vector<Observation> few_responses(const std::vector<StepReports>& reports) {
+  std::vector<Observation> responses;
+  for (const StepReports& report : reports) {
+    for (const auto& branch : report.branches()) {
+      if (std::ranges::find(responses, branch.response) == responses.end()) responses.push_back(branch.response);
+      if (!branch.numbers.empty() || responses.size() > 8) return {};
+    }
+  }
+  return responses;
+}
+
 // Takes a step and notes what it may report. The state becomes one of the next ones, drawn. Returns the mean reward. Each run
 // of the step counts `steps` down.
 template <class Model>
