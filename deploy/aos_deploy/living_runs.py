@@ -62,7 +62,7 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     """The run that a command means: the one named, else the one that goes on, else the last one.
 
     What is named may also be a file of runs, as `aos export --format bundle` writes one, with one run.
-    `runs` is the folder to look in; without one `runs_here` comes first, then whatever goes on anywhere.
+    `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere.
     DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
     """
     if run is not None:
@@ -71,11 +71,10 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
         return named
     here, elsewhere = _living(runs)
     candidates = here or elsewhere
-    folder = runs or runs_here()
-    has_last = folder.joinpath(LATEST).exists()
+    has_last = (runs or RUNS).joinpath(LATEST).exists()
     if len(candidates) > 1 and (here or not has_last):
         raise _several(candidates)
-    return candidates[0] if len(candidates) == 1 else RunDirectory.latest(folder)
+    return candidates[0] if len(candidates) == 1 else RunDirectory.latest(runs or runs_here())
 
 
 def chosen_runs(named: Iterable[Path] | None, runs: Path | None) -> list[Path]:
@@ -125,7 +124,7 @@ def _opened(file: Path) -> Path:
 def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
     """The runs that go on in a folder, by default in ./runs, and those elsewhere if no folder is named."""
     going_on = living_runs()
-    here = [run for run in going_on if run.path.parent == (runs or runs_here()).resolve()]
+    here = [run for run in going_on if run.path.parent == (runs or RUNS).resolve()]
     return here, [run for run in going_on if run not in here] if runs is None else []
 
 

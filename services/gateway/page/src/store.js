@@ -120,7 +120,8 @@ export async function open(name, { again = false } = {}) {
     loadPictures(name);
   } catch (error) {
     problem.value = error;
-    if (again) setTimeout(() => route.value.name === name && open(name, { again }), 1500);
+    // A system that has just been started may not answer yet.
+    setTimeout(() => route.value.name === name && open(name, { again: true }), 1500);
   }
 }
 
