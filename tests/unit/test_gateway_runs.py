@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 from collections.abc import AsyncIterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_record import RunRecord
 from aos_gateway.runs import RemoteRun, RunShelf
 from aos_protocol.errors import GatewayError
 
@@ -39,3 +44,21 @@ def test_systems_of_one_robot_at_files_of_one_name_have_names_of_their_own() -> 
     assert [name for name in shelf.runs() if "@" in name] == [
         *("tiger@10.0.0.7:7447", "tiger@run_a_bus", "tiger@run_b_bus")
     ]
+
+
+def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path) -> None:
+    shelf = RunShelf([tmp_path])
+    record = RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1)
+    usual_s = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(1) as viewer:
+            for second in range(200):
+                listed = viewer.submit(shelf.runs)
+                run = RunDirectory.create(tmp_path, "r", second * 10**9)
+                run.write_record(record)
+                run.close()
+                assert run.path.name in shelf.runs()
+                listed.result()
+    finally:
+        sys.setswitchinterval(usual_s)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import AsyncIterator, Iterable
@@ -287,6 +288,7 @@ class RunShelf:
         self._entries: tuple[RunEntry, ...] = ()
         self._looked_s = -_FRESH_S
         self._looking = asyncio.Lock()
+        self._reading = threading.Lock()  # Lists are also made in a thread.
 
     async def entries(self) -> tuple[RunEntry, ...]:
         """The list of runs, the newest first, as it was less than a second ago: viewers share a look."""
@@ -299,6 +301,10 @@ class RunShelf:
 
     def runs(self) -> dict[str, Run]:
         """The runs, the newest first. Of two directories of one name the last by path is shown."""
+        with self._reading:
+            return self._read()
+
+    def _read(self) -> dict[str, Run]:
         living = {run.path for run in living_runs()}
         self._folders |= {path.parent: None for path in living}
         paths = living | self._directories
