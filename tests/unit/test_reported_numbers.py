@@ -133,6 +133,7 @@ def test_numbers_are_taken_from_local_variables_that_hold_some() -> None:
     texts = {
         "depth": "1.5", "level": "3", "loud": "true", "echoes": "[1.0, null, 2]", "none": "null",
         "words": '"deep"', "odd": "<object object at 0x1>", "mixed": '[1, "a"]', "nested": "[[1]]",
+        "huge": "9" * 400,
     }  # fmt: skip
     assert observed_numbers([*texts, "unknown"], texts) == {
         "depth": 1.5, "level": 3, "loud": True, "echoes": [1.0, None, 2],

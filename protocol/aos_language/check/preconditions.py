@@ -19,23 +19,19 @@ def check_precondition(model: SkillModel, findings: Findings) -> None:
 
     Where it earns something, that is a warning.
     """
-    if model.violation_penalty > 0 and model.precondition:
-        block = model.precondition[0]
-        findings.warning(
-            "AOS147",
-            f"{model.name} earns {model.violation_penalty:g} where this does not hold",
-            block.code.span if block.code is not None else block.span,
-            f"A penalty is added to the reward: write -{model.violation_penalty:g}",
-        )
-    if model.violation_penalty or not _mentions(model.precondition) or _mentions(model.dynamic_model):
+    if not model.precondition:
         return
     block = model.precondition[0]
-    findings.remark(
-        "AOS147",
-        f"nothing keeps the planner from using {model.name} where this does not hold",
-        block.code.span if block.code is not None else block.span,
-        f"Add `violate_penalty: -10`, or say in the dynamic model what happens where {_MEETS} is false",
-    )
+    span = block.code.span if block.code is not None else block.span
+    if model.violation_penalty > 0:
+        message = f"{model.name} earns {model.violation_penalty:g} where this does not hold"
+        hint = f"A penalty is added to the reward: write -{model.violation_penalty:g}"
+        findings.warning("AOS147", message, span, hint)
+    if model.violation_penalty or not _mentions(model.precondition) or _mentions(model.dynamic_model):
+        return
+    message = f"nothing keeps the planner from using {model.name} where this does not hold"
+    hint = f"Add `violate_penalty: -10`, or say in the dynamic model what happens where {_MEETS} is false"
+    findings.remark("AOS147", message, span, hint)
 
 
 def _mentions(block: Iterable[Assignment]) -> bool:

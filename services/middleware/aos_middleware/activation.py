@@ -159,8 +159,11 @@ class _Activation:
             raise error from fault
         if observed.response is None:
             raise error
-        return msgspec.structs.replace(
-            self._observation(observed, observed.response), numbers={}, failure=error
+        return _Observation(
+            observed.response,
+            observed.local_variables,
+            assigned_variables(observed.assigned, self._request),
+            failure=error,
         )
 
     async def _observed_stop(self, error: AosError) -> _Observation:

@@ -31,7 +31,10 @@ def _decoded(text: str) -> Any:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, bool | int | float) and math.isfinite(value)
+    try:
+        return isinstance(value, bool | int | float) and math.isfinite(value)
+    except OverflowError:  # No double is so large.
+        return False
 
 
 def _is_list(value: Any) -> bool:

@@ -3,6 +3,7 @@
 // random has the reports of one of its next states.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
