@@ -3,6 +3,7 @@
 // The solver ends when the bounds are as near as asked for, when its time or memory is used up, when trials find
 // nothing more, or when anything comes on standard input or that is closed. It then writes the best vectors so far.
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -61,7 +62,7 @@ class Limits {
     } else if (is_told_to_stop()) {
       ending_ = "stopped";
     }
-    if (*ending_ != '\0') late_from_ = grace * now;
+    if (*ending_ != '\0') late_from_ = now + std::min(grace * now, most_grace_s);
     return ending_;
   }
   bool is_over() { return *ending() != '\0'; }
@@ -69,7 +70,8 @@ class Limits {
   bool is_late() const { return *ending_ != '\0' && cpu_seconds() >= late_from_; }
 
  private:
-  static constexpr double grace = 1.1;  // of the time used up, for the backups of the last trial
+  static constexpr double grace = 0.1;  // of the time used up, for the backups of the last trial
+  static constexpr double most_grace_s = 5;
 
   const Sarsop& solver_;
   double seconds_;
