@@ -172,7 +172,7 @@ def test_statistics_tell_what_came_back_and_what_each_step_changed() -> None:
 def test_a_dot_stands_at_its_share_between_the_ticks(tmp_path: Path) -> None:
     results = results_of(part_of("model", (SERVED, GAVE_UP)))
     drawn = draw_plots(results, tmp_path)["share of missions that reach the goal"].read_text()
-    (dot,) = (float(x) for x in re.findall(r'<circle cx="([\d.]+)"', drawn))
+    (dot,) = (float(x) for x in re.findall(r'"M([\d.]+) \d+h0"', drawn))
     ticks = {label: float(x) for x, label in re.findall(r'<text x="([\d.]+)"[^>]*>([\d.]+)<', drawn)}
     assert set(ticks) == {"0", "0.2", "0.4", "0.6", "0.8", "1"}
     assert dot == pytest.approx((ticks["0"] + ticks["1"]) / 2, abs=0.2)

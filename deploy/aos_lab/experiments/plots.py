@@ -100,23 +100,29 @@ def _picture(title: str, rows: Sequence[_Row], axis: _Axis) -> str:
     height = floor + _BOTTOM_PX
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{_WIDTH_PX}" height="{height}" '
-        f'viewBox="0 0 {_WIDTH_PX} {height}" font-family="sans-serif" font-size="13" stroke-width="1.5">',
-        f'<rect width="{_WIDTH_PX}" height="{height}" fill="#fff"/>',
+        f'viewBox="0 0 {_WIDTH_PX} {height}" fill="none" '
+        'font-family="sans-serif" font-size="13" stroke-width="1.5">',
+        f'<path fill="#fff" d="M0 0h{_WIDTH_PX}v{height}H0"/>',
     ]
-    for tick in axis.ticks():
-        lines.append(f'<path d="M{place(tick)} {_TOP_PX}V{floor}" stroke="#ddd" stroke-width="1"/>')
-        lines.append(f'<text x="{place(tick)}" y="{floor + 18}" text-anchor="middle">{tick:.10g}</text>')
-    box = f'x="{left:.1f}" y="{_TOP_PX}" width="{right - left:.1f}" height="{floor - _TOP_PX}"'
-    lines.append(f'<rect {box} fill="none" stroke="#000" stroke-width="1"/>')
-    for number, row in enumerate(rows):
-        middle = _TOP_PX + _ROW_PX * number + _ROW_PX // 2
-        low, high = map(place, _ends(row.value))
-        lines.append(
-            f'<text x="{left - 6:.1f}" y="{middle + 4}" text-anchor="end">{html.escape(row.label)}</text>'
-        )
-        bar = f"M{low} {middle - 4}v8m0-4H{high}m0-4v8"
-        lines.append(f'<path d="{bar}" fill="none" stroke="{row.colour}"/>')
-        lines.append(f'<circle cx="{place(row.value.value)}" cy="{middle}" r="4" fill="{row.colour}"/>')
+    grid = "".join(f"M{place(tick)} {_TOP_PX}V{floor}" for tick in axis.ticks())
+    lines.append(f'<path stroke="#ddd" d="{grid}"/>')
+    box = f"M{left:.1f} {_TOP_PX}H{right}V{floor}H{left:.1f}z"
+    lines.append(f'<path stroke="#000" d="{box}"/>')
+    middles = range(_TOP_PX + _ROW_PX // 2, floor, _ROW_PX)
+    for colour in dict.fromkeys(row.colour for row in rows):
+        bars, dots = "", ""
+        for row, middle in zip(rows, middles, strict=True):
+            if row.colour == colour:
+                low, high = map(place, _ends(row.value))
+                bars += f"M{low} {middle - 4}v8m0-4H{high}m0-4v8"
+                dots += f"M{place(row.value.value)} {middle}h0"
+        lines.append(f'<path stroke="{colour}" d="{bars}"/>')
+        lines.append(f'<path stroke="{colour}" stroke-width="8" stroke-linecap="round" d="{dots}"/>')
+    lines.append('<g fill="#000" text-anchor="middle">')
+    lines += [f'<text x="{place(tick)}" y="{floor + 18}">{tick:.10g}</text>' for tick in axis.ticks()]
     legend = f"{html.escape(title)}, with 95 % intervals"
-    lines.append(f'<text x="{(left + right) / 2:.1f}" y="{floor + 38}" text-anchor="middle">{legend}</text>')
-    return "\n".join([*lines, "</svg>", ""])
+    lines.append(f'<text x="{(left + right) / 2:.1f}" y="{floor + 38}">{legend}</text>')
+    lines.append('</g><g fill="#000" text-anchor="end">')
+    for row, middle in zip(rows, middles, strict=True):
+        lines.append(f'<text x="{left - 6:.1f}" y="{middle + 4}">{html.escape(row.label)}</text>')
+    return "\n".join([*lines, "</g></svg>", ""])
