@@ -155,11 +155,7 @@ def _roles(roles: tuple[str, ...]) -> str:
 
 
 def message_sections() -> str:
-    """Every message with the names of its fields, under the conversations of the source files.
-
-    Of a docstring only the first sentence is here. Types, defaults and meanings stand once, in the
-    source that is linked.
-    """
+    """Every message with the first sentence of its docstring, under the conversations of the source files."""
     parts: list[str] = []
     for title, module in MESSAGES.items():
         source = Path(inspect.getfile(module)).name
@@ -172,13 +168,9 @@ def message_sections() -> str:
 
 
 def _message(node: ast.ClassDef) -> str:
-    """Returns a message's section; fields without a default are marked as required."""
+    """Returns a message's section; the source that is linked has its fields."""
     told = re.match(r".*?[.?](?= |$)", " ".join((ast.get_docstring(node) or "").split()))
-    fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
-    required = [f"**`{ast.unparse(field.target)}`**" for field in fields if field.value is None]
-    others = [f"`{ast.unparse(field.target)}`" for field in fields if field.value is not None]
-    lines = [f"#### {node.name}", "", told[0] if told else "", "", ", ".join(required + others)]
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).rstrip() + "\n"
+    return f"#### {node.name}\n\n{told[0] if told else ''}\n"
 
 
 # --- words ---------------------------------------------------------------------------------------------
