@@ -8,9 +8,7 @@ from pathlib import Path
 
 import typer
 
-from aos_deploy.bundle_files import planned_of
-from aos_deploy.constraints import constrained
-from aos_deploy.mission_values import with_values
+from aos_deploy.bundle_files import planned_of, with_mission
 from aos_deploy.program import cache_dir
 from aos_language.load import load_files, with_excerpts
 from aos_protocol.diagnostics import Severity, render
@@ -48,8 +46,9 @@ async def engine_of_bundle(
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(
-            with_values(
-                constrained(loaded.project, (*planned.constraints, *constraints), planned.sources),
+            with_mission(
+                loaded.project,
+                (*planned.constraints, *constraints),
                 (*planned.values, *values),
                 planned.sources,
             ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
@@ -16,16 +17,16 @@ from aos_language.mission_parameters import declared_values, parameter_leaves
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.documents import Constraint, MissionValue, Project
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DeployError, DocumentError
 
 __all__ = [
     "BundledFiles",
     "Planned",
-    "check_mission_of",
     "files_of_bundle",
     "files_of_bundles",
     "planned_of",
     "project_of",
+    "with_mission",
 ]
 
 
@@ -105,27 +106,43 @@ def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
     constraints and what is set. Documents that only play the world need not have every mission parameter.
     """
-    files = files_of_bundles(deployment.bundles, deployment.file.leave_out).files
-    loaded = load_files(files, name=deployment.path.name)
+    together = files_of_bundles(deployment.bundles, deployment.file.leave_out)
+    loaded = load_files(together.files, name=deployment.path.name)
     if loaded.project is None:
+        named = ", ".join(str(from_here(bundle)) for bundle in deployment.bundles)
         raise DocumentError(
-            f"the bundles of {deployment.path.name} have errors",
+            f"the bundles {named} are refused" if "," in named else f"the bundle {named} is refused",
+            code="AOS120",
             hint="Mend the places named above",
-            diagnostics=loaded.diagnostics,
+            diagnostics=tuple(together.located(diagnostic) for diagnostic in loaded.diagnostics),
         )
-    project = constrained(loaded.project, deployment.constraints, [deployment.path])
     values = deployment.mission_values
     if plays_world:
-        values = declared_values(values, parameter_leaves(project.environment))
-    return with_values(project, values, [deployment.path])
+        values = declared_values(values, parameter_leaves(loaded.project.environment))
+    return with_mission(loaded.project, deployment.constraints, values, [deployment.path])
 
 
-def check_mission_of(deployment: Deployment) -> None:
-    """Raises DeployError AOS801 with what is wrong with constraints and values; the registry tells of
-    documents."""
-    if not deployment.constraints and not deployment.mission_values:
-        return
+def with_mission(
+    project: Project,
+    constraints: Sequence[Constraint],
+    values: Sequence[MissionValue],
+    sources: Sequence[Path],
+) -> Project:
+    """The project with constraints and values, whose `sources` are files; DeployError AOS801 with all that
+    is wrong with them."""
+    refused: list[DeployError] = []
     try:
-        project_of(deployment)
-    except DocumentError:
-        return
+        project = constrained(project, constraints, sources)
+    except DeployError as error:
+        refused.append(error)
+    try:
+        project = with_values(project, values, sources)
+    except DeployError as error:
+        refused.append(error)
+    if len(refused) > 1:
+        found = tuple(diagnostic for error in refused for diagnostic in error.diagnostics)
+        what = "the mission's constraints and what is set for it have errors"
+        raise DeployError(what, code="AOS801", diagnostics=found)
+    for error in refused:
+        raise error
+    return project

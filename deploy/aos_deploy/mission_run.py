@@ -10,7 +10,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.bundle_files import BundledFiles, check_mission_of, files_of_bundles
+from aos_deploy.bundle_files import BundledFiles, files_of_bundles, project_of
 from aos_deploy.deploy_file import Deployment, with_whole_paths
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
@@ -152,7 +152,8 @@ class MissionRun:
         programs = programs_of_deployment(deployment)
         for program in programs:
             run.forget_fault(program.name)
-        await asyncio.to_thread(check_mission_of, deployment)
+        if self._taken_up is None or not self._taken_up.has_begun:  # Else the catalogue has later ones.
+            await asyncio.to_thread(project_of, deployment)
         try:
             outsiders = outsiders_of(deployment)
             async with supervised(

@@ -7,10 +7,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from aos_deploy.bundle_files import files_of_bundles, planned_of
+from aos_deploy.bundle_files import files_of_bundles, planned_of, project_of
 from aos_deploy.cli import aos_app
+from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.events import Event, ServiceChanged
+from aos_deploy.mission_run import MissionRun
 from aos_language.load import load_files
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DeployError, DocumentError
+from aos_runtime.clock import SystemClock
 
 ENVIRONMENT = "project: yard\nhorizon: 3\n\nstate_variable: bool open\n"
 SKILL = "project: yard\n\ndynamic_model:\nstate__.open = true;\n__reward = -1;\n"
@@ -67,3 +71,29 @@ def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bun
         files_of_bundles((first, second), ())
     (found,) = refused.value.diagnostics
     assert (found.code, Path(found.span.file).parts[-2:]) == ("AOS129", ("second", "yard.ef"))
+
+
+async def test_documents_with_mistakes_are_refused_before_a_service_starts(tmp_path: Path) -> None:
+    wrong = SKILL.replace("state__.open", "state__.opn").replace("-1", "minus_one")
+    bundle(tmp_path, "world", yard_ef=ENVIRONMENT.replace("horizon", "horzon"))
+    bundle(tmp_path, "skills", push_sd=wrong)
+    deploy = tmp_path / "yard.yaml"
+    deploy.write_text("aos: 1\nrobot: yard\nbundles: [world, skills]\nbind: {/push: model}\n")
+    events: list[Event] = []
+    run = MissionRun(read_deploy_file(deploy), events.append, SystemClock())
+    summary = await run.run()
+    assert (summary.ending, summary.exit_code) == ("not_started", 1)
+    assert not [event for event in events if isinstance(event, ServiceChanged)]
+    assert isinstance(run.error, DocumentError)
+    places = {f"{Path(found.span.file).parent.name}/{found.span.line}" for found in run.error.diagnostics}
+    assert {"world/2", "skills/4"} <= places
+
+
+def test_mistakes_in_constraints_and_in_what_is_set_are_told_together(tmp_path: Path) -> None:
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    mission = '{set: {laps: 3}, constraints: [{never: "state.opn", probability: 0.1}]}'
+    deploy.write_text(f"aos: 1\nrobot: yard\nbundles: [yard]\nmission: {mission}\n")
+    with pytest.raises(DeployError, match="constraints and what is set") as refused:
+        project_of(read_deploy_file(deploy))
+    assert [found.code for found in refused.value.diagnostics] == ["AOS110", "AOS146"]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.bundle_files import check_mission_of, project_of
+from aos_deploy.bundle_files import project_of
 from aos_deploy.constraints import constraint_of_option
 from aos_deploy.deploy_file import read_deploy_file
 from aos_protocol.diagnostics import Diagnostic
@@ -28,7 +28,7 @@ def found_in(path: Path, text: str) -> Diagnostic:
     """The one mistake of a file that ends with this text."""
     path.write_text(path.read_text() + text)
     with pytest.raises(DeployError) as caught:
-        check_mission_of(read_deploy_file(path))
+        project_of(read_deploy_file(path))
     (found,) = caught.value.diagnostics
     return found
 

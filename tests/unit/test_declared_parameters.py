@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.bundle_files import check_mission_of, project_of
+from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import read_deploy_file
 from aos_language.load import load_files
 from aos_language.mission_parameters import (
@@ -283,7 +283,7 @@ def test_a_wrong_value_of_a_deploy_file_is_told_where_it_stands(
 ) -> None:
     deploy_file.write_text(DEPLOY.replace(before, after))
     with pytest.raises(DeployError) as caught:
-        check_mission_of(read_deploy_file(deploy_file))
+        project_of(read_deploy_file(deploy_file))
     (found,) = caught.value.diagnostics
     assert found.code == code
     assert str(found.span).endswith(f"home.yaml:{place}")
