@@ -143,6 +143,6 @@ def with_mission(
         found = tuple(diagnostic for error in refused for diagnostic in error.diagnostics)
         what = "the mission's constraints and what is set for it have errors"
         raise DeployError(what, code="AOS801", diagnostics=found)
-    for error in refused:
-        raise error
+    for only in refused:
+        raise only
     return project

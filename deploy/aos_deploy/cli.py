@@ -58,7 +58,11 @@ _STYLE: dict[str, Any] = {
 
 def main() -> NoReturn:
     """`aos`."""
-    _run(aos_app(sys.argv[1:]), "aos")
+    try:
+        app = aos_app(sys.argv[1:])
+    except KeyboardInterrupt:  # Its imports can take a second.
+        sys.exit(ExitCode.INTERRUPTED)
+    _run(app, "aos")
 
 
 def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:

@@ -13,9 +13,10 @@ import typer
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.constraints import constraint_of_option
+from aos_deploy.exit_codes import ExitCode
 from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson, TrustDocuments, finite
-from aos_deploy.printing import print_json
+from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.lines import risk_text
 from aos_deploy.views.tables import print_runs, print_values
@@ -229,6 +230,7 @@ def simulate(
 
     Run k has seed SEED + k, from 0. Goals and failures are counted by what has
     become of the world; what the belief held for the goal is told beside.
+    Ctrl-C ends it early and tells of the missions that have ended.
     """
     limits = MissionLimits(
         goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
@@ -238,8 +240,9 @@ def simulate(
     )
     search = following(search, policy)
 
-    async def run_all(engine: Engine) -> list[SimulatedRun]:
-        done: list[SimulatedRun] = []
+    done: list[SimulatedRun] = []
+
+    async def run_all(engine: Engine) -> None:
         with progress() as bar:
             task = bar.add_task("missions", total=runs)
             engine.on_progress = lambda found: bar.update(task, description=f"missions, {found.text}")
@@ -247,13 +250,19 @@ def simulate(
                 of_run = msgspec.structs.replace(search, seed=run_seed)
                 done.append(await simulate_mission(engine, of_run, limits, with_states=states))
                 bar.update(task, description="missions", completed=len(done))
-        return done
 
-    missions = _with_engine(bundle, seed, run_all, never=never, set_values=set_values)
-    if as_json:
-        print_json(Campaign(missions, _summary(missions)))
-    else:
-        print_runs(missions, _summary(missions))
+    was_stopped = False
+    try:
+        _with_engine(bundle, seed, run_all, never=never, set_values=set_values)
+    except KeyboardInterrupt:
+        was_stopped = True
+    if done and as_json:
+        print_json(Campaign(done, _summary(done)))
+    elif done:
+        print_runs(done, _summary(done))
+    if was_stopped:
+        typer.echo(f"aos: stopped after {len(done)} of {count(runs, 'mission')}", err=True)
+        raise typer.Exit(ExitCode.INTERRUPTED)
 
 
 def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
