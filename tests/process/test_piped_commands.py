@@ -17,7 +17,7 @@ from processes import COMMAND_S
 from typer.testing import CliRunner
 
 from aos_deploy import cli
-from aos_deploy.commands import plan
+from aos_lab.commands import simulate
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
 AOS = Path(sys.executable).parent / "aos"
@@ -57,7 +57,7 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
         return await simulate_mission(*arguments, **options)
 
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-    monkeypatch.setattr(plan, "simulate_mission", third_interrupted)
+    monkeypatch.setattr(simulate, "simulate_mission", third_interrupted)
     command = ["simulate", str(bundles / "bench" / "tiger"), "--runs", "5", "--simulations", "10", "--json"]
     done = CliRunner().invoke(cli.aos_app(), command)
     assert done.exit_code == 130

@@ -1,36 +1,41 @@
-"""`aos plan`, `aos simulate` and `aos rate`: a bundle's model without a robot."""
+"""`aos plan` and `aos rate`: a bundle's model without a robot."""
 
 from __future__ import annotations
 
-import asyncio
 import statistics
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 import msgspec
 import typer
 
-from aos_deploy.bundle_engine import engine_of_bundle
-from aos_deploy.constraints import constraint_of_option
-from aos_deploy.exit_codes import ExitCode
-from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import AsJson, TrustDocuments, finite
-from aos_deploy.printing import count, print_json
-from aos_deploy.terminal import progress, waiting
+from aos_deploy.mission_values import SetValues
+from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.planning_options import (
+    Bundle,
+    Horizon,
+    Never,
+    PlannerName,
+    PolicyFile,
+    Seed,
+    Simulations,
+    Threads,
+    Time,
+    with_engine,
+)
+from aos_deploy.printing import print_json
+from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text
-from aos_deploy.views.tables import print_runs, print_values
+from aos_deploy.views.tables import print_values
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ConstraintRisk
-from aos_solver.building.build import BuildKind
-from aos_solver.child.engine import Engine, Planner
+from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.choosing import Choice, Chooser
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.risk import RiskBudget
-from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
@@ -40,41 +45,10 @@ __all__ = ["register"]
 
 RATE_REPETITIONS = 10
 
-T = TypeVar("T")
-
-Bundle = Annotated[
-    Path,
-    typer.Argument(
-        metavar="BUNDLE",
-        help="A directory of documents; or a deploy file, for its bundles, constraints and values together",
-    ),
-]
-Simulations = Annotated[int, typer.Option(min=1, help="Planning budget of a decision, in simulations")]
-Time = Annotated[
-    float | None,
-    typer.Option("--time", min=0.001, callback=finite, help="Planning budget in seconds, instead"),
-]
-Horizon = Annotated[
-    int | None, typer.Option(min=1, help="Look-ahead in decisions; else the environment document's")
-]
-PolicyFile = Annotated[
-    Path | None, typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching")
-]
-Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
-PlannerName = Annotated[
-    Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
-]
-Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
-Never = Annotated[
-    list[str] | None,
-    typer.Option("--never", metavar="P:EXPRESSION", help="A constraint: no more probable than P; repeatable"),
-]
-
 
 def register(app: typer.Typer) -> None:
     """Adds the commands to `aos`."""
     app.command(epilog="Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")(plan)
-    app.command(epilog="Example: aos simulate deploy/bundles/armadillo-finer --runs 20")(simulate)
     app.command(epilog="Example: aos rate deploy/bundles/armadillo-finer")(rate)
 
 
@@ -137,7 +111,7 @@ def plan(
                 return _decision((await engine.exact(horizon)).values, 0)
             return await _searched_decision(engine, search)
 
-    decision = _with_engine(bundle, seed, decide, never=never, set_values=set_values)
+    decision = with_engine(bundle, seed, decide, never=never, set_values=set_values)
     if as_json:
         print_json(decision)
     else:
@@ -194,96 +168,6 @@ def _decision(values: list[ActionValue], simulations: int) -> Decision:
     return Decision(values[0].action, values[0].q, simulations, values)
 
 
-class Campaign(msgspec.Struct):
-    """The output of `aos simulate --json`."""
-
-    runs: list[SimulatedRun]
-    summary: dict[str, float]
-
-
-def simulate(
-    bundle: Bundle,
-    runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,
-    seed: Seed = 1,
-    simulations: Simulations = 100_000,
-    time_s: Time = None,
-    horizon: Horizon = None,
-    planner: PlannerName = "auto",
-    threads: Threads = 1,
-    policy: PolicyFile = None,
-    never: Never = None,
-    set_values: SetValues = None,
-    goal_probability: Annotated[
-        float, typer.Option(callback=finite, help="Ends a mission when passed")
-    ] = 0.9,
-    step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
-    stop_below_value: Annotated[
-        float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
-    ] = None,
-    states: Annotated[
-        bool, typer.Option("--states", help="Also tell the world's state at each step")
-    ] = False,
-    as_json: AsJson = False,
-    trust_documents: TrustDocuments = False,
-) -> None:
-    """Run whole missions against the documents' own model.
-
-    Run k has seed SEED + k, from 0. Goals and failures are counted by what has
-    become of the world; what the belief held for the goal is told beside.
-    Ctrl-C ends it early and tells of the missions that have ended.
-    """
-    limits = MissionLimits(
-        goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
-    )
-    search = Search(
-        simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
-    )
-    search = following(search, policy)
-
-    done: list[SimulatedRun] = []
-
-    async def run_all(engine: Engine) -> None:
-        with progress() as bar:
-            task = bar.add_task("missions", total=runs)
-            engine.on_progress = lambda found: bar.update(task, description=f"missions, {found.text}")
-            for run_seed in range(seed, seed + runs):
-                of_run = msgspec.structs.replace(search, seed=run_seed)
-                done.append(await simulate_mission(engine, of_run, limits, with_states=states))
-                bar.update(task, description="missions", completed=len(done))
-
-    was_stopped = False
-    try:
-        _with_engine(bundle, seed, run_all, never=never, set_values=set_values)
-    except KeyboardInterrupt:
-        was_stopped = True
-    if done and as_json:
-        print_json(Campaign(done, _summary(done)))
-    elif done:
-        print_runs(done, _summary(done))
-    if was_stopped:
-        typer.echo(f"aos: stopped after {len(done)} of {count(runs, 'mission')}", err=True)
-        raise typer.Exit(ExitCode.INTERRUPTED)
-
-
-def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
-    returns = [run.discounted_return for run in runs]
-    return {
-        "runs": len(runs),
-        "goal_rate": sum(run.world_ending == "goal" for run in runs) / len(runs),
-        "over_rate": sum(run.world_ending == "over" for run in runs) / len(runs),
-        "failure_rate": sum(run.world_ending == "failure" for run in runs) / len(runs),
-        "believed_goal_rate": sum(run.believed_ending == "goal" for run in runs) / len(runs),
-        "mean_discounted_return": statistics.fmean(returns),
-        # One mission says nothing of how much missions differ.
-        **({"stderr": statistics.stdev(returns) / len(runs) ** 0.5} if len(runs) > 1 else {}),
-        "mean_steps": statistics.fmean(run.steps for run in runs),
-        **{
-            f"violation_rate of {never}": sum(never in run.violated for run in runs) / len(runs)
-            for never in runs[0].risked
-        },
-    }
-
-
 class Rate(msgspec.Struct):
     """The output of `aos rate --json`: samples per second."""
 
@@ -311,30 +195,9 @@ def rate(
         counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]
         return [count.samples / count.seconds for count in counts]
 
-    rates = _with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
+    rates = with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
     if as_json:
         print_json(result)
     else:
         typer.echo(f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)")
-
-
-def _with_engine(
-    bundle: Path,
-    seed: int,
-    ask: Callable[[Engine], Awaitable[T]],
-    *,
-    kind: BuildKind = "quick",
-    never: list[str] | None = None,
-    set_values: list[str] | None = None,
-) -> T:
-    constraints = [constraint_of_option(text) for text in never or ()]
-    values = values_of_options(set_values)
-
-    async def run() -> T:
-        async with engine_of_bundle(
-            bundle, seed, kind=kind, constraints=constraints, values=values
-        ) as engine:
-            return await ask(engine)
-
-    return asyncio.run(run())

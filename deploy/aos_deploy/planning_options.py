@@ -1,0 +1,82 @@
+"""Options of the commands that plan with a bundle's model, and the model's engine."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import typer
+
+from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.constraints import constraint_of_option
+from aos_deploy.mission_values import values_of_options
+from aos_deploy.options import finite
+from aos_solver.building.build import BuildKind
+from aos_solver.child.engine import Engine, Planner
+
+__all__ = [
+    "Bundle",
+    "Horizon",
+    "Never",
+    "PlannerName",
+    "PolicyFile",
+    "Seed",
+    "Simulations",
+    "Threads",
+    "Time",
+    "with_engine",
+]
+
+T = TypeVar("T")
+
+Bundle = Annotated[
+    Path,
+    typer.Argument(
+        metavar="BUNDLE",
+        help="A directory of documents; or a deploy file, for its bundles, constraints and values together",
+    ),
+]
+Simulations = Annotated[int, typer.Option(min=1, help="Planning budget of a decision, in simulations")]
+Time = Annotated[
+    float | None,
+    typer.Option("--time", min=0.001, callback=finite, help="Planning budget in seconds, instead"),
+]
+Horizon = Annotated[
+    int | None, typer.Option(min=1, help="Look-ahead in decisions; else the environment document's")
+]
+PolicyFile = Annotated[
+    Path | None, typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching")
+]
+Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
+PlannerName = Annotated[
+    Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
+]
+Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
+Never = Annotated[
+    list[str] | None,
+    typer.Option("--never", metavar="P:EXPRESSION", help="A constraint: no more probable than P; repeatable"),
+]
+
+
+def with_engine(
+    bundle: Path,
+    seed: int,
+    ask: Callable[[Engine], Awaitable[T]],
+    *,
+    kind: BuildKind = "quick",
+    never: list[str] | None = None,
+    set_values: list[str] | None = None,
+) -> T:
+    """Returns what `ask` makes of the bundle's engine, for missions with these constraints and values."""
+    constraints = [constraint_of_option(text) for text in never or ()]
+    values = values_of_options(set_values)
+
+    async def run() -> T:
+        async with engine_of_bundle(
+            bundle, seed, kind=kind, constraints=constraints, values=values
+        ) as engine:
+            return await ask(engine)
+
+    return asyncio.run(run())

@@ -1,0 +1,141 @@
+"""`aos simulate`: whole missions without a robot."""
+
+from __future__ import annotations
+
+import statistics
+from functools import partial
+from typing import Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.exit_codes import ExitCode
+from aos_deploy.mission_values import SetValues
+from aos_deploy.options import AsJson, TrustDocuments, finite
+from aos_deploy.planning_options import (
+    Bundle,
+    Horizon,
+    Never,
+    PlannerName,
+    PolicyFile,
+    Seed,
+    Simulations,
+    Threads,
+    Time,
+    with_engine,
+)
+from aos_deploy.printing import count, print_json
+from aos_deploy.terminal import progress
+from aos_deploy.views.tables import print_runs
+from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+from aos_solver.offline.following import following
+
+__all__ = ["register"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos simulate deploy/bundles/armadillo-finer --runs 20")(simulate)
+
+
+class Campaign(msgspec.Struct):
+    """The output of `aos simulate --json`."""
+
+    runs: list[SimulatedRun]
+    summary: dict[str, float]
+
+
+def simulate(
+    bundle: Bundle,
+    runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,
+    seed: Seed = 1,
+    simulations: Simulations = 100_000,
+    time_s: Time = None,
+    horizon: Horizon = None,
+    planner: PlannerName = "auto",
+    threads: Threads = 1,
+    policy: PolicyFile = None,
+    never: Never = None,
+    set_values: SetValues = None,
+    goal_probability: Annotated[
+        float, typer.Option(callback=finite, help="Ends a mission when passed")
+    ] = 0.9,
+    step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
+    stop_below_value: Annotated[
+        float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
+    ] = None,
+    states: Annotated[
+        bool, typer.Option("--states", help="Also tell the world's state at each step")
+    ] = False,
+    as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
+) -> None:
+    """Run whole missions against the documents' own model.
+
+    Run k has seed SEED + k, from 0. Goals and failures are counted by what has
+    become of the world; what the belief held for the goal is told beside.
+    Ctrl-C ends it early and tells of the missions that have ended.
+    """
+    limits = MissionLimits(
+        goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
+    )
+    search = Search(
+        simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
+    )
+    search = following(search, policy)
+
+    done: list[SimulatedRun] = []
+    play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
+    was_stopped = False
+    try:
+        with_engine(bundle, seed, play, never=never, set_values=set_values)
+    except KeyboardInterrupt:
+        was_stopped = True
+    if done and as_json:
+        print_json(Campaign(done, _summary(done)))
+    elif done:
+        print_runs(done, _summary(done))
+    if was_stopped:
+        typer.echo(f"aos: stopped after {len(done)} of {count(runs, 'mission')}", err=True)
+        raise typer.Exit(ExitCode.INTERRUPTED)
+
+
+async def _play(
+    engine: Engine,
+    search: Search,
+    limits: MissionLimits,
+    runs: int,
+    done: list[SimulatedRun],
+    *,
+    with_states: bool,
+) -> None:
+    """Plays the missions, and puts each that has ended to those that are `done`."""
+    with progress() as bar:
+        task = bar.add_task("missions", total=runs)
+        engine.on_progress = lambda found: bar.update(task, description=f"missions, {found.text}")
+        for run_seed in range(search.seed, search.seed + runs):
+            of_run = msgspec.structs.replace(search, seed=run_seed)
+            done.append(await simulate_mission(engine, of_run, limits, with_states=with_states))
+            bar.update(task, description="missions", completed=len(done))
+
+
+def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
+    returns = [run.discounted_return for run in runs]
+    return {
+        "runs": len(runs),
+        "goal_rate": sum(run.world_ending == "goal" for run in runs) / len(runs),
+        "over_rate": sum(run.world_ending == "over" for run in runs) / len(runs),
+        "failure_rate": sum(run.world_ending == "failure" for run in runs) / len(runs),
+        "believed_goal_rate": sum(run.believed_ending == "goal" for run in runs) / len(runs),
+        "mean_discounted_return": statistics.fmean(returns),
+        # One mission says nothing of how much missions differ.
+        **({"stderr": statistics.stdev(returns) / len(runs) ** 0.5} if len(runs) > 1 else {}),
+        "mean_steps": statistics.fmean(run.steps for run in runs),
+        **{
+            f"violation_rate of {never}": sum(never in run.violated for run in runs) / len(runs)
+            for never in runs[0].risked
+        },
+    }
