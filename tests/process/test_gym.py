@@ -166,6 +166,16 @@ def test_a_world_has_the_values_of_mission_parameters(root: Path) -> None:
     environment.close()
 
 
+def test_a_deploy_file_stands_for_its_bundles_and_values(root: Path, tmp_path: Path) -> None:
+    deploy = tmp_path / "errand.yaml"
+    bundle = root / "deploy" / "bundles" / "errand"
+    deploy.write_text(f"aos: 1\nrobot: errand\nbundles: [{bundle}]\nmission: {{set: {{target: bob}}}}\n")
+    environment = AosEnv(deploy)
+    assert "give(to=bob)" in environment.action_names
+    assert "give(to=alice)" not in environment.action_names
+    environment.close()
+
+
 @pytest.mark.parametrize(
     ("action", "message"),
     [(-1, "no action -1: they are numbered from 0 to 0"), (1, "no action 1"), (0.5, "1 whole numbers")],

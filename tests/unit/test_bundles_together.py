@@ -64,6 +64,18 @@ def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path: Path) -
     assert (linted.exit_code, "0 errors" in linted.stdout) == (0, True)
 
 
+def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path: Path) -> None:
+    bundle(tmp_path, "world", yard_ef=ENVIRONMENT)
+    bundle(tmp_path, "skills", push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    deploy.write_text("aos: 1\nrobot: yard\nbundles: [world, skills]\n")
+    shown = CliRunner().invoke(aos_app(), ["inspect", str(deploy), "--stage", "model"])
+    assert (shown.exit_code, '"push"' in shown.stdout, '"open"' in shown.stdout) == (0, True, True)
+    out = tmp_path / "json"
+    converted = CliRunner().invoke(aos_app(), ["convert", str(deploy), "--to", "json", "--out", str(out)])
+    assert (converted.exit_code, len(list(out.iterdir()))) == (0, 2)
+
+
 def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bundle(tmp_path: Path) -> None:
     first = bundle(tmp_path, "first", yard_ef=ENVIRONMENT.replace("\nhorizon", "\nversion: 2\nhorizon"))
     second = bundle(tmp_path, "second", yard_ef=ENVIRONMENT.replace("\nhorizon", "\nversion: 1\nhorizon"))

@@ -7,10 +7,10 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.commands.documents import Folder, refusal
+from aos_deploy.bundle_files import planned_of
+from aos_deploy.commands.documents import FolderOrDeployFile, refusal
 from aos_deploy.printing import count, print_diagnostics
 from aos_language.convert import Dialect, convert
-from aos_language.load import read_bundle_files
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DocumentError
 
@@ -24,7 +24,7 @@ def register(app: typer.Typer) -> None:
 
 
 def convert_bundle(
-    path: Folder,
+    path: FolderOrDeployFile,
     dialect: Annotated[Dialect, typer.Option("--to", help="The dialect to write")],
     out: Annotated[
         Path | None, typer.Option("--out", help="A new directory; without it BUNDLE-sdl or BUNDLE-json here")
@@ -33,11 +33,12 @@ def convert_bundle(
     """Write a bundle's documents in SDL or in AOS 1.x JSON.
 
     Each document is read again and compared with the original before anything is written. Comments in code
-    stay; those elsewhere, and the order of sections, do not. The bundle itself is left as it is.
+    stay; those elsewhere, and the order of sections, do not. The bundle itself is left as it is. The
+    bundles of a deploy file become one.
     """
-    files, remarks = read_bundle_files(path)
-    texts, found = convert(files, dialect)
-    found = (*remarks, *found)
+    planned = planned_of(path)
+    texts, found = convert(planned.files, dialect)
+    found = (*planned.remarks, *found)
     if has_errors(found):
         raise refusal(path, found)
     if not texts:

@@ -11,12 +11,12 @@ from typing import Annotated
 import msgspec
 import typer
 
-from aos_deploy.bundle_files import planned_of
+from aos_deploy.bundle_files import planned_of, with_mission
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_deploy.sarif import sarif_log
-from aos_language.load import load_bundle, load_files, with_excerpts
+from aos_language.load import load_files, with_excerpts
 from aos_language.outline import outline
 from aos_language.reading.picture_file import PICTURE
 from aos_protocol import __version__
@@ -24,7 +24,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError, DocumentError
 
-__all__ = ["Folder", "refusal", "register"]
+__all__ = ["Folder", "FolderOrDeployFile", "refusal", "register"]
 
 
 class Format(StrEnum):
@@ -40,11 +40,10 @@ class Stage(StrEnum):
     PYTHON = "python"
 
 
-Folder = Annotated[
-    Path,
-    typer.Argument(
-        metavar="BUNDLE", help="A directory with .ef, .sd, .am, .lf or .json documents, or an archive of one"
-    ),
+_DOCUMENTS = "A directory with .ef, .sd, .am, .lf or .json documents, or an archive of one"
+Folder = Annotated[Path, typer.Argument(metavar="BUNDLE", help=_DOCUMENTS)]
+FolderOrDeployFile = Annotated[
+    Path, typer.Argument(metavar="BUNDLE", help=f"{_DOCUMENTS}; or a deploy file, for its bundles together")
 ]
 
 
@@ -55,7 +54,7 @@ def register(app: typer.Typer) -> None:
 
 
 def lint(
-    path: Folder,
+    path: FolderOrDeployFile,
     form: Annotated[Format, typer.Option("--format", help="How to print the findings")] = Format.TEXT,
     compiles: Annotated[
         bool, typer.Option("--compile/--no-compile", help="Whether the compiler looks at the C++ as well")
@@ -144,23 +143,26 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
 
 
 def inspect(
-    bundle: Folder,
+    bundle: FolderOrDeployFile,
     stage: Annotated[Stage, typer.Option(help="Which stage to print")] = Stage.DOCUMENTS,
     skill: Annotated[str, typer.Option(help="Only this skill's module, for the stage python")] = "",
 ) -> None:
     """Print what becomes of a bundle.
 
-    The typed documents, the lowered model, the C++ or the Python.
+    The typed documents, the lowered model, the C++ or the Python. A deploy file's constraints and values are
+    in the model.
     """
-    loaded = load_bundle(bundle)
+    planned = planned_of(bundle)
+    loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
     if loaded.project is None:
         raise refusal(bundle, loaded.diagnostics)
+    project = with_mission(loaded.project, planned.constraints, planned.values, planned.sources)
     if stage is Stage.DOCUMENTS:
-        typer.echo(outline(loaded.project), nl=False)
+        typer.echo(outline(project), nl=False)
     elif stage is Stage.PYTHON:
-        typer.echo(_python_modules(loaded.project, skill), nl=False)
+        typer.echo(_python_modules(project, skill), nl=False)
     else:
-        typer.echo(_solver_stage(loaded.project, stage, bundle), nl=False)
+        typer.echo(_solver_stage(project, stage, bundle), nl=False)
 
 
 def _python_modules(project: Project, only: str) -> str:

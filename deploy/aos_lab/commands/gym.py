@@ -52,7 +52,13 @@ def register(app: typer.Typer) -> None:
 
 
 def gym(
-    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", help="A directory of documents")],
+    bundle: Annotated[
+        Path,
+        typer.Argument(
+            metavar="BUNDLE",
+            help="A directory of documents; or a deploy file, for its bundles and values",
+        ),
+    ],
     steps: Annotated[int, typer.Option(min=0, help="Measure with so many random steps")] = 0,
     worlds: Annotated[int, typer.Option(min=1, help="Worlds side by side")] = 1024,
     seed: Annotated[int, typer.Option(min=0, help="Of the worlds and the actions")] = 1,
