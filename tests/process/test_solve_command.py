@@ -89,9 +89,16 @@ def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path,
     assert isinstance(run(app, "solve", tmp_path / "none.pomdp").exception, DocumentError)
     few = run(app, "solve", tiger, "--states", "1").exception
     assert "has 2 states, more than 1" in str(few)
-    refused = run(app, "solve", tiger, "--discount", "1").exception
-    assert isinstance(refused, PlanningError)
-    assert refused.code == "AOS320"
+
+
+def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_printed(
+    app: typer.Typer, tiger: Path, bundle: Path
+) -> None:
+    # With so few states allowed listing them would be refused, too.
+    for arguments in ((tiger,), (bundle, "--states", "1")):
+        refused = run(app, "solve", *arguments, "--discount", "1")
+        assert isinstance(refused.exception, PlanningError)
+        assert (refused.exception.code, refused.stdout) == ("AOS320", "")
 
 
 def test_a_deploy_file_names_a_policy(tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ from aos_solver.child.answers import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.policy import Policy, PolicyHeader
-from aos_solver.offline.solving import Bounds, Solution, SolvingLimits
+from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
 
@@ -133,7 +133,8 @@ def solve(
             raise typer.BadParameter("a problem file has no mission parameters", param_hint="--set")
         found = _problem(target, states, discount)
     else:
-        found = asyncio.run(_enumerated(target, states, discount, values_of_options(set_values)))
+        values = values_of_options(set_values)
+        found = asyncio.run(_enumerated(target, states, discount, values, is_exported=bool(export)))
     if stop_value is not None:
         found = msgspec.structs.replace(found, model=with_stopping(found.model, stop_value))
     limits = SolvingLimits(precision=precision, cpu_s=time_s)
@@ -141,6 +142,7 @@ def solve(
     for path in export or []:
         write_problem(found.model, path)
         written.append(str(path))
+    check_discount(found.model.name, found.model.discount)
     if not as_json:
         _print_size(found)
     solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _print_bounds))
@@ -192,9 +194,17 @@ def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
 
 
 async def _enumerated(
-    bundle: Path, max_states: int, discount: float | None, values: tuple[MissionValue, ...]
+    bundle: Path,
+    max_states: int,
+    discount: float | None,
+    values: tuple[MissionValue, ...],
+    *,
+    is_exported: bool,
 ) -> _Target:
     async with engine_of_bundle(bundle, seed=1, values=values) as engine:
+        if not is_exported:  # A file may have any discount.
+            wanted = engine.description.discount if discount is None else discount
+            check_discount(engine.description.project, wanted)
         with _progress("states") as on_progress:
             found = await enumerate_model(
                 engine, max_states=max_states, discount=discount, on_progress=on_progress

@@ -17,7 +17,7 @@ from aos_solver.offline.alpha_vectors import AlphaVectors, RegionSize
 from aos_solver.offline.explicit_model import ExplicitModel
 from aos_solver.offline.solver_program import build_solver
 
-__all__ = ["Bounds", "Solution", "SolvingLimits", "solve"]
+__all__ = ["Bounds", "Solution", "SolvingLimits", "check_discount", "solve"]
 
 _ADDRESS_SPACE_BYTES = 16 << 30
 _LINE_LIMIT_BYTES = 1 << 16
@@ -75,7 +75,9 @@ async def solve(
 
     PlanningError AOS320 for a discount that it cannot do, AOS302 if the mission is over at the start.
     """
-    _check(model)
+    check_discount(model.name, model.discount)
+    if not model.starts:
+        raise PlanningError(f"{model.name} is over at the start", code="AOS302")
     executable = await build_solver(cache_dir)
     with tempfile.TemporaryDirectory(prefix="aos-solve-") as folder:
         flat, found = Path(folder) / "model.flat", Path(folder) / "vectors"
@@ -91,15 +93,14 @@ async def solve(
     return Solution(history[-1], tuple(history), vectors)
 
 
-def _check(model: ExplicitModel) -> None:
-    if not 0 <= model.discount < 1:
+def check_discount(name: str, discount: float) -> None:
+    """Raises PlanningError AOS320 for a discount with which the model of this name cannot be solved."""
+    if not 0 <= discount < 1:
         raise PlanningError(
-            f"{model.name} has the discount {model.discount:g}, and values without an end have no bounds",
+            f"{name} has the discount {discount:g}, and values without an end have no bounds",
             code="AOS320",
             hint="Solve it with a discount below 1, for example --discount 0.99",
         )
-    if not model.starts:
-        raise PlanningError(f"{model.name} is over at the start", code="AOS302")
 
 
 async def _run(
