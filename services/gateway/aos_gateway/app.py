@@ -10,7 +10,7 @@ from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import Route
+from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from aos_gateway.access import COOKIE, Access
@@ -111,8 +111,21 @@ async def _no_operation(request: Request, error: Exception) -> Response:
     if status == HTTPStatus.NOT_FOUND:
         hint = "Metrics are off: `aos serve --metrics`" if request.url.path == _METRICS else ""
         return response_of(GatewayError(f"there is nothing at {request.url.path}", code="AOS902", hint=hint))
+    if status == HTTPStatus.METHOD_NOT_ALLOWED:
+        allowed = ", ".join(_methods_at(request))
+        text = f"there is no {request.method} of {request.url.path}"
+        response = response_of(GatewayError(text, code="AOS901", hint=f"It has {allowed}"), status=status)
+        response.headers["allow"] = allowed
+        return response
     text = f"{request.method} {request.url.path}: {error.detail}"
     return response_of(GatewayError(text, code="AOS901"), status=status)
+
+
+def _methods_at(request: Request) -> list[str]:
+    """The methods of all routes to the request's path."""
+    routes = [route for route in request.app.routes if isinstance(route, Route)]
+    there = (route for route in routes if route.matches(request.scope)[0] is not Match.NONE)
+    return sorted({method for route in there for method in route.methods or ()})
 
 
 async def _defect(request: Request, error: Exception) -> Response:

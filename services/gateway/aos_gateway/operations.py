@@ -9,6 +9,7 @@ from __future__ import annotations
 import gzip
 import inspect
 from collections.abc import AsyncIterator, Awaitable, Callable
+from http import HTTPStatus
 from typing import Any, Literal, get_type_hints
 
 import msgspec
@@ -27,6 +28,10 @@ JSON = "application/json"
 SVG = "image/svg+xml"
 _COMPRESSED_FROM_BYTES = 1024
 _LEVEL = 5
+
+
+class _TooLargeError(GatewayError):
+    """A body that is not read to its end."""
 
 
 class Content(msgspec.Struct, frozen=True):
@@ -94,6 +99,8 @@ def route_of(one: Operation, gateway: Gateway) -> Route:
             if one.media == "text/event-stream":
                 given["last_event_id"] = request.headers.get("last-event-id", "")
             result = await one.do(gateway, **given)
+        except _TooLargeError as error:
+            return response_of(error, status=HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
         except AosError as error:
             return response_of(error)
         return _response(result, one, accepts_gzip="gzip" in request.headers.get("accept-encoding", ""))
@@ -133,7 +140,7 @@ async def _body(request: Request, max_bytes: int) -> bytes:
         async for part in request.stream():
             size += len(part)
             if size > max_bytes:
-                raise GatewayError(f"the body has more than {max_bytes} bytes", code="AOS901")
+                raise _TooLargeError(f"the body has more than {max_bytes} bytes", code="AOS901")
             parts.append(part)
     except ClientDisconnect as error:
         raise GatewayError("the body has no end", code="AOS901") from error

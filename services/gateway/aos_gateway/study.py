@@ -38,7 +38,7 @@ class OfTree(msgspec.Struct, frozen=True):
     branches: Annotated[int, msgspec.Meta(ge=1, le=10)] = 3
 
 
-class Otherwise(msgspec.Struct, frozen=True, kw_only=True):
+class Otherwise(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Other circumstances, as in WhatIfQuery."""
 
     forbid: tuple[str, ...] = ()

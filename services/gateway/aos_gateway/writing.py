@@ -56,7 +56,7 @@ class Named(msgspec.Struct, frozen=True):
     name: Annotated[str, msgspec.Meta(min_length=1, max_length=200)] = "bundle.zip"
 
 
-class StartSystem(msgspec.Struct, frozen=True, kw_only=True):
+class StartSystem(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A system to start with `aos-up`: the path of a deploy file, or the name of a project.
 
     With `model` every skill is played by its own document. With `stay` the system goes on after its mission.
@@ -70,7 +70,7 @@ class StartSystem(msgspec.Struct, frozen=True, kw_only=True):
     values: dict[str, str] = {}
 
 
-class NextMission(msgspec.Struct, frozen=True, kw_only=True):
+class NextMission(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The next mission of a system that stays; as in StartMission."""
 
     belief: Literal["initial", "keep"] = "initial"
@@ -79,7 +79,7 @@ class NextMission(msgspec.Struct, frozen=True, kw_only=True):
     values: dict[str, str] = {}
 
 
-class Steering(msgspec.Struct, frozen=True, kw_only=True):
+class Steering(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The wish of an operator, as in Steer. Without `by` it is the user of the gateway."""
 
     verb: SteeringVerb
