@@ -16,9 +16,9 @@ from aos_language.check.blocks import (
     Block,
     assignment_blocks,
     environment_blocks,
+    read_block,
     skill_blocks,
 )
-from aos_language.check.model_code import read_block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Extent, FaultKind, Mention

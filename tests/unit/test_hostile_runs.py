@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from aos_deploy.export.run_bundle import opened_bundle
-from aos_gateway import reading
+from aos_gateway import run_files
 from aos_gateway.runs import RunShelf
 from aos_protocol.errors import DeployError, GatewayError, StorageError
 
@@ -50,10 +50,10 @@ async def test_folders_in_place_of_files_are_told_and_no_log_is_read_elsewhere(t
     runs = opened(tmp_path, "r/run.json", "r/logs/solver.log/x", "r/pictures/step-1.png/x", "r/secret.log")
     gateway: Any = SimpleNamespace(shelf=RunShelf([], [], runs))
     with pytest.raises(StorageError, match="cannot be read"):
-        await reading.log(gateway, "r", "solver", reading.OfLog())
+        await run_files.log(gateway, "r", "solver", run_files.OfLog())
     with pytest.raises(StorageError, match="cannot be read"):
-        await reading.picture(gateway, "r", "1")
+        await run_files.picture(gateway, "r", "1")
     with pytest.raises(GatewayError, match="has no service"):
-        await reading.log(gateway, "r", "../secret", reading.OfLog())
+        await run_files.log(gateway, "r", "../secret", run_files.OfLog())
     with pytest.raises(GatewayError, match="has no service"):
-        await reading.log(gateway, "r", "../../secret", reading.OfLog())
+        await run_files.log(gateway, "r", "../../secret", run_files.OfLog())

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from aos_lab.formats.pomdp_rewards import RewardRules
 from aos_lab.formats.pomdp_statements import KEYWORDS, Statement, statements_of
+from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_model
 from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
 from aos_protocol.errors import DocumentError, IntractableError
-from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
+from aos_solver.offline.explicit_model import ExplicitModel
 
 __all__ = ["read_pomdp"]
 
@@ -20,8 +21,6 @@ _SUM_TOLERANCE = 1e-4
 _MAX_NAMES = 2_000_000
 _MAX_OUTCOMES = 20_000_000
 """A line such as `T: * uniform` has as many as actions times the square of the states."""
-
-Distribution = dict[int, float]
 
 
 def read_pomdp(name: str, data: bytes) -> ExplicitModel:
@@ -91,7 +90,10 @@ class _Reader:
             self._sensing = {(action, state): {state: 1.0} for action, state in everywhere}
         reached = {(action, after) for (action, _), row in self._transitions.items() for after in row}
         self._check("O", self._sensing, reached)
-        return None if self._findings.has_any else self._model()
+        if self._findings.has_any:
+            return None
+        tables = PomdpTables(self._transitions, self._sensing, self._rewards, self._start, self._is_seen)
+        return explicit_model(self._name, self._discount, self._names, tables)
 
     # --- preamble --------------------------------------------------------------------------------------
 
@@ -313,56 +315,6 @@ class _Reader:
             self._error("AOS106", f"{word.text} is not a finite number", word)
             return 0.0
         return value
-
-    # --- the model -------------------------------------------------------------------------------------
-
-    def _model(self) -> ExplicitModel:
-        actions, states = self._names["actions"], self._names["states"]
-        known: dict[tuple[tuple[int, float], ...], int] = {}
-        first, after, chances, sensings = [0], [], [], []
-        rewards = np.zeros((len(states), len(actions)))
-        for state in range(len(states)):
-            for action in range(len(actions)):
-                row = self._transitions[action, state]
-                for number, probability in sorted(row.items()):
-                    if probability <= 0:
-                        continue
-                    sensing = tuple(sorted(self._sensing[action, number].items()))
-                    after.append(number)
-                    chances.append(probability)
-                    sensings.append(known.setdefault(sensing, len(known)))
-                first.append(len(after))
-                rewards[state, action] = self._rewards.expected(action, state, row, self._sensing_of(action))
-        likelihoods = Ragged(
-            np.cumsum([0, *(len(row) for row in known)]),
-            np.array([number for row in known for number, _ in row], dtype=np.int64),
-            np.array([probability for row in known for _, probability in row]),
-        )
-        return ExplicitModel(
-            name=self._name,
-            discount=self._discount,
-            states=states,
-            actions=actions,
-            observations=self._names["observations"],
-            rewards=rewards,
-            outcomes=Ragged(np.array(first), np.array(after), np.array(chances)),
-            sensings=np.array(sensings),
-            likelihoods=likelihoods,
-            starts=self._starts(),
-        )
-
-    def _starts(self) -> tuple[StartBelief, ...]:
-        assert self._start is not None
-        if self._is_seen:
-            one = np.ones(1)
-            return tuple(
-                StartBelief(probability, np.array([state]), one)
-                for state, probability in sorted(self._start.items())
-            )
-        return (StartBelief(1.0, np.array(list(self._start)), np.array(list(self._start.values()))),)
-
-    def _sensing_of(self, action: int) -> Callable[[int], Distribution]:
-        return lambda state: self._sensing[action, state]
 
 
 def _put(row: Distribution, numbers: Sequence[int], value: float) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import msgspec
 
+from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_declarations, read_cpp_expression
 from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet, TemporaryVariable
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "assignment_blocks",
     "environment_blocks",
     "given_observation_blocks",
+    "read_block",
     "skill_blocks",
 ]
 
@@ -42,6 +44,13 @@ class Block(msgspec.Struct, frozen=True):
     names: Mapping[str, str] = {}
     constants: Mapping[str, str] = {}
     sets: str = ""
+
+
+def read_block(block: Block) -> Cpp:
+    """A block's snippet, read."""
+    if block.is_declarations:
+        return read_cpp_declarations(block.snippet.code)
+    return (read_cpp_expression if block.is_expression else read_cpp)(block.snippet.code)
 
 
 STATES = ("state", "state_", "state__", "state___")

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from aos_language.check.blocks import given_observation_blocks
-from aos_language.check.model_code import read_block
+from aos_language.check.blocks import given_observation_blocks, read_block
 from aos_language.findings import Findings
 from aos_language.local_types import local_type, local_type_text, reported_variables
 from aos_protocol.documents import AbstractionMapping, Environment, SkillModel

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from difflib import get_close_matches
 
-from aos_language.check.blocks import DYNAMIC, Block, assignment_blocks
-from aos_language.check.model_code import read_block
+from aos_language.check.blocks import DYNAMIC, Block, assignment_blocks, read_block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Mention

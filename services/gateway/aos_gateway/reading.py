@@ -1,26 +1,22 @@
-"""The resources that can be read: runs, missions, decisions, beliefs, activations, documents, pictures,
-logs.
-"""
+"""The resources that journals and the bus have: runs, missions, decisions, beliefs, activations."""
 
 from __future__ import annotations
 
 import asyncio
-import re
 from collections.abc import AsyncIterator
-from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
 
-from aos_deploy.run_directory import ProcessEnd, Summary
+from aos_deploy.run_directory import Summary
 from aos_gateway.documents import draws_state
 from aos_gateway.events import place_of, stream
-from aos_gateway.operations import Content
+from aos_gateway.run_files import number_of_step
 from aos_gateway.runs import KeptRun, RunEntry
 from aos_gateway.shared import Gateway
 from aos_gateway.trace import Trace, steps_of
 from aos_protocol import __version__
-from aos_protocol.errors import AosError, GatewayError, StorageError
+from aos_protocol.errors import AosError, GatewayError
 from aos_protocol.messages import (
     BeliefSummary,
     DecisionRecord,
@@ -37,24 +33,15 @@ __all__ = [
     "decisions",
     "events",
     "index",
-    "log",
     "mission",
     "missions",
-    "number_of_step",
-    "picture",
-    "pictures",
     "run",
     "runs",
-    "services",
     "trace",
 ]
 
 _PAGE = 1000
 _TRACE_RECORDS = 4000
-_LOG_BYTES = 200_000
-_SERVICE = re.compile(r"[A-Za-z0-9_-]{1,64}")
-"""A record that somebody has sent may name anything, and a log is named by its service."""
-_PICTURE = re.compile(r"(?:step-?)?0*(\d+)\.(png|jpg)")
 
 Since = Annotated[int, msgspec.Meta(ge=0, le=2**53, description="The first sequence number")]
 Limit = Annotated[int, msgspec.Meta(ge=1, le=_PAGE, description="The most that are given")]
@@ -140,27 +127,6 @@ class DecisionView(msgspec.Struct, frozen=True, omit_defaults=True):
     observed: DecisionRecord | None = None
 
 
-class Pictures(msgspec.Struct, frozen=True):
-    """The steps of which there is a picture."""
-
-    steps: tuple[int, ...]
-
-
-class ServiceView(msgspec.Struct, frozen=True):
-    """A process of a run: whether it is on the bus now, and the size of its log."""
-
-    service: str
-    pid: int
-    log_bytes: int
-
-
-class Services(msgspec.Struct, frozen=True):
-    """The processes of a run, and those that have ended by themselves."""
-
-    services: tuple[ServiceView, ...]
-    ends: tuple[ProcessEnd, ...]
-
-
 class Paging(msgspec.Struct, frozen=True):
     """The part of a long list that is wanted."""
 
@@ -187,12 +153,6 @@ class OfEvents(msgspec.Struct, frozen=True):
     since: Since = 0
 
 
-class OfLog(msgspec.Struct, frozen=True):
-    """The number of bytes from the end of a log."""
-
-    tail: Annotated[int, msgspec.Meta(ge=1, le=2_000_000)] = _LOG_BYTES
-
-
 async def index(gateway: Gateway) -> Index:
     """The version of the gateway."""
     return Index(__version__)
@@ -207,25 +167,6 @@ async def runs(gateway: Gateway, query: Newest) -> Runs:
 async def run(gateway: Gateway, run: str) -> RunEntry:
     """One run."""
     return await gateway.shelf.run(run).entry()
-
-
-async def services(gateway: Gateway, run: str) -> Services:
-    """The processes of a run."""
-    found = _kept(gateway, run)
-    summary = found.directory.read_summary()
-    views = tuple(
-        ServiceView(name, pid, _size_of(found, name))
-        for name, pid in found.directory.read_record().pids.items()
-    )
-    return Services(views, summary.process_ends if summary is not None else ())
-
-
-async def log(gateway: Gateway, run: str, service: str, query: OfLog) -> Content:
-    """The end of a service's log, as text."""
-    found = _kept(gateway, run)
-    if not _SERVICE.fullmatch(service) or service not in found.directory.read_record().pids:
-        raise GatewayError(f"the run {run} has no service {service}", code="AOS902")
-    return Content(await asyncio.to_thread(_tail, found, service, query.tail), "text/plain; charset=utf-8")
 
 
 async def missions(gateway: Gateway, query: Newest) -> MissionList:
@@ -328,22 +269,6 @@ async def trace(gateway: Gateway, mission: str, query: OfTrace) -> Trace:
     return made
 
 
-async def pictures(gateway: Gateway, mission: str) -> Pictures:
-    """The steps of which the world has left a picture."""
-    found = await gateway.shelf.run_of_mission(mission)
-    return Pictures(tuple(_pictures(found)) if isinstance(found, KeptRun) else ())
-
-
-async def picture(gateway: Gateway, mission: str, step: str) -> Content:
-    """The picture of the world at a step."""
-    found = await gateway.shelf.run_of_mission(mission)
-    path = _pictures(found).get(number_of_step(step)) if isinstance(found, KeptRun) else None
-    if path is None:
-        raise GatewayError(f"there is no picture of step {step}", code="AOS902")
-    media = "image/png" if path.suffix == ".png" else "image/jpeg"
-    return Content(await asyncio.to_thread(_bytes_of, path), media)
-
-
 async def events(gateway: Gateway, query: OfEvents, last_event_id: str) -> AsyncIterator[bytes]:
     """The event stream: decisions, states, progress, bundles and services of a mission's system, and the
     runs.
@@ -354,53 +279,3 @@ async def events(gateway: Gateway, query: OfEvents, last_event_id: str) -> Async
         since = max(since, seen)
     found = await gateway.shelf.run_of_mission(mission) if mission else None
     return stream(gateway.shelf, gateway.watches, found, mission, since)
-
-
-def _kept(gateway: Gateway, name: str) -> KeptRun:
-    found = gateway.shelf.run(name)
-    if not isinstance(found, KeptRun):
-        raise GatewayError(f"the run {name} has no directory on this machine", code="AOS902")
-    return found
-
-
-def number_of_step(step: str) -> int:
-    """The number in a path; GatewayError AOS901 if it is none."""
-    if not (step.isascii() and step.isdigit() and len(step) < 16):
-        raise GatewayError(f"{step} is no number of a step", code="AOS901")
-    return int(step)
-
-
-def _size_of(found: KeptRun, service: str) -> int:
-    path = found.directory.log(service)
-    return path.stat().st_size if path.exists() else 0
-
-
-def _tail(found: KeptRun, service: str, size_bytes: int) -> bytes:
-    path = found.directory.log(service)
-    if not path.exists():
-        return b""
-    try:
-        with path.open("rb") as file:
-            file.seek(max(0, path.stat().st_size - size_bytes))
-            return file.read(size_bytes)
-    except OSError as error:
-        raise _unreadable(path, error) from error
-
-
-def _bytes_of(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise _unreadable(path, error) from error
-
-
-def _unreadable(path: Path, error: OSError) -> StorageError:
-    return StorageError(f"{path} cannot be read: {error.strerror}", code="AOS702")
-
-
-def _pictures(found: KeptRun) -> dict[int, Any]:
-    folder = found.directory.path / "pictures"
-    if not folder.is_dir():
-        return {}
-    named = ((_PICTURE.fullmatch(path.name), path) for path in sorted(folder.iterdir()))
-    return {int(match[1]): path for match, path in named if match}

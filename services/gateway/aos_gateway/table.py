@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aos_gateway import documents, reading, study, writing
+from aos_gateway import documents, reading, run_files, study, writing
 from aos_gateway.operations import Operation, operation
 from aos_gateway.state_picture import state_picture
 
@@ -18,8 +18,8 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/runs", reading.runs),
     operation("POST", "/v1/runs", writing.start, status=201),
     operation("GET", "/v1/runs/{run}", reading.run),
-    operation("GET", "/v1/runs/{run}/services", reading.services),
-    operation("GET", "/v1/runs/{run}/logs/{service}", reading.log, media="text/plain"),
+    operation("GET", "/v1/runs/{run}/services", run_files.services),
+    operation("GET", "/v1/runs/{run}/logs/{service}", run_files.log, media="text/plain"),
     operation("GET", "/v1/runs/{run}/bundles", documents.bundles),
     operation("POST", "/v1/runs/{run}/bundles", writing.push, upload=_ARCHIVE),
     operation("POST", "/v1/runs/{run}/missions", writing.start_next, status=201),
@@ -32,8 +32,8 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/missions/{mission}/decisions/{step}", reading.decision),
     operation("GET", "/v1/missions/{mission}/beliefs", reading.beliefs),
     operation("GET", "/v1/missions/{mission}/activations", reading.activations),
-    operation("GET", "/v1/missions/{mission}/world", reading.pictures),
-    operation("GET", "/v1/missions/{mission}/world/{step}", reading.picture, media="image/png"),
+    operation("GET", "/v1/missions/{mission}/world", run_files.pictures),
+    operation("GET", "/v1/missions/{mission}/world/{step}", run_files.picture, media="image/png"),
     operation("GET", "/v1/missions/{mission}/documents", documents.documents),
     operation("GET", "/v1/missions/{mission}/decisions/{step}/why", study.why),
     operation("GET", "/v1/missions/{mission}/decisions/{step}/tree", study.tree),
