@@ -1,4 +1,4 @@
-"""From the tables of a `.pomdp` file to a model in which outcomes share equal observations."""
+"""The model that the tables of a `.pomdp` file say, in which outcomes share equal observations."""
 
 from __future__ import annotations
 
