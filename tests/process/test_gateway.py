@@ -7,6 +7,8 @@ import json
 import os
 import re
 import signal
+import subprocess
+import sys
 import zipfile
 from http.client import HTTPConnection
 from pathlib import Path
@@ -14,7 +16,7 @@ from typing import Any
 
 import pytest
 from gateway import Gateway, gateway, played, worn_system
-from processes import HANG_S
+from processes import COMMAND_S, HANG_S
 
 from aos_deploy.export.run_bundle import write_bundle
 
@@ -142,6 +144,18 @@ def test_a_past_mission_is_streamed_from_a_record_on_with_its_end(past: tuple[Ga
     assert [event_id for event_id, _, _ in told] == [
         f"{name}:{number}" for number in (count - 1, count, count)
     ]
+
+
+def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, str], root: Path) -> None:
+    served, name = past
+    example = [sys.executable, root / "docs/examples/follow_events.py", f"http://127.0.0.1:{served.port}"]
+    with_token = os.environ | {"TOKEN": served.token}
+    told = subprocess.run(example, env=with_token, capture_output=True, text=True, timeout=COMMAND_S).stdout
+    records = served.ask(f"/v1/missions/{name}/decisions").json["records"]
+    response = records[1]["outcome"]["response"]
+    assert told.splitlines()[:2] == [f"step 1: {records[0]['action']}", f"step 1: {response}"]
+    assert told.splitlines()[-1] == "ended: goal"
+    assert served.ask("/v1/missions/latest/decisions").json["records"] == records
 
 
 def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]) -> None:

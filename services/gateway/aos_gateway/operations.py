@@ -90,6 +90,8 @@ def route_of(one: Operation, gateway: Gateway) -> Route:
     async def answer(request: Request) -> Response:
         try:
             given: dict[str, Any] = dict(request.path_params)
+            if "mission" in given:
+                given["mission"] = await gateway.shelf.named(given["mission"])
             if one.query is not None:
                 given["query"] = _structure(dict(request.query_params), one.query)
             if one.body is not None:

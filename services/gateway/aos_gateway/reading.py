@@ -273,7 +273,7 @@ async def events(gateway: Gateway, query: OfEvents, last_event_id: str) -> Async
     """The event stream: decisions, states, progress, bundles and services of a mission's system, and the
     runs.
     """
-    mission, since = query.mission, query.since
+    mission, since = await gateway.shelf.named(query.mission), query.since
     seen_mission, seen = place_of(last_event_id)
     if seen_mission == mission:
         since = max(since, seen)

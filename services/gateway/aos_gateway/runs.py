@@ -28,6 +28,7 @@ from aos_solver.mission.logbook import JOURNAL, entries_of
 
 __all__ = ["KeptRun", "RemoteRun", "Run", "RunEntry", "RunShelf"]
 
+LATEST = "latest"
 _ANSWER_S = 5.0
 _FRESH_S = 0.8
 _LOOK_S = 0.5
@@ -329,6 +330,15 @@ class RunShelf:
         if found is None:
             raise GatewayError(f"there is no run {name}", code="AOS902", hint="GET /v1/runs lists them")
         return found
+
+    async def named(self, mission: str) -> str:
+        """The mission's name: of `latest` that of the newest; GatewayError AOS902 where there is none."""
+        if mission != LATEST:
+            return mission
+        names = [entry.missions[-1] for entry in await self.entries() if entry.missions]
+        if not names:
+            raise GatewayError("there is no mission yet", code="AOS902", hint="POST /v1/runs starts one")
+        return max(names)  # They begin with the time in UTC.
 
     async def run_of_mission(self, mission: str) -> Run:
         """The run of a mission; GatewayError AOS902 if there is none."""

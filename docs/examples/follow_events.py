@@ -1,0 +1,35 @@
+"""Follows the decisions of a mission over HTTP, with nothing but Python's standard library.
+
+TOKEN=... python docs/examples/follow_events.py [ADDRESS] [MISSION]
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from urllib.request import Request, urlopen
+
+
+def main(address: str = "http://127.0.0.1:7480", mission: str = "latest") -> None:
+    request = Request(f"{address}/v1/events?mission={mission}")
+    request.add_header("Authorization", f"Bearer {os.environ['TOKEN']}")
+    kind = ""
+    with urlopen(request) as stream:
+        for raw in stream:
+            name, _, text = raw.decode().rstrip("\n").partition(": ")
+            if name == "event":
+                kind = text
+            elif name == "data" and kind == "decision":
+                record = json.loads(text)["record"]
+                if "outcome" in record:
+                    print(f"step {record['step']}: {record['outcome'].get('response')}", flush=True)
+                else:
+                    print(f"step {record['step']}: {record['action']}", flush=True)
+            elif name == "data" and kind == "state" and json.loads(text)["phase"] == "ended":
+                print(f"ended: {json.loads(text)['ending']}")
+                return
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
