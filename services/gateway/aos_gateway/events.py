@@ -93,6 +93,8 @@ async def _past(run: Run, mission: str, since: int) -> AsyncIterator[Frame]:
         for record in page.records:
             yield frame_of_record(record, rows)
             since = record.sequence + 1
+            # Others have their turn, and a client that has left is noticed before all is written to nobody.
+            await asyncio.sleep(0)
         has_more = page.has_more
 
 
