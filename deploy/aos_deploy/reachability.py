@@ -26,9 +26,9 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     """Looks at the states that the actions can lead to from the initial belief, for a few seconds at most.
 
     What is missing is a warning where all states were looked at. Where there are more, a missing goal is a
-    remark with the search's extent, and nothing is said of preconditions. Nothing is said where the initial
-    belief cannot be enumerated. Where not all is looked at, random actions are tried as well. A fault of
-    model code on the way is an error at its place.
+    remark with the search's extent if that is at least the horizon, and nothing is said of preconditions.
+    Nothing is said where the initial belief cannot be enumerated. Where not all is looked at, random actions
+    are tried as well. A fault of model code on the way is an error at its place.
     """
     try:
         engine = await Engine.start(built, seed=1)
@@ -47,10 +47,12 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         return ()
     findings = Findings()
     is_whole = not reach.limit
-    tell = findings.warning if is_whole else findings.remark
     goal = _goal_span(project.environment)
-    if goal is not None and not reach.has_goal and (is_whole or reach.depth > 0):
-        tell("AOS132", "no action leads to a goal", goal, _extent(reach))
+    if goal is not None and not reach.has_goal:
+        if is_whole:
+            findings.warning("AOS132", "no action leads to a goal", goal, _extent(reach))
+        elif reach.depth >= project.environment.horizon:
+            findings.remark("AOS132", "no goal was found", goal, _extent(reach))
     for skill in project.skills if is_whole else ():
         actions = [action for action in reach.actions if action.skill == skill.name]
         unmet = [action.name for action in actions if not action.is_met]

@@ -263,6 +263,13 @@ def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(
     assert hint.startswith("Looked at 1")
 
 
+def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(
+    app: typer.Typer, hall: Callable[..., Path]
+) -> None:
+    widens = "state__.place = state.place * 400 + AOS.SampleDiscrete(vector<double>(400, 0.0025));"
+    assert linted(app, hall(widens, goal="64000000", door="-1")) == {}
+
+
 def test_an_initial_belief_that_cannot_be_enumerated_is_no_reason_for_remarks(
     app: typer.Typer, hall: Callable[..., Path]
 ) -> None:
