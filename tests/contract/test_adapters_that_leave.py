@@ -5,16 +5,15 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
-import sys
 from pathlib import Path
 
-import msgspec
 import pytest
+from adapter_process import started_adapter
 from middleware_system import System
 from processes import HANG_S
 
 from aos_protocol.messages import MissionQuery, MissionState
-from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.adapters import Binding
 from aos_runtime.children import Child
 
 ROBOT = "async def sense(call):\n    return {}\n"
@@ -23,18 +22,15 @@ ROBOT = "async def sense(call):\n    return {}\n"
 async def launch(system: System, endpoint: str, folder: Path, robot: str = ROBOT) -> Child:
     """An adapter process that serves /sense."""
     (folder / "robot.py").write_text(robot)
-    values = AdapterSettings(
-        robot=system.keys.robot,
-        service="python",
-        endpoint=endpoint,
-        run_dir=str(folder),
+    return await started_adapter(
+        system.keys,
+        endpoint,
+        folder,
+        "python",
         adapter="aos_skills.python_functions:PythonAdapter",
         folder=str(folder),
         bind={"/sense": Binding(target="robot.py:sense")},
     )
-    path = folder / "python.json"
-    path.write_bytes(msgspec.json.encode(values))
-    return await Child.start([sys.executable, "-m", "aos_runtime.adapters", str(path)])
 
 
 @pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])

@@ -4,28 +4,25 @@ from __future__ import annotations
 
 import asyncio
 import os
-import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 import pytest_asyncio
+from adapter_process import AdapterProcess
 from processes import HANG_S
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     ActivationId,
-    Cancel,
-    Cancelled,
     SkillCall,
     SkillProgress,
     SkillResult,
     TopicMessage,
 )
-from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.adapters import Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 
@@ -110,34 +107,18 @@ class Arm:
 """
 
 
-class Robot:
-    """A process with the adapter, and how the middleware speaks to it."""
-
-    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path) -> None:
-        self.bus = bus
-        self.keys = keys
-        self.endpoint = endpoint
-        self.folder = folder
-        self.child: Child | None = None
-        (folder / "robot.py").write_text(ROBOT)
+class Robot(AdapterProcess):
+    """Skills of `robot.py`, by their paths."""
 
     async def launch(self, **bound: str) -> Child:
-        values = AdapterSettings(
-            robot=self.keys.robot,
-            service="python",
-            endpoint=self.endpoint,
-            run_dir=str(self.folder),
+        (self.folder / "robot.py").write_text(ROBOT)
+        return await self.launched(
+            "python",
             adapter="aos_skills.python_functions:PythonAdapter",
             folder=str(self.folder),
             bind={f"/{path}": Binding(target=target) for path, target in bound.items()},
             cancel_s=0.5,
         )
-        path = self.folder / "python.json"
-        path.write_bytes(msgspec.json.encode(values))
-        with (self.folder / "python.log").open("ab") as log:
-            argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
-            self.child = await Child.start(argv, stderr=log)
-        return self.child
 
     async def start(self, **bound: str) -> None:
         await self.launch(**bound)
@@ -151,11 +132,7 @@ class Robot:
                     return
 
     async def call(self, path: str, step: int = 1, **fields: Any) -> SkillResult:
-        call = SkillCall(ActivationId("m", step), path, fields, 20.0)
-        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
-
-    async def cancel(self, path: str) -> Cancelled:
-        return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=HANG_S)
+        return await self.ask(SkillCall(ActivationId("m", step), path, fields, 20.0))
 
     async def refusal(self, path: str, step: int = 1, **fields: Any) -> AosError:
         with pytest.raises(AosError) as error:
@@ -169,8 +146,7 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIte
     try:
         yield robot
     finally:
-        if robot.child is not None:
-            await robot.child.stop(5.0)
+        await robot.stop()
 
 
 async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: Robot) -> None:

@@ -9,15 +9,14 @@ import asyncio
 import importlib.util
 import itertools
 import random
-import sys
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 import pytest_asyncio
+from adapter_process import AdapterProcess
 from processes import HANG_S
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
@@ -29,8 +28,6 @@ from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     ActivationId,
-    Cancel,
-    Cancelled,
     ProjectQuery,
     ProjectRevision,
     SkillCall,
@@ -38,9 +35,8 @@ from aos_protocol.messages import (
     SkillResult,
     TopicMessage,
 )
-from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.adapters import Binding
 from aos_runtime.bus import Bus
-from aos_runtime.children import Child
 from aos_skills.ros.node import RosNode
 from aos_skills.ros.types import RosTypes
 
@@ -88,33 +84,18 @@ response_rule: True
 }
 
 
-class Lab:
-    """An adapter's process, the robot behind it, and how the middleware speaks to it."""
+class Lab(AdapterProcess):
+    """An adapter's process and the robot behind it."""
 
-    def __init__(self, bus: Bus, keys: Keys, robot: RosNode, folder: Path) -> None:
-        self.bus = bus
-        self.keys = keys
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, robot: RosNode) -> None:
+        super().__init__(bus, keys, endpoint, folder)
         self.robot = robot
-        self.folder = folder
-        self.child: Child | None = None
 
-    async def start(self, endpoint: str, adapter: str, options: dict[str, Any], **settings: Any) -> None:
-        values = AdapterSettings(
-            robot=self.keys.robot,
-            service="robot",
-            endpoint=endpoint,
-            run_dir=str(self.folder),
-            folder=str(INTERFACES.parent),
-            project="lab",
-            adapter=adapter,
-            options=options,
-            **settings,
+    async def start(self, adapter: str, options: dict[str, Any], **settings: Any) -> None:
+        folder = str(INTERFACES.parent)
+        await self.launched(
+            "robot", folder=folder, project="lab", adapter=adapter, options=options, **settings
         )
-        path = self.folder / "robot.json"
-        path.write_bytes(msgspec.json.encode(values))
-        with (self.folder / "robot.log").open("ab") as log:
-            argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
-            self.child = await Child.start(argv, stderr=log)
 
     async def until_served(self, path: str) -> None:
         async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_serve) as present:
@@ -123,8 +104,7 @@ class Lab:
                     return
 
     async def call(self, path: str, fields: dict[str, Any], step: int, limit_s: float = 10.0) -> SkillResult:
-        call = SkillCall(ActivationId("m", step), path, fields, limit_s)
-        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
+        return await self.ask(SkillCall(ActivationId("m", step), path, fields, limit_s))
 
 
 KINDS = {
@@ -174,9 +154,8 @@ async def lab(
 ) -> AsyncIterator[Lab]:
     """The robot, and the adapter to it."""
     robot, options = await robot_of(request.param, request, endpoint)
-    lab = Lab(bus, keys, robot, tmp_path)
+    lab = Lab(bus, keys, endpoint, tmp_path, robot)
     await lab.start(
-        endpoint,
         KINDS[request.param][0],
         options | {"interfaces": ["interfaces"]},
         bind={
@@ -189,8 +168,7 @@ async def lab(
     try:
         yield lab
     finally:
-        if lab.child is not None:
-            await lab.child.stop(10.0)
+        await lab.stop()
         await robot.close()
 
 
@@ -247,10 +225,7 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
                 if state.state == "executing" and state.text:
                     assert state.text == '{"sequence": [0, 1, 2]}'
                     break
-        cancelled = await lab.bus.ask(
-            lab.keys.cancel("/count"), Cancel("enough"), Cancelled, timeout_s=HANG_S
-        )
-        assert cancelled.ids == ("m-1",)
+        assert (await lab.cancel("/count")).ids == ("m-1",)
         with pytest.raises(AosError) as raised:
             await running
         assert raised.value.code == "AOS507"
@@ -298,15 +273,14 @@ async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_
     kind: str, path: str, request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
 ) -> None:
     robot, options = await robot_of(kind, request, endpoint)
-    lab = Lab(bus, keys, robot, tmp_path)
+    lab = Lab(bus, keys, endpoint, tmp_path, robot)
     try:
-        await lab.start(endpoint, KINDS[kind][0], options, bind={path: Binding()})
+        await lab.start(KINDS[kind][0], options, bind={path: Binding()})
         assert lab.child is not None
         assert await asyncio.wait_for(lab.child.wait(), HANG_S) != 0
     finally:
         await robot.close()
-        if lab.child is not None:
-            await lab.child.stop(10.0)
+        await lab.stop()
     log = (tmp_path / "robot.log").read_text()
     file = "srv/AddTwoInts.srv" if path == "/lab/add" else "action/Fibonacci.action"
     assert "AOS806" in log
@@ -317,7 +291,7 @@ async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
     request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
 ) -> None:
     robot, options = await robot_of("ros2", request, endpoint)
-    lab = Lab(bus, keys, robot, tmp_path)
+    lab = Lab(bus, keys, endpoint, tmp_path, robot)
     asked = asyncio.Event()
 
     async def never(_: dict[str, Any]) -> dict[str, Any]:
@@ -328,15 +302,14 @@ async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
     robot.serve("/lab/mute/_action/send_goal", f"{FIBONACCI}_SendGoal", never)
     options["interfaces"] = ["interfaces"]
     try:
-        await lab.start(endpoint, KINDS["ros2"][0], options, bind={"/lab/mute": Binding()})
+        await lab.start(KINDS["ros2"][0], options, bind={"/lab/mute": Binding()})
         await lab.until_served("/lab/mute")
         running = asyncio.create_task(lab.call("/lab/mute", {"order": 1}, 1))
         await asyncio.wait_for(asked.wait(), HANG_S)
-        await bus.ask(keys.cancel("/lab/mute"), Cancel("enough"), Cancelled, timeout_s=HANG_S)
+        await lab.cancel("/lab/mute")
         with pytest.raises(AosError, match="was to be cancelled, and its node does not answer") as raised:
             await running
         assert raised.value.code == "AOS504"
     finally:
-        if lab.child is not None:
-            await lab.child.stop(10.0)
+        await lab.stop()
         await robot.close()

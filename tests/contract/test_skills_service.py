@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 import pytest_asyncio
+from adapter_process import AdapterProcess
 from processes import HANG_S
 from starting import until_present
 
@@ -18,15 +17,13 @@ from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     ActivationId,
-    Cancel,
-    Cancelled,
     MissionQuery,
     MissionState,
     SkillCall,
     SkillResult,
     TopicMessage,
 )
-from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.adapters import Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 
@@ -36,33 +33,18 @@ ALL_PATHS = {path: Binding() for path in ("/navigate", "/pick", "/sense", "/serv
 FAR_AWAY = {"x": 4.0, "y": 0.0, "yaw": 0.0}
 
 
-class Robot:
-    """A skills process, and how the middleware speaks to it."""
+class Robot(AdapterProcess):
+    """The simulated robot."""
 
-    def __init__(self, bus: Bus, keys: Keys, endpoint: str, run_dir: Path, world: Path) -> None:
-        self.bus = bus
-        self.keys = keys
-        self.endpoint = endpoint
-        self.run_dir = run_dir
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, world: Path) -> None:
+        super().__init__(bus, keys, endpoint, folder)
         self.world = world
-        self.child: Child | None = None
 
     async def launch(self, **settings: Any) -> Child:
         """Starts the process."""
-        values = AdapterSettings(
-            robot=self.keys.robot,
-            service="pybullet",
-            endpoint=self.endpoint,
-            run_dir=str(self.run_dir),
-            adapter="aos_skills.pybullet.adapter:PybulletAdapter",
-            **({"bind": ALL_PATHS, "options": {"world": str(self.world)}} | settings),
-        )
-        path = self.run_dir / "pybullet.json"
-        path.write_bytes(msgspec.json.encode(values))
-        with (self.run_dir / "pybullet.log").open("ab") as log:
-            argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
-            self.child = await Child.start(argv, stderr=log)
-        return self.child
+        shipped = {"bind": ALL_PATHS, "options": {"world": str(self.world)}}
+        adapter = "aos_skills.pybullet.adapter:PybulletAdapter"
+        return await self.launched("pybullet", adapter=adapter, **(shipped | settings))
 
     async def start(self) -> None:
         """Starts the process; returns when it answers."""
@@ -78,8 +60,7 @@ class Robot:
         epoch: int = 1,
         limit_s: float = 60.0,
     ) -> SkillResult:
-        call = SkillCall(ActivationId("m", step), path, fields or {}, limit_s, epoch=epoch)
-        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
+        return await self.ask(SkillCall(ActivationId("m", step), path, fields or {}, limit_s, epoch=epoch))
 
     async def refusal(
         self, path: str, step: int = 1, fields: dict[str, Any] | None = None, **how: Any
@@ -107,8 +88,7 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path)
     try:
         yield robot
     finally:
-        if robot.child is not None:
-            await robot.child.stop(10.0)
+        await robot.stop()
 
 
 async def test_a_call_is_answered_with_its_fields_and_what_was_published(robot: Robot) -> None:
@@ -129,8 +109,7 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> N
     refused = await robot.refusal("/pick", 2)
     assert refused.code == "AOS502"
     assert "/navigate is running" in str(refused)
-    answer = await robot.bus.ask(robot.keys.cancel("/pick"), Cancel("enough"), Cancelled, timeout_s=HANG_S)
-    assert answer.ids == ("m-1",)
+    assert (await robot.cancel("/pick")).ids == ("m-1",)
     assert (await driving).code == "AOS507"
     # It can move again, and what was refused never ran.
     assert "gap_m" in (await robot.call("/sense", 3)).fields
@@ -168,7 +147,7 @@ async def test_a_stopped_world_leaves_the_animated_picture_of_its_mission(robot:
     await robot.call("/sense")
     assert robot.child is not None
     await robot.child.stop(HANG_S)
-    assert (robot.run_dir / "mission.gif").stat().st_size > 0
+    assert (robot.folder / "mission.gif").stat().st_size > 0
 
 
 async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(robot: Robot) -> None:
@@ -199,7 +178,7 @@ async def test_what_cannot_be_bound_ends_the_service_with_one_message(
     child = await robot.launch(**settings)
     async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1
-    assert message in (robot.run_dir / "pybullet.log").read_text()
+    assert message in (robot.folder / "pybullet.log").read_text()
 
 
 async def _first(messages: Any, count: int) -> AsyncIterator[Any]:

@@ -107,14 +107,7 @@ if (!AOS.Bernoulli({_TRUE})) told = 1 + (told + AOSUtils::SampleDiscrete(vector<
 __moduleResponse = told == 1 ? room1 : told == 2 ? room2 : told == 3 ? room3 : told == 4 ? room4
     : told == 5 ? room5 : told == 6 ? room6 : room7;"""
     writer.skill("ask", [f"room{room}" for room in range(1, _ROOMS)], ask, over=what)
-    charge = f"""__reward = -0.5;
-if (state.at == 0) {{
-    state__.battery = {_BATTERY};
-    __moduleResponse = charged;
-}} else {{
-    __moduleResponse = refused;
-}}"""
-    writer.skill("charge", ["charged", "refused"], charge)
+    writer.charger(_BATTERY)
     return writer.files
 
 

@@ -106,14 +106,7 @@ __moduleResponse = AOS.Bernoulli(odds) ? voice : silence;"""
 for (int i = 0; i < 2; i++) if (state.person[i] == state.at) state__.is_helped[i] = true;
 __moduleResponse = is_here ? helped : nobody;"""
     writer.skill("assist", ["helped", "nobody"], assist)
-    charge = f"""__reward = -0.5;
-if (state.at == 0) {{
-    state__.battery = {_BATTERY};
-    __moduleResponse = charged;
-}} else {{
-    __moduleResponse = refused;
-}}"""
-    writer.skill("charge", ["charged", "refused"], charge)
+    writer.charger(_BATTERY)
     return writer.files
 
 

@@ -59,3 +59,14 @@ class BundleWriter:
         )
         self.files[f"{name}.sd"] = f"project: {self.project}\n{values}\n{listed}\ndynamic_model:\n{model}\n"
         self.files[f"{name}.am"] = _mapping(self.project, name, list(over), responses, numbers or [])
+
+    def charger(self, battery: int) -> None:
+        """A skill that fills the battery where `at` is 0."""
+        model = f"""__reward = -0.5;
+if (state.at == 0) {{
+    state__.battery = {battery};
+    __moduleResponse = charged;
+}} else {{
+    __moduleResponse = refused;
+}}"""
+        self.skill("charge", ["charged", "refused"], model)
