@@ -266,14 +266,24 @@ class Supervisor:
 
     async def _kill_if_frozen(self, running: RunningProgram) -> None:
         child, router = running.child, self._running[ROUTER.name]
-        await asyncio.sleep(FROZEN_S)
-        # Without a router nobody is heard, and with a new one not at once.
-        if self._clock.monotonic_s() - router.started_s < 2 * FROZEN_S:
+        is_routed = False
+        while not is_routed:
             await asyncio.sleep(FROZEN_S)
+            # Without a router nobody is heard, and with a new one not at once.
+            if self._clock.monotonic_s() - router.started_s < 2 * FROZEN_S:
+                await asyncio.sleep(FROZEN_S)
+            is_routed = self.bus.is_routed
+            if not is_routed and router.is_ready:
+                self._kill_frozen(router)  # We are not heard either: those behind it may be well.
         running.silence = None
-        if running.child is child and child.returncode is None and router.is_ready:
+        if running.child is child and router.is_ready:
+            self._kill_frozen(running)
+
+    def _kill_frozen(self, running: RunningProgram) -> None:
+        if running.child.returncode is None:
+            running.is_ready = False
             self._changed(running.program.name, "frozen", f"silent for {FROZEN_S:g} s; it is killed")
-            child.kill()
+            running.child.kill()
 
     def _is_ready(self, running: RunningProgram, state: str = "ready") -> None:
         if running.silence is not None:

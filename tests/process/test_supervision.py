@@ -126,6 +126,19 @@ async def test_a_frozen_service_is_killed_and_started_again(system: System) -> N
         await system.until("solver", "ready", times=2)
 
 
+async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: System) -> None:
+    services = (small("solver", is_restarted=True), small("registry", is_restarted=True))
+    async with asyncio.timeout(HANG_S), system.up(*services) as supervisor:
+        await supervisor.until_ready()
+        before = supervisor.pids
+        os.kill(before["router"], signal.SIGSTOP)
+        await system.until("router", "frozen")
+        for name in ("router", "solver", "registry"):
+            await system.until(name, "ready", times=2)
+        assert [end.name for end in system.ends] == ["router"]
+        assert {name for name, pid in supervisor.pids.items() if before[name] != pid} == {"router"}
+
+
 async def test_a_service_that_ends_again_and_again_ends_the_system_with_the_count(system: System) -> None:
     async def work() -> None:
         async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
