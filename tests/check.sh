@@ -2,7 +2,7 @@
 # Every check of the project, the quick ones first, the tests last. Exit code 0 means that all of them passed.
 #
 #   tests/check.sh             all of them
-#   tests/check.sh --quick     without the tests that start whole systems (tests/process)
+#   tests/check.sh --quick     without whole systems (tests/process), simulated worlds, robots that speak ROS, and kills
 #   tests/check.sh ARGUMENTS   arguments go to pytest
 set -u
 cd "$(dirname "$0")/.." || exit 2
@@ -52,7 +52,7 @@ case ${1:-} in
     '') set -- $spread ;;
     --quick)
         shift
-        set -- $spread tests/unit tests/golden tests/contract "$@"
+        set -- $spread -m "not physics and not slow" tests/unit tests/golden tests/contract "$@"
         ;;
 esac
 printf '== tests: %s\n' "$BIN/pytest $*"

@@ -18,6 +18,8 @@ from aos_protocol.errors import BusError
 from aos_skills.dds.node import DdsNode
 from aos_skills.ros.types import RosTypes
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 HEADER = Path("/usr/include/fastdds/dds/domain/DomainParticipant.hpp")
 

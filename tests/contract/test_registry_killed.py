@@ -17,6 +17,8 @@ from aos_protocol.messages import BundleReport
 from aos_registry.catalogue import Catalogue, Revision
 from aos_runtime.bus import Bus
 
+pytestmark = pytest.mark.slow
+
 SEED = 20261121
 KILLS = 12
 PUSHES_BEFORE_KILL = 4

@@ -17,6 +17,8 @@ from aos_runtime.children import Child, guarded
 from aos_skills.ros.node import ActionRequest, ServiceRequest
 from aos_skills.ros1.node import Ros1Node
 
+pytestmark = pytest.mark.slow
+
 ROBOT = Path(__file__).resolve().parents[1] / "ros1_robot.py"
 WITHOUT_ROS = ROBOT.parent / "data" / "python_without_ros.sh"
 TEST = "actionlib/action/Test"

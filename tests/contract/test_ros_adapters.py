@@ -40,6 +40,8 @@ from aos_runtime.bus import Bus
 from aos_skills.ros.node import RosNode
 from aos_skills.ros.types import RosTypes
 
+pytestmark = pytest.mark.slow
+
 INTERFACES = Path(__file__).resolve().parents[1] / "data" / "interfaces"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 
