@@ -50,6 +50,8 @@ _COMMANDS = {
 """The modules, in the order of the help, with the names that each registers. They are named here and not
 imported: laboratory, editor and gateway are above this package."""
 
+_UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+
 _STYLE: dict[str, Any] = {
     "pretty_exceptions_enable": False,
     # Rich would keep the line breaks of the docstrings, and takes a fifth of a second to import.
@@ -119,7 +121,7 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
     except AosError as error:
         _end(name, error)
     except OSError as error:
-        if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+        if error.errno not in _UNWRITABLE:
             raise
         sys.stderr.write(f"{name}: {error.filename or 'the output'} cannot be written: {error.strerror}\n")
         sys.stderr.flush()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,15 @@ def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path,
     assert isinstance(run(app, "solve", tmp_path / "none.pomdp").exception, DocumentError)
     few = run(app, "solve", tiger, "--states", "1").exception
     assert "has 2 states, more than 1" in str(few)
+
+
+def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
+    app: typer.Typer, tiger: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.access", lambda path, mode: mode != os.W_OK)  # Root may write everywhere.
+    result = run(app, "solve", tiger, "--out", tmp_path / "tiger.policy")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "cannot be written" in result.output
 
 
 def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_printed(

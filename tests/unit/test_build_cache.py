@@ -14,7 +14,9 @@ from pathlib import Path
 import pytest
 from processes import HANG_S
 
+from aos_protocol.errors import StorageError
 from aos_solver.building.build_cache import BuildCache
+from aos_solver.building.compiler_run import internal_error
 
 HOLDER = """
 import asyncio, sys
@@ -114,6 +116,12 @@ async def test_who_waits_for_a_failure_tries_by_itself(tmp_path: Path) -> None:
     assert (entry / "part").exists()
 
 
+async def test_a_cache_that_cannot_be_written_is_told_with_the_way_to_another(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder can be here")
+    with pytest.raises(StorageError, match=r"cannot be written: .*AOS_CACHE_DIR"):
+        await BuildCache(tmp_path / "file" / "cache").fill("model-1", make)
+
+
 async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path: Path) -> None:
     async def make_large(staging: Path) -> None:
         (staging / "headers").mkdir()
@@ -137,3 +145,9 @@ async def test_what_may_be_running_stays_though_the_cache_is_too_large(tmp_path:
     for name in ("model-a", "model-b", "model-c"):
         await BuildCache(tmp_path, size_bytes=1).fill(name, make)
     assert len(names(tmp_path)) == 3
+
+
+def test_a_disk_that_is_full_is_no_mistake_in_documents_or_engine() -> None:
+    said = "engine.cpp: fatal error: error writing to /tmp/ccA.s: No space left on device"
+    error = internal_error("the engine", said, 1, Path("engine.cpp"))
+    assert (error.code, error.message) == ("AOS701", "the engine cannot be compiled: No space left on device")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import math
+import os
 import shutil
 import signal
 import subprocess
@@ -181,6 +182,8 @@ def _check_folders(files: Mapping[str, Path | None]) -> None:
             raise typer.BadParameter(f"there is no folder {path.parent}", param_hint=option)
         if path is not None and path.is_dir():
             raise typer.BadParameter(f"{path} is a folder", param_hint=option)
+        if path is not None and not os.access(path if path.exists() else path.parent, os.W_OK):
+            raise typer.BadParameter(f"{path} cannot be written", param_hint=option)
 
 
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:

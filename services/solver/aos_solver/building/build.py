@@ -21,7 +21,7 @@ from typing import Any, Literal
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity
-from aos_protocol.errors import ModelError
+from aos_protocol.errors import AosError, ModelError
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_messages import read_messages, without_line_directives
@@ -331,7 +331,7 @@ class _Build(msgspec.Struct, frozen=True):
             reads=reads,
         )
 
-    def _failure(self, output: str, status: int) -> ModelError:
+    def _failure(self, output: str, status: int) -> AosError:
         project = self.emitted.project
         report = read_messages(output, _SOURCE, self.emitted)
         if report.diagnostics:

@@ -17,6 +17,7 @@ import time
 from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 
+from aos_protocol.errors import StorageError
 from aos_solver.building.build_lock import build_lock
 
 __all__ = ["BuildCache", "digest_of"]
@@ -64,16 +65,23 @@ class BuildCache:
         """The entry of that name, which `make` fills if it is not there; what `make` raises leaves none.
 
         While another process makes it, this one waits for up to `patience_s`, and says so with `on_wait`. If
-        the other one ends without the entry, or takes longer, it is made here.
+        the other one ends without the entry, or takes longer, it is made here. StorageError AOS701 where the
+        cache cannot be written.
         """
         if (found := self.find(name)) is not None:
             return found
         self._remove_old()
-        self.directory.mkdir(parents=True, exist_ok=True)
-        async with build_lock(self.directory / f"{name}.lock", patience_s, on_wait):
-            if (found := self.find(name)) is not None:
-                return found
-            return await self._made(name, make)
+        try:
+            self.directory.mkdir(parents=True, exist_ok=True)
+            async with build_lock(self.directory / f"{name}.lock", patience_s, on_wait):
+                if (found := self.find(name)) is not None:
+                    return found
+                return await self._made(name, make)
+        except OSError as error:
+            raise StorageError(
+                f"the cache {self.directory} cannot be written: {error.strerror}",
+                hint="$AOS_CACHE_DIR names another folder for compiled models",
+            ) from error
 
     async def _made(self, name: str, make: Callable[[Path], Awaitable[None]]) -> Path:
         entry = self.directory / name

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-from aos_protocol.errors import ModelError
+from aos_protocol.errors import AosError, ModelError, StorageError
 from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.sandbox.places import SYSTEM, folders_of_tool, python_folders
 from aos_solver.building.compiler import Compiler
@@ -21,6 +21,7 @@ LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 _OUR_LIMIT_HINT = "The machine is too busy or too small for it; try again when less runs"
 """The advice about a compiler that runs out of time over our own sources."""
 
+_DISK_IS_FULL = "No space left on device"
 _OUT_OF = (
     "memory exhausted",
     "out of memory",
@@ -121,8 +122,12 @@ def ran_out(output: str, status: int) -> bool:
     return status < 0 or status > 128 or any(words in output for words in _OUT_OF)
 
 
-def internal_error(what: str, output: str, status: int, source: Path) -> ModelError:
-    """The error for C++ that is wrong although no document is; `source` is where it can be looked at."""
+def internal_error(what: str, output: str, status: int, source: Path) -> AosError:
+    """The error for C++ that does not compile although no document is wrong; `source` is where it can be
+    looked at."""
+    if _DISK_IS_FULL in output:
+        hint = "Make space there, or name another folder for compiled models in $AOS_CACHE_DIR"
+        return StorageError(f"{what} cannot be compiled: {_DISK_IS_FULL}", hint=hint)
     reason = next(iter(output.strip().splitlines()), f"status {status}")
     return ModelError(
         f"the C++ of {what} does not compile: {reason}",
