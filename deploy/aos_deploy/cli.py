@@ -45,7 +45,7 @@ _COMMANDS = {
     "aos_lab.commands.calibrate": ("calibrate",),
     "aos_lab.commands.bench": ("bench",),
     "aos_lab.commands.gym": ("gym",),
-    "aos_deploy.commands.machine": ("doctor", "version"),
+    "aos_deploy.commands.machine": ("doctor",),
 }
 """The modules, in the order of the help, with the names that each registers. They are named here and not
 imported: laboratory, editor and gateway are above this package."""

@@ -144,7 +144,3 @@ def test_progress_is_for_terminals_alone(
     assert simulated.returncode == 0
     # What is left tells that the model is compiled, the first time.
     assert all(line.startswith("aos: ") for line in simulated.stderr.splitlines())
-
-
-def test_version_names_what_it_stands_on() -> None:
-    assert run("aos", "version").stdout.startswith("aos ")

@@ -1,4 +1,4 @@
-"""`aos doctor` and `aos version`: what this machine has, and what it lacks."""
+"""`aos doctor`: what this machine has, and what it lacks."""
 
 from __future__ import annotations
 
@@ -19,9 +19,8 @@ import typer
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
 from aos_deploy.program import cache_dir
-from aos_protocol import __version__
 from aos_protocol.errors import AosError
-from aos_runtime.distribution import DISTRIBUTION, pip_install
+from aos_runtime.distribution import pip_install
 from aos_runtime.sandbox.support import sandbox_support
 from aos_runtime.sandbox.trial import what_a_confined_program_can
 
@@ -43,9 +42,8 @@ class Finding(msgspec.Struct, frozen=True):
 
 
 def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos`."""
+    """Adds the command to `aos`."""
     app.command(epilog="Example: aos doctor; aos doctor deploy/armadillo.yaml")(doctor)
-    app.command(epilog="Example: aos version")(version)
 
 
 def doctor(
@@ -72,14 +70,6 @@ def doctor(
                 typer.echo(f"{'':25}{finding.advice}")
     if any(finding.state == "missing" for finding in findings):
         raise typer.Exit(ExitCode.NOT_STARTED)
-
-
-def version() -> None:
-    """Print the versions of AOS and of what it stands on."""
-    typer.echo(f"aos {__version__}, installed as {DISTRIBUTION}")
-    typer.echo(f"python {platform.python_version()}")
-    for package in (*_PACKAGES, _SIMULATOR):
-        typer.echo(f"{package} {_version_of(package) or 'not installed'}")
 
 
 def examine_machine() -> list[Finding]:
