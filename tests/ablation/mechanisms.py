@@ -114,6 +114,7 @@ BUNDLES = (
     BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("harbour", 1000, 60, ("options", "learned_values")),
+    BundleRoute("shelf", 1000, 60, ("estimated_draws",)),
     BundleRoute(
         "pocman", 1000, 60, ("rollout_shares", "max_backup", "turns", "own_spread", "learned_values")
     ),

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from .shelf import shelf
 from .writing import Bundle, BundleWriter
 
 
@@ -219,5 +220,6 @@ PROBLEMS: dict[str, Callable[[int], Bundle]] = {
     "open_field": open_field,
     "scales": scales,
     "harbour": harbour,
+    "shelf": shelf,
 }
-SIZES = {"parcels": 14, "clutter": 40, "open_field": 9, "scales": 17, "harbour": 60}
+SIZES = {"parcels": 14, "clutter": 40, "open_field": 9, "scales": 17, "harbour": 60, "shelf": 7}

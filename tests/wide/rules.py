@@ -5,6 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .shelf import shelf_rule
+
 
 def parcels(count: int, rng: random.Random) -> float:
     """Scan a parcel until one place has 0.85 of the belief, and send it there."""
@@ -139,4 +141,5 @@ RULES: dict[str, Callable[[int, random.Random], float]] = {
     "open_field": open_field,
     "scales": scales,
     "harbour": harbour,
+    "shelf": shelf_rule,
 }

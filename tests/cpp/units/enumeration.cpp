@@ -87,6 +87,26 @@ TEST("Endless loops and crowds of paths are given up") {
   EXPECT_THAT(!crowd.has_ended, "2^40 paths are given up");
 }
 
+TEST("Strata of a continuous draw have the whole probability, in the middle and at both ends") {
+  for (const DrawStrata strata : {DrawStrata::of(fine_strata), DrawStrata::of(middling_strata), DrawStrata::of(coarse_strata)}) {
+    for (const double mark : {-3.5, -2.0, -0.4, 0.0, 1.1, 2.5, 3.8}) {
+      double above = 0, all = 0;
+      Enumerator draws;
+      draws.divide_numbers(strata);
+      bool is_above = false;
+      draws.for_each_path([&](Enumerator& path) { is_above = path.SampleNormal(0, 1) > mark; },
+                          [&](Enumerator& path) {
+                            all += path.probability();
+                            if (is_above) above += path.probability();
+                          });
+      const double truth = 0.5 * std::erfc(mark / std::sqrt(2.0));
+      EXPECT_THAT(std::abs(all - 1) < 1e-12, "the strata do not sum to 1");
+      EXPECT_THAT(std::abs(above - truth) <= 2 * strata.error(), "the probability above " + std::to_string(mark));
+      if (strata.count > 15) EXPECT_THAT(above > truth / 2 && 1 - above > (1 - truth) / 2, "an end above " + std::to_string(mark));
+    }
+  }
+}
+
 TEST("One of 5000 weights is drawn where it is nearly all") {
   Sampler random{1};
   std::vector<double> weights(5000, 1e-9);

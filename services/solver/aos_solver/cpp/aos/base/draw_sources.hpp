@@ -78,8 +78,10 @@ int Enumerator::choose(const double* weights, int count, double total) {
 }
 
 double Enumerator::uniform() {
-  if (!luck_) throw NotEnumerable{"a draw is continuous"};
-  return drawn_.uniform();
+  if (luck_) return drawn_.uniform();
+  meets_number_ = has_drawn_number_ = true;
+  if (strata_.count == 0) throw NotEnumerable{"a draw is continuous"};
+  return strata_.middles[choose(strata_.weights, strata_.count, 1.0)];
 }
 
 double Enumerator::walk(Run run, Run visit, int max_paths, std::size_t max_depth_first) {
@@ -152,6 +154,7 @@ void Enumerator::run_once(Run run, End at_end) {
   probability_ = 1;
   if (has_loops_) begin_run_with_loops();
   if (luck_) drawn_ = Sampler{*luck_};
+  has_drawn_number_ = false;
   begin_numbers();
   try {
     run(*this);

@@ -12,6 +12,7 @@
 #include "aos/base/function_ref.hpp"
 #include "aos/base/loop_chain.hpp"
 #include "aos/base/loop_heads.hpp"
+#include "aos/base/number_strata.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -59,6 +60,11 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   // From now on chance makes the continuous draws, the same ones in all runs. What is walked are then the combinations
   // of the discrete draws under this luck.
   void leave_numbers_to(std::uint64_t luck) { luck_ = luck; }
+  // From now on a continuous draw gives the middle of one of these strata. What is walked are then estimates.
+  void divide_numbers(DrawStrata strata) { strata_ = strata; }
+  // Whether a continuous draw has been asked for so far, and whether one was made in this run.
+  bool meets_number() const { return meets_number_; }
+  bool has_drawn_number() const { return has_drawn_number_; }
 
   using Run = FunctionRef<void(Enumerator&)>;
 
@@ -136,6 +142,9 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   void take_likeliest();
 
   std::optional<std::uint64_t> luck_;  // of the continuous draws
+  DrawStrata strata_;
+  bool meets_number_ = false;
+  bool has_drawn_number_ = false;
   Sampler drawn_{0};
   std::vector<Choice> choices_;  // since the head that is walked from
   std::size_t depth_ = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -58,9 +59,7 @@ class Planners {
     Choosing choosing;
     const bool is_by_name = kind != PlannerKind::automatic;
     const Question<Model> question{belief, budget, horizon, barred_, is_by_name, space_.reach(belief)};
-    choosing.why = is_by_name           ? "it was asked for"
-                   : question.is_listed ? "all " + std::to_string(space_.size()) + " states can be listed"
-                                        : space_.obstacle();
+    choosing.why = is_by_name ? "it was asked for" : question.is_listed ? space_.listed_text() : space_.obstacle();
     const auto& order = order_[static_cast<std::size_t>(kind)];
     used_ = *std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); });
     const auto prepared = thread_time();
@@ -93,7 +92,9 @@ class Planners {
   Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const {
     Estimates values = used_->values(belief, std::move(estimates), choice);
     const double slack = used_->slack(belief, horizon_);
+    const double of_draws = space_.error_of_draws(horizon_);
     for (ActionEstimate& value : values) {
+      if (value.n > 0) value.standard_error = std::hypot(value.standard_error, of_draws);
       value.at_least -= slack;
       value.at_most += slack;
       // Of an action that was not tried nothing is told but its bounds.

@@ -53,7 +53,8 @@ class BeliefTree final : public TreePlanner<Model> {
   const char* name() const override { return "belief-tree"; }
 
   bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& choosing) override {
-    if (!switches::belief_tree || !question.is_listed || space_.lists_observations()) return false;
+    // Its tables repeat the draws of listed outcomes, and an estimated draw has no outcomes of its own.
+    if (!switches::belief_tree || !question.is_listed || space_.lists_observations() || space_.estimates_draws()) return false;
     const std::string obstacle = prepare(question.belief, question.horizon);
     choosing.why += obstacle.empty() ? "; their probabilities are estimated" : "; their probabilities cannot be estimated: " + obstacle;
     return obstacle.empty();

@@ -12,6 +12,7 @@ namespace aos {
 template <class Model>
 Weighted exact_root(const StateSpace<Model>& space, const Belief<Model>& belief) {
   if (!space.lists_observations()) throw NotEnumerable{numbers_are_observed};
+  if (space.estimates_draws()) throw NotEnumerable{"draws are continuous"};
   if (!belief.is_exact()) throw NotEnumerable{"the belief is only known by samples"};
   return space.weights_of(belief);
 }

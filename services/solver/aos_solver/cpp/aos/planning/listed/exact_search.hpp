@@ -33,7 +33,7 @@ class ExactSearch final : public Planner<Model> {
 
   // Bounds are prepared for a try, which takes long at the first decision only. A try that fails puts off the next ones.
   bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& choosing) override {
-    const bool is_possible = question.is_listed && space_.lists_observations() && question.belief.is_exact();
+    const bool is_possible = question.is_listed && space_.lists_observations() && !space_.estimates_draws() && question.belief.is_exact();
     if (!switches::exact || !is_possible) return false;
     if (!tries_.is_due()) return false;
     observable_.prepare(space_.rows(), space_.numbering(), question.horizon);

@@ -91,6 +91,7 @@ class SarsopPlanner final : public Planner<Model> {
     const double lower = lowest - unsure, upper = highest + unsure;
     const std::string scope =
         used().is_endless() ? "without a horizon" : "with " + std::to_string(question.horizon) + " decisions to go";
+    if (space_.estimates_draws() && !is_near_) return scope + " the worth of the belief is an estimate";
     const std::string subject = question.belief.is_drawn() ? " the belief, which was drawn," : " the belief";
     if (used().tells_by_cells()) {
       return scope + subject + " is worth at least " + rounded_down(lower) + ", telling numbers by " +

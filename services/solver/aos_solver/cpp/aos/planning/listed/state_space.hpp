@@ -34,6 +34,9 @@ namespace aos {
 // Of later tries, which hold up a mission: together with what planners prepare then they take 0.1 to 0.3 seconds.
 inline constexpr ListLimits later_limits{.states = 16'000, .outcomes = 500'000, .work = 1'500'000};
 
+// Where continuous draws are estimated: a state that holds a drawn number leads to others without end.
+inline constexpr ListLimits estimate_limits{.states = 16'000, .outcomes = 3'000'000, .work = 5'000'000};
+
 using point_based::Numbering;
 
 // Outcomes that end the mission are left out of the rows: ended states have no number and are worth nothing.
@@ -62,10 +65,7 @@ class StateSpace {
       while (!is_closed()) list_rows_before(size());
       return true;
     } catch (const NotEnumerable& limit) {
-      if (lister_.draws().meets_sensing() && !skips_sensing_) {
-        leave_out_observations(limit.reason);
-        return reach(belief);
-      }
+      if (may_list_less(limit.reason)) return reach(belief);
       give_up(limit.reason, belief);
     } catch (const ModelFault& fault) {
       give_up("model code fails in a state that can be reached: " + fault.text, belief);
@@ -123,17 +123,23 @@ class StateSpace {
   // Whether the rows have no observations, and why.
   bool leaves_out_observations() const { return skips_sensing_; }
   const std::string& observations_obstacle() const { return observations_obstacle_; }
+  // Whether continuous draws stand in the rows by a few numbers each. Nothing that is told of them is proven then.
+  bool estimates_draws() const { return strata_.count > 0; }
+  // What is listed, for a plan's `why`.
+  std::string listed_text() const {
+    const std::string states = "all " + std::to_string(size()) + " states can be listed";
+    return estimates_draws() ? states + ", and each continuous draw stands for " + std::to_string(strata_.count) + " numbers" : states;
+  }
+  // How far a value of `horizon` decisions may be off by that: the error of a probability may earn the largest reward or not.
+  double error_of_draws(int horizon) const { return estimates_draws() ? strata_.error() * most_earned(horizon) : 0; }
   // How far bounds of the value of `horizon` decisions have to be widened, since the belief is not quite the exact one and
   // rows leave out improbable rounds of loops. No decision is taken to earn more than the largest expected reward. A
-  // drawn belief has no bound, so its bounds are those of its particles.
+  // drawn belief has no bound, so its bounds are those of its particles. Where draws are estimated there are no bounds.
   double slack(const Belief<Model>& belief, int horizon) const {
+    if (estimates_draws()) return std::numeric_limits<double>::infinity();
     const double wrong = belief.is_drawn() ? 0 : belief.error_bound();
     if (wrong <= 0 && lister_.most_left_out() <= 0) return 0;
-    double largest = 0;
-    for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
-    double decisions = 0;
-    for (int left = 0; left < horizon; ++left) decisions = 1 + Model::discount * decisions;
-    return (2 * wrong + horizon * lister_.most_left_out()) * largest * decisions;
+    return (2 * wrong + horizon * lister_.most_left_out()) * most_earned(horizon);
   }
   const NumberReports& reports() const { return reports_; }
   bool reaches(Ending ending) const { return lister_.reaches(ending); }
@@ -158,6 +164,15 @@ class StateSpace {
   }
 
  private:
+  // The largest expected reward, earned at each decision.
+  double most_earned(int horizon) const {
+    double largest = 0;
+    for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
+    double decisions = 0;
+    for (int left = 0; left < horizon; ++left) decisions = 1 + Model::discount * decisions;
+    return largest * decisions;
+  }
+
   using SensingKey = std::vector<std::uint64_t>;  // of observations with their probabilities
   // A path through an action after which the mission goes on.
   struct Path {
@@ -178,20 +193,40 @@ class StateSpace {
   bool is_worth_another_try(const Belief<Model>& belief) const {
     return 2 * belief.particles().size() <= given_up_with_;
   }
-  void leave_out_observations(std::string why) {
+  // Prepares another try, where it may help to leave out what is observed, or to estimate draws more and more coarsely.
+  bool may_list_less(const char* why) {
+    const bool may_skip = lister_.draws().meets_sensing() && !skips_sensing_;
+    if (!estimates_draws()) {
+      if (may_skip) return list_anew(DrawStrata{}, why);
+      return switches::estimated_draws && lister_.draws().meets_number() && list_anew(DrawStrata::of(fine_strata), nullptr);
+    }
+    if (size() > lister_.limits().states) return false;
+    const DrawStrata coarser = strata_.coarser();
+    if (coarser.count > 0) return list_anew(coarser, skips_sensing_ ? observations_obstacle_.c_str() : nullptr);
+    return may_skip && list_anew(DrawStrata::of(fine_strata), why);
+  }
+  // Begins a list with these strata of draws, and without what is observed where there is a reason.
+  bool list_anew(DrawStrata strata, const char* why_without_observations) {
+    const std::string why = why_without_observations != nullptr ? why_without_observations : "";
     restart();
-    skips_sensing_ = true;
-    observations_obstacle_ = std::move(why);
-    lister_.draws().skip_sensing(true);
+    strata_ = strata;
+    lister_.draws().divide_numbers(strata);
+    if (estimates_draws()) limit(smaller(lister_.limits(), estimate_limits));
+    skips_sensing_ = !why.empty();
+    observations_obstacle_ = why;
+    lister_.draws().skip_sensing(skips_sensing_);
+    return true;
   }
   void give_up(std::string why, const Belief<Model>& belief) {
     restart();
     obstacle_ = std::move(why);
     given_up_with_ = belief.particles().size();
     if (first_given_up_with_ == 0) first_given_up_with_ = given_up_with_;
-    const ListLimits& before = lister_.limits();
-    limit({std::min(before.states, later_limits.states), before.bytes, std::min(before.outcomes, later_limits.outcomes),
-           std::min(before.work, later_limits.work)});
+    limit(smaller(lister_.limits(), later_limits));
+  }
+  static ListLimits smaller(const ListLimits& one, const ListLimits& other) {
+    return {std::min(one.states, other.states), std::min(one.bytes, other.bytes), std::min(one.outcomes, other.outcomes),
+            std::min(one.work, other.work)};
   }
 
   void add_states_of(const Belief<Model>& belief) {
@@ -232,6 +267,8 @@ class StateSpace {
 
   std::uint32_t observation_of(int action, const Step& step) {
     if (skips_sensing_) return 0;
+    // Of texts of drawn numbers only a few would be known.
+    if (step.observation < default_observation && lister_.draws().has_drawn_number()) throw NotEnumerable{"what is observed are texts"};
     const int skill = Model::skill_of(action);
     const std::uint32_t number = observations_.add(skill, step.observation);
     return reports_numbers_ ? reports_.add(skill, number) : number;
@@ -281,6 +318,7 @@ class StateSpace {
   std::uint32_t listed_ = 0;  // how many states have their rows
   std::uint64_t restarts_ = 0;
   bool skips_sensing_ = false;
+  DrawStrata strata_;  // by which continuous draws are estimated
   std::string observations_obstacle_;
   std::string obstacle_;
   std::size_t given_up_with_ = 0;        // how many states the belief had

@@ -33,7 +33,7 @@ class StepTable {
 
   // Makes the table of a space that lists the belief's states. Returns whether the model is small enough.
   bool prepare(const StateSpace<Model>& space, const Belief<Model>& belief) {
-    if (!space.lists_observations()) return false;
+    if (!space.lists_observations() || space.estimates_draws()) return false;
     if (space.numbering() != numbering_) list(space);
     if (!is_small_) return false;
     std::vector<typename AliasColumns<std::uint32_t>::Weighted> starts;
