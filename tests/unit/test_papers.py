@@ -97,12 +97,6 @@ def test_every_error_code_that_is_used_has_a_meaning(root: Path) -> None:
     assert used <= CODES.keys()
 
 
-def test_every_decision_is_listed(root: Path) -> None:
-    folder = root / "docs" / "decisions"
-    listed = re.findall(r"\((\d{4}-[\w-]+\.md)\)", (folder / "README.md").read_text(encoding="utf-8"))
-    assert listed == sorted(path.name for path in folder.glob("[0-9]*.md"))
-
-
 def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(root / "docs")
     table = importlib.import_module("limits_table")
