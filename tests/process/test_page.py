@@ -8,6 +8,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+import long_run
 import pytest
 from gateway import Gateway, gateway, worn_system
 from long_run import write_long_run
@@ -273,6 +274,31 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
         ).to_be_visible()
         kept(page, f"numbers-{width}")
         assert violations(page, cache_dir) == []
+
+
+@pytest.mark.parametrize("width", [390, 1440])
+def test_long_names_are_told_whole_and_widen_no_screen(
+    browser: Browser, tmp_path: Path, width: int, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    long = "where_the_robot_that_carries_the_longest_of_all_names_stands_at_the_moment"
+    actions = tuple(
+        f"inspect_the_shelf(target=shelf_in_the_north_eastern_corridor_{n:03d})" for n in range(200)
+    )
+    monkeypatch.setattr(long_run, "SKILLS", actions)
+    certain = (Marginal(f"{long}_{number}", {f"value_of_{long}": 1.0}) for number in range(30))
+    name = write_long_run(tmp_path / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
+    with gateway(tmp_path, cache_dir) as served:
+        page = opened(browser, served, width)
+        for view in ("", "/why", "/steps", "/model"):
+            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
+            expect(page.locator(".stepper-place")).to_have_text("110 of 120")
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
+            kept(page, f"long-{width}{view.replace('/', '-')}")
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step=110")
+        expect(page.locator(".value-name")).to_have_count(9)
+        is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
+        assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
+        assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
 
 
 def test_a_thousand_steps_are_loaded_with_little(browser: Browser, tmp_path: Path, cache_dir: Path) -> None:

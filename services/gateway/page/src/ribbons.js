@@ -48,7 +48,7 @@ function Ribbon({ row, all, size, now }) {
       <${Cursor} room=${room} height=${HEIGHT} head=${head} />
     </svg>
     <dl class=${row.isNumber ? "ribbon-now is-number" : "ribbon-now"}>
-      ${told.map(([what, each]) => html`<div><dt>${!row.isNumber && html`<i style=${{ background: colours.get(what) }}></i>`}${what}</dt><dd>${each}</dd></div>`)}
+      ${told.map(([what, each]) => html`<div><dt title=${what}>${!row.isNumber && html`<i style=${{ background: colours.get(what) }}></i>`}${what}</dt><dd>${each}</dd></div>`)}
     </dl>
   </div>`;
 }
