@@ -1,12 +1,19 @@
-"""A run that a signal ends: in order by the first, at once by any further one."""
+"""A run that a signal ends: in order by the first, at once by any further one.
+
+It also ends in order where nobody reads any more what it tells, as in `aos-up | head`.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
+import sys
 from typing import Protocol
 
-__all__ = ["Stoppable", "run_until_interrupted"]
+from aos_deploy.events import Event, Report
+
+__all__ = ["Stoppable", "run_until_interrupted", "told_while_read"]
 
 _STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -24,8 +31,24 @@ class Stoppable(Protocol):
     def kill(self) -> None: ...
 
 
-async def run_until_interrupted(mission: Stoppable) -> int:
-    """The exit code. The first signal stops everything in order, any further one at once.
+def told_while_read(report: Report, is_unread: asyncio.Event) -> Report:
+    """The report, which sets `is_unread` once the pipe that it prints to has no reader, and then is mute."""
+
+    def tell(event: Event) -> None:
+        try:
+            report(event)
+        except BrokenPipeError:
+            is_unread.set()
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)
+
+    return tell
+
+
+async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) -> int:
+    """The exit code. The first signal stops everything in order, any further one at once. Everything stops in
+    order also where nobody reads any more.
 
     A signal after the end changes nothing: the process ignores it from then on.
     """
@@ -41,11 +64,18 @@ async def run_until_interrupted(mission: Stoppable) -> int:
             has_interrupted = True
             work.cancel()
 
+    async def stop_unread() -> None:
+        await is_unread.wait()
+        if not has_interrupted:  # Ctrl-C ends the reader as well.
+            interrupt()
+
     for number in _STOPPING:
         loop.add_signal_handler(number, interrupt)
+    reader = loop.create_task(stop_unread())
     try:
         return (await work).exit_code
     finally:
+        reader.cancel()
         for number in _STOPPING:
             loop.remove_signal_handler(number)
             signal.signal(number, signal.SIG_IGN)

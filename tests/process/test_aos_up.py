@@ -304,6 +304,18 @@ def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was(slow_file: Path) -> 
         assert "AOS810" in refused_run.error_text()
 
 
+def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(slow_file: Path) -> None:
+    with up(slow_file) as running:
+        running.until("decision")
+        assert running.process.stdout is not None
+        running.process.stdout.close()
+        let_it_go_on(slow_file)
+        assert running.process.wait(HANG_S) == 130
+        assert running.error_text() == ""
+    summary = json.loads((latest(slow_file) / "summary.json").read_text())
+    assert summary["ending"] == "cancelled"
+
+
 def test_the_engine_child_may_be_killed(slow_file: Path) -> None:
     with up(slow_file) as running:
         running.until("decision")

@@ -19,7 +19,7 @@ class Over:
     def kill(self):
         pass
 
-code = asyncio.run(run_until_interrupted(Over()))
+code = asyncio.run(run_until_interrupted(Over(), asyncio.Event()))
 os.kill(os.getpid(), signal.{signal})
 sys.exit(code)
 """

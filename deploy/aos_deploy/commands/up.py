@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import msgspec
 import typer
@@ -16,6 +16,7 @@ from aos_deploy.options import HELP_NAMES, TrustDocuments, Version
 
 if TYPE_CHECKING:
     from aos_deploy.deploy_file import Deployment
+    from aos_protocol.errors import AosError
 
 __all__ = ["register", "up"]
 
@@ -97,7 +98,7 @@ def up(
     import asyncio  # For --help none of this is needed.
 
     from aos_deploy.deploy_file import read_deploy_file
-    from aos_deploy.interruption import run_until_interrupted
+    from aos_deploy.interruption import run_until_interrupted, told_while_read
     from aos_deploy.living_runs import runs_here
     from aos_deploy.mission_run import MissionRun
     from aos_deploy.needed_here import check_needed_here, check_sandbox
@@ -110,7 +111,7 @@ def up(
 
     _refuse_beside_serve(serve, stay=stay, page=page)
     if resume:
-        flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
+        flags = {"model": model, "stay": stay, "set": set_values}
         _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
         deployment, taken_up = take_up(deploy or RunDirectory.latest(runs_here()).path)
     elif deploy is None:
@@ -121,22 +122,28 @@ def up(
     check_sandbox(deployment)
     check_needed_here(deployment)
     view = make_view(_title(deployment), is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
-    kind = SystemRun if deployment.file.stay else MissionRun
-    mission: MissionRun | ServeRun = (
-        kind(deployment, view, SystemClock(), taken_up=taken_up, is_played=model, shows_page=page)
-        if serve is None
-        else ServeRun(deployment, serve, view, SystemClock())
-    )
+    is_unread = asyncio.Event()
+    report, clock = told_while_read(view, is_unread), SystemClock()
+    if serve is not None:
+        mission: MissionRun | ServeRun = ServeRun(deployment, serve, report, clock)
+    else:
+        kind = SystemRun if deployment.file.stay else MissionRun
+        mission = kind(deployment, report, clock, taken_up=taken_up, is_played=model, shows_page=page)
     with view:
-        code = asyncio.run(run_until_interrupted(mission))
-    if mission.error is not None:
-        print_fault("aos-up", mission.error)
+        code = asyncio.run(run_until_interrupted(mission, is_unread))
+    _end(mission.error, code)
+
+
+def _end(error: AosError | None, code: int) -> NoReturn:
+    """Prints the fault that a run has ended by, if any, and ends the command."""
+    if error is not None:
+        print_fault("aos-up", error)
     raise typer.Exit(code)
 
 
 def _refuse_beside_resume(**options: object) -> None:
     """BadParameter for an option that a run which goes on has already."""
-    given = [f"--{name}" for name, value in options.items() if value is not None]
+    given = [f"--{name}" for name, value in options.items() if value not in (None, False, [])]
     if given:
         text = "a run that goes on has what it was started with"
         raise typer.BadParameter(text, param_hint=", ".join(given))
