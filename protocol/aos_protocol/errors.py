@@ -95,7 +95,7 @@ CODES: dict[str, str] = {
     "AOS146": "a mission parameter that the documents do not have, or a value that it cannot have",
     "AOS147": "a precondition whose violation costs nothing, or earns something",
     "AOS148": "a state that cannot be drawn",
-    "AOS149": "a part of a statement that does nothing",
+    "AOS149": "a comparison that is none, or does nothing",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

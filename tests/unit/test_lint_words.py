@@ -148,6 +148,39 @@ def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -
 
 
 @pytest.mark.parametrize(
+    ("code", "column"),
+    [
+        ("if (state__.second.x = 2) __reward = 1;", 22),
+        ("int n = 0; while (n = 1) n++;", 21),
+        ("int n = 0; do n++; while (n = 1);", 29),
+        ("int n = 0; for (; n = 1;) n++;", 21),
+        ("int n = 0; __reward = (n = 1) ? 2 : 3;", 26),
+    ],
+)
+def test_a_condition_that_sets_is_told_with_the_sign_that_was_meant(code: str, column: int) -> None:
+    (only,) = found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x ="))
+    assert (only.code, only.span.line, only.span.column) == ("AOS149", 9, column)
+    assert only.mend is not None
+    assert (only.mend.length, only.mend.text) == (1, "==")
+
+
+def test_the_condition_of_a_loop_over_variables_that_sets_is_told() -> None:
+    loop = "assignment:\nloop_next: Cell each\nloop_condition: each.x = 1\nloop_body:\n__reward = 1;\n"
+    (only,) = found(skill=SKILL.replace("dynamic_model:\n", f"dynamic_model:\n{loop}assignment:\ncode:\n"))
+    assert (only.code, only.span.line, only.span.column) == ("AOS149", 11, 24)
+
+
+def test_a_condition_that_sets_in_brackets_of_its_own_is_meant_so() -> None:
+    code = "int n = 0; if ((n = steps)) __reward = n; while ((n = n - 1) > 0) n--;"
+    assert found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == ()
+
+
+def test_a_condition_that_sets_what_may_only_be_read_is_one_error() -> None:
+    (only,) = found(environment=ENVIRONMENT.replace("state.second.x == 3", "state.second.x = 3"))
+    assert (only.code, only.hint) == ("AOS123", "It may only be read. To compare, write `==`")
+
+
+@pytest.mark.parametrize(
     ("code", "told"),
     [
         (
@@ -183,7 +216,7 @@ def test_what_other_languages_write_is_told_once(code: str, told: str) -> None:
     ],
 )
 def test_code_of_cpp_is_no_python_and_no_decimal(code: str) -> None:
-    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
+    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == ()
 
 
 def test_a_penalty_above_0_is_told() -> None:

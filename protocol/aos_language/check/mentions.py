@@ -118,7 +118,8 @@ class MentionCheck:
             self._findings.error("AOS123", f"there is no `{root}` in {role.title}", span, hint)
         elif is_write and root not in role.writes:
             hint = f"Only {quoted(role.writes)} may change there" if role.writes else "It may only be read"
-            if self._block.is_expression and mention.access is Access.WRITE:
+            is_condition = any(left == mention.extent for left, _ in self._cpp.set_in_conditions)
+            if is_condition or (self._block.is_expression and mention.access is Access.WRITE):
                 hint += ". To compare, write `==`"
             self._findings.error("AOS123", f"`{mention.text}` is written in {role.title}", span, hint)
 

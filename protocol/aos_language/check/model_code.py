@@ -6,7 +6,14 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_language.check.blocks import Block, environment_blocks, read_block, skill_blocks
+from aos_language.check.blocks import (
+    DEFAULT,
+    STATES,
+    Block,
+    environment_blocks,
+    read_block,
+    skill_blocks,
+)
 from aos_language.check.built_ins import BUILT_INS, check_built_in
 from aos_language.check.mentions import LITERAL_NAMES, MentionCheck, listing
 from aos_language.check.scope import Scope
@@ -144,6 +151,7 @@ class _BlockCheck:
             self._mentions.check(mention)
         self._check_calls()
         self._check_lone_name()
+        self._check_conditions()
         if self._block.is_declarations:
             for body in self._scope.shared.bodies():
                 self._check_unset(read_cpp(body))
@@ -161,6 +169,18 @@ class _BlockCheck:
                 hint = "To set what stands before it, write `=`"
                 message, mend = "this comparison does nothing", Mend(span, 2, "=")
             self._findings.warning("AOS149", message, span, hint, mend)
+
+    def _check_conditions(self) -> None:
+        """A condition that sets something; where it may not write that, this has been told already."""
+        for left, operator in self._cpp.set_in_conditions if self._block.role is not DEFAULT else ():
+            text = self._cpp.code[left.start : left.end]
+            if text.partition(".")[0].strip() in {*STATES} - {*self._block.role.writes}:
+                continue
+            span = self._span(operator)
+            mend = Mend(span, 1, "==")
+            self._findings.warning(
+                "AOS149", f"this condition sets `{text}`", span, "To compare, write `==`", mend
+            )
 
     def _check_unset(self, cpp: Cpp) -> None:
         for read in unset_reads(cpp, frozenset(self._scope.enums)):

@@ -101,7 +101,7 @@ class Cpp(msgspec.Struct, frozen=True):
     """A snippet as read; everything in text order.
 
     `idle_operators` are the `==` of statements that only compare, and the comma before a number that does
-    nothing, as in `x = 1,5;`.
+    nothing, as in `x = 1,5;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`.
     """
 
     code: str
@@ -114,6 +114,7 @@ class Cpp(msgspec.Struct, frozen=True):
     faults: tuple[Fault, ...] = ()
     is_empty: bool = False
     idle_operators: tuple[Extent, ...] = ()
+    set_in_conditions: tuple[tuple[Extent, Extent], ...] = ()
 
     def writes(self) -> Iterator[Mention]:
         """The mentions through which something changes or may change."""

@@ -45,6 +45,7 @@ class TreeReader:
         self.types: list[tuple[str, Extent]] = []
         self.faults: list[Fault] = []
         self.idle_operators: list[Extent] = []
+        self.set_in_conditions: list[tuple[Extent, Extent]] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
         self._stack.append((root, Access.READ))
@@ -62,6 +63,7 @@ class TreeReader:
             missing_semicolons=self._tokens.missing_semicolons,
             faults=tuple(sorted(self.faults, key=_by_start)),
             idle_operators=tuple(sorted(self.idle_operators, key=lambda extent: extent.start)),
+            set_in_conditions=tuple(sorted(self.set_in_conditions, key=lambda pair: pair[0].start)),
         )
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
@@ -143,12 +145,28 @@ class TreeReader:
         is_plain = operator is None or text_of(operator) == "="
         left, right = _child(node, "left"), node.child_by_field_name("right")
         kind = Access.WRITE if is_plain else Access.UPDATE
+        if is_plain and operator is not None and self._is_condition(node):
+            self.set_in_conditions.append((self.extent(left), self.extent(operator)))
         if _HANDLERS.get(left.type) is TreeReader._path:
             self._path(left, kind, self.extent(right) if right is not None else None)
         else:
             self._push([left], kind)
         self._push([right])
         self._push(child for child in node.children if child.is_error)
+
+    def _is_condition(self, node: tree_sitter.Node) -> bool:
+        """Returns whether this is a whole condition. In a second pair of brackets it is meant so."""
+        outer = node.parent
+        if outer is None or outer.type == "condition_clause":
+            return outer is not None
+        if outer.type != "parenthesized_expression":
+            return outer.type == "for_statement" and node == outer.child_by_field_name("condition")
+        is_in_brackets_of_code = outer.start_byte >= self._prefix
+        owner = outer.parent
+        if owner is None or not is_in_brackets_of_code:
+            return not is_in_brackets_of_code
+        is_owned = owner.type in ("conditional_expression", "do_statement")
+        return is_owned and outer == owner.child_by_field_name("condition")
 
     def _update(self, node: tree_sitter.Node, access: Access) -> None:
         self._push([node.child_by_field_name("argument")], Access.UPDATE)
