@@ -216,7 +216,7 @@ def test_what_other_languages_write_is_told_once(code: str, told: str) -> None:
     ],
 )
 def test_code_of_cpp_is_no_python_and_no_decimal(code: str) -> None:
-    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == ()
+    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
 
 
 def test_a_penalty_above_0_is_told() -> None:
