@@ -148,6 +148,27 @@ def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -
 
 
 @pytest.mark.parametrize(
+    ("before", "name", "told"),
+    [
+        ("state.first.x = AOS", "__reward", "there is no `__reward` in the initial belief"),
+        ("if (state.second", "__moduleResponse", "there is no `__moduleResponse` in a special state"),
+        ("__meetPrecondition", "__reward", "there is no `__reward` in the precondition"),
+        ("state__.second.x =", "__isGoalState", "there is no `__isGoalState` in the dynamic model"),
+    ],
+)
+def test_a_name_of_the_language_in_another_section_is_told_with_those_that_have_it(
+    before: str, name: str, told: str
+) -> None:
+    texts = {
+        key: text.replace(before, f"{name} = 0;\n{before}")
+        for key, text in (("environment", ENVIRONMENT), ("skill", SKILL))
+    }
+    (only,) = found(**texts)
+    assert (only.code, only.message) == ("AOS110", told)
+    assert only.hint.startswith("Only ")
+
+
+@pytest.mark.parametrize(
     ("code", "column"),
     [
         ("if (state__.second.x = 2) __reward = 1;", 22),

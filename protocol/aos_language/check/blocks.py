@@ -17,15 +17,20 @@ __all__ = [
     "given_observation_blocks",
     "read_block",
     "skill_blocks",
+    "titles_with",
 ]
 
 
 class Role(msgspec.Struct, frozen=True):
-    """The task of a block: its name in messages, the copies of the state it may read and may write."""
+    """The task of a block: its name in messages, the copies of the state it may read and may write.
+
+    `names` are those of the language that its code has besides, such as `__reward`.
+    """
 
     title: str
     reads: tuple[str, ...]
     writes: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
     sees_chosen_action: bool = False
     may_set_parameter_values: bool = False
 
@@ -57,17 +62,47 @@ STATES = ("state", "state_", "state__", "state___")
 DEFAULT = Role("the default of a variable", ("state",), ("state",), may_set_parameter_values=True)
 SHARED = Role("shared code", STATES, STATES)
 INITIAL = Role("the initial belief", ("state",), ("state",))
-SPECIAL = Role("a special state", ("state",))
-EXTRINSIC = Role("the extrinsic changes", ("state", "state_"), ("state_",), sees_chosen_action=True)
-HEURISTIC = Role("the state heuristic", ("state",))
+SPECIAL = Role(
+    "a special state",
+    ("state",),
+    names=("__isFailureState", "__isGoalState", "__reward", "__stopEvaluatingState"),
+)
+EXTRINSIC = Role(
+    "the extrinsic changes",
+    ("state", "state_"),
+    ("state_",),
+    names=("__moduleExecutionTime", "__reward"),
+    sees_chosen_action=True,
+)
+HEURISTIC = Role("the state heuristic", ("state",), names=("__heuristicValue",))
 PRINT = Role("the print function", ("state",))
-MONITOR = Role("the model of a monitor", ("state",))
-PARAMETERS = Role("the list of parameters", ("state",))
-PRECONDITION = Role("the precondition", ("state",))
-ROLLOUT = Role("the rollout policy", ("state",))
-DURATION = Role("the execution time", ("state",))
-DYNAMIC = Role("the dynamic model", ("state", "state_", "state__"), ("state__",))
+MONITOR = Role("the model of a monitor", ("state",), names=("__moduleResponse",))
+PARAMETERS = Role("the list of parameters", ("state",), names=("__possibleParameters",))
+PRECONDITION = Role("the precondition", ("state",), names=("__meetPrecondition",))
+ROLLOUT = Role("the rollout policy", ("state",), names=("__heuristicValue",))
+DURATION = Role("the execution time", ("state",), names=("__moduleExecutionTime",))
+DYNAMIC = Role(
+    "the dynamic model",
+    ("state", "state_", "state__"),
+    ("state__",),
+    names=(
+        "__meetPrecondition",
+        "__moduleExecutionTime",
+        "__moduleResponse",
+        "__moduleResponseStr",
+        "__observed",
+        "__reward",
+    ),
+)
 GIVEN_OBSERVATION = Role("the state given the observation", ("state__", "state___"), ("state___",))
+
+
+_ROLES = (SPECIAL, EXTRINSIC, HEURISTIC, MONITOR, PARAMETERS, PRECONDITION, ROLLOUT, DURATION, DYNAMIC)
+
+
+def titles_with(name: str) -> list[str]:
+    """The kinds of code that have a name of the language, such as `__reward`."""
+    return [role.title for role in _ROLES if name in role.names]
 
 
 def environment_blocks(environment: Environment) -> Iterator[Block]:

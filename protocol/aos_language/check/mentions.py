@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Set
 
-from aos_language.check.blocks import Block
+from aos_language.check.blocks import Block, titles_with
 from aos_language.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_language.check.subscripts import subscripts_of
 from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
@@ -97,6 +97,12 @@ class MentionCheck:
         is_set = mention.access in (Access.WRITE, Access.UPDATE)
         is_meant = is_set and root.strip("_").lower() in _PLAIN_SPECIAL_NAMES
         is_special = root.startswith("__") and not COMPILER_NAMES.fullmatch(root)
+        if root in SPECIAL_NAMES and root not in ("__observed", *self._block.role.names):
+            message = f"there is no `{root}` in {self._block.role.title}"
+            *first, last = titles_with(root)
+            hint = f"Only {', '.join(first)}{' and ' * bool(first)}{last} can use it"
+            self._findings.error("AOS110", message, self._span(mention.root), hint)
+            return
         if root in _TRUTHS:
             self._check_truth(mention)
         if root in known:
