@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <unordered_map>
@@ -19,6 +18,7 @@
 #include "aos/base/switches.hpp"
 #include "numbers/belief_key.hpp"
 #include "point_based/belief_nodes.hpp"
+#include "point_based/blind_plans.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/certainty_equivalent.hpp"
 #include "point_based/initial_bounds.hpp"
@@ -35,8 +35,13 @@ class BeliefGraph {
     InitialBounds bounds{model, regions, rounding_};
     informed_ = std::move(bounds.informed);
     for (const ActionValues& values : informed_) sizes_.push_back(size_of(values));
-    add_tails(bounds.blind);
-    for (const Region& region : regions.all) add_blind(region, bounds.blind);
+    tails_ = Tails{model, bounds.blind};
+    for (const Region& region : regions.all) {
+      lower_.push_back(blind_bound(model, region, bounds.blind, tails_));
+      for (std::uint32_t number = 0; number < lower_.back().size(); ++number) {
+        largest_value_ = std::max(largest_value_, lower_.back()[number].size);
+      }
+    }
     if (switches::certainty_equivalent && is_endless()) add_certainty_equivalent();
     std::size_t largest = 0;
     for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
@@ -105,7 +110,7 @@ class BeliefGraph {
   // No state is worth more. At least 0.
   double max_value() const { return std::max(0.0, *std::max_element(informed_.back().begin(), informed_.back().end())); }
   // Some policy gives at least this from every state on. At most 0.
-  double min_value() const { return min_value_; }
+  double min_value() const { return tails_.min_value(); }
   // The largest absolute value in any alpha vector.
   double largest_value() const { return largest_value_; }
 
@@ -115,11 +120,8 @@ class BeliefGraph {
   std::uint32_t left_after(const Node& node) const { return node.left == 0 ? 0 : node.left - 1; }
 
   // Whether longer plans are worth no less than shorter ones, since some action costs nothing in any state.
-  bool is_free_to_go_on() const { return is_free_; }
-  // A lower bound of what a plan of `length` decisions gains when it is continued to `left` decisions.
-  double tail(std::uint32_t length, std::uint32_t left) const {
-    return powers_[length] * tails_[left - length] * (1 + 8 * ulp);
-  }
+  bool is_free_to_go_on() const { return tails_.are_free(); }
+  double tail(std::uint32_t length, std::uint32_t left) const { return tails_.of(length, left); }
 
   // Adds a branch for each action that may be the best.
   void expand(Node& node) {
@@ -304,58 +306,6 @@ class BeliefGraph {
     return vector.length == node.left ? value : value + tail(vector.length, node.left);
   }
 
-  // Sets the tails: what repeating one action gives at least, wherever a plan has ended.
-  void add_tails(const std::vector<ActionValues>& blind) {
-    double power = 1;
-    for (const ActionValues& values : blind) {
-      min_value_ = -std::numeric_limits<double>::infinity();
-      for (std::size_t action = 0; action < model_.actions; ++action) {
-        double lowest = 0;
-        for (std::size_t state = 0; state < model_.states; ++state) {
-          lowest = std::min(lowest, values[model_.row(state, action)]);
-        }
-        min_value_ = std::max(min_value_, lowest);
-      }
-      tails_.push_back(is_endless() ? 0 : min_value_);
-      if (tails_.back() < 0) is_free_ = false;
-      powers_.push_back(power);
-      power *= model_.discount * (1 + 2 * ulp);
-    }
-  }
-
-  void add_blind(const Region& region, const std::vector<ActionValues>& blind) {
-    LowerBound lower;
-    std::vector<AlphaVector> vectors;
-    for (std::uint32_t action = 0; action < model_.actions; ++action) {
-      const std::size_t first = vectors.size();
-      for (std::uint32_t left = is_endless() ? 0 : 1; left < blind.size(); ++left) {
-        std::vector<double> values;
-        for (const std::uint32_t state : region.states) values.push_back(blind[left][model_.row(state, action)]);
-        if (vectors.size() > first) {  // longer plans only where they give more
-          const AlphaVector& before = vectors.back();
-          const double worth_it = tail(before.length, left) + 1e-9 * before.size;
-          const auto gives_no_more = [&](double value, double known) { return value <= known + worth_it; };
-          if (std::equal(values.begin(), values.end(), before.values.begin(), gives_no_more)) continue;
-        }
-        vectors.emplace_back(action, left, std::move(values));
-      }
-    }
-    if (is_endless()) {  // one of each action
-      for (std::size_t i = vectors.size(); i-- > 0;) {
-        for (std::size_t j = 0; j < vectors.size(); ++j) {
-          if (i == j || !is_nowhere_above(vectors[i].values, vectors[j].values)) continue;
-          vectors.erase(vectors.begin() + static_cast<std::ptrdiff_t>(i));
-          break;
-        }
-      }
-    }
-    for (AlphaVector& vector : vectors) {
-      largest_value_ = std::max(largest_value_, vector.size);
-      lower.add_blind(std::move(vector));
-    }
-    lower_.push_back(std::move(lower));
-  }
-
   void add_certainty_equivalent() {
     const CertaintyEquivalent plans{model_, regions_, informed_.front(), rounding_};
     for (std::uint32_t region = 0; region < lower_.size(); ++region) {
@@ -364,10 +314,6 @@ class BeliefGraph {
         lower_[region].add_initial(std::move(vector));
       }
     }
-  }
-
-  static bool is_nowhere_above(const std::vector<double>& values, const std::vector<double>& others) {
-    return std::equal(values.begin(), values.end(), others.begin(), std::less_equal<>{});
   }
 
   void add_successors(const Belief& belief, std::uint32_t left, const Move& move, Branch& branch) {
@@ -406,11 +352,8 @@ class BeliefGraph {
   int kept_bits_ = 0;
   std::vector<ActionValues> informed_;  // by layer
   std::vector<double> sizes_;           // the largest absolute value of these, by layer
-  std::vector<double> tails_;           // by decisions: the least that repeating one action gives
-  std::vector<double> powers_;          // of the discount
-  bool is_free_ = true;
+  Tails tails_;
   double largest_value_ = 0;
-  double min_value_ = 0;
   std::vector<LowerBound> lower_;                   // by region
   std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;

@@ -22,6 +22,7 @@
 #include "aos/base/replay.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/belief/initial_paths.hpp"
 #include "aos/belief/marginals.hpp"
 #include "aos/belief/outcomes.hpp"
 #include "aos/belief/particle_filter.hpp"
@@ -81,7 +82,7 @@ class Belief {
 
   // The documents' initial belief: enumerated if possible, else drawn.
   static Belief initial(Sampler& random) {
-    if (combinations(random) > 2 * max_initial_paths) return drawn(random);
+    if (estimated_initial_paths<Model>(random) > 2 * max_initial_paths) return drawn(random);
     try {
       Gathering<Model> gathering;
       State state{};
@@ -296,41 +297,6 @@ class Belief {
   static std::size_t max_states(Source source) {
     if (source == Source::drawing) return particle_count;
     return std::clamp(max_weighted_bytes / Model::state_bytes(), particle_count, max_weighted_states);
-  }
-
-  // An estimate of the combinations of draws in the initial belief: the median of estimates from single
-  // paths, each of which is right on average (Knuth, 1975). Of the rounds of a loop only the last counts, since an
-  // enumeration cuts paths there. Infinite if a draw is continuous.
-  static double combinations(Sampler& random) {
-    struct Alternatives final : DrawWatcher, LoopHeads {
-      double product = 1;
-      std::vector<double> before_loops;  // the product where each loop began
-      void before_draw(std::size_t, const double* weights, int count, double) override {
-        const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
-        product *= weights == nullptr ? std::numeric_limits<double>::infinity() : static_cast<double>(positive);
-      }
-      std::uint32_t enter() override {
-        before_loops.push_back(product);
-        return static_cast<std::uint32_t>(before_loops.size() - 1);
-      }
-      std::string* arrive(std::uint32_t, std::uint32_t entry) override {
-        if (std::isfinite(product)) product = before_loops[entry];
-        return nullptr;
-      }
-      [[noreturn]] void cut() override { throw CutPath{}; }
-    };
-    std::vector<double> estimates;
-    const std::vector<double> none;
-    Replay replay;
-    State state{};
-    for (int i = 0; i < 11; ++i) {
-      Alternatives alternatives;
-      replay.start(none, random, nullptr, &alternatives, &alternatives);
-      Model::initial(state, replay);
-      estimates.push_back(alternatives.product);
-    }
-    std::nth_element(estimates.begin(), estimates.begin() + 5, estimates.end());
-    return estimates[5];
   }
 
   // The belief after a step, by enumeration or else by drawing, and the probability of what was observed.
