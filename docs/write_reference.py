@@ -160,7 +160,7 @@ def message_sections() -> str:
     for title, module in MESSAGES.items():
         source = Path(inspect.getfile(module)).name
         link = f"[`{source}`](../protocol/aos_protocol/messages/{source})"
-        parts.append(f"### {title.capitalize()}\n\n{link} has the fields' types, defaults and meanings.\n")
+        parts.append(f"### {title.capitalize()}\n\nIn {link}.\n")
         nodes = ast.parse(inspect.getsource(module)).body
         classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
         parts += [_message(node) for node in classes if node.name != "Message"]
