@@ -111,7 +111,7 @@ def up(
 
     _refuse_beside_serve(serve, stay=stay, page=page)
     if resume:
-        flags = {"model": model, "stay": stay, "set": set_values}
+        flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
         _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
         deployment, taken_up = take_up(deploy or RunDirectory.latest(runs_here()).path)
     elif deploy is None:
@@ -143,7 +143,7 @@ def _end(error: AosError | None, code: int) -> NoReturn:
 
 def _refuse_beside_resume(**options: object) -> None:
     """BadParameter for an option that a run which goes on has already."""
-    given = [f"--{name}" for name, value in options.items() if value not in (None, False, [])]
+    given = [f"--{name}" for name, value in options.items() if value is not None]
     if given:
         text = "a run that goes on has what it was started with"
         raise typer.BadParameter(text, param_hint=", ".join(given))
