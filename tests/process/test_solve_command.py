@@ -101,6 +101,30 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
     assert "cannot be written" in result.output
 
 
+@pytest.mark.parametrize(("problem", "runs"), [("tiger.pomdp", 100), ("rover.pomdpx", 500)])
+def test_missions_of_a_problem_file_return_what_its_policy_promises(
+    app: typer.Typer, tiger: Path, tmp_path: Path, problem: str, runs: int
+) -> None:
+    policy, path = tmp_path / "a.policy", tiger.with_name(problem)
+    bounds = json.loads(run(app, "solve", path, "--out", policy, "--json").stdout)
+    simulated = run(app, "simulate", path, "--policy", policy, "--runs", str(runs), "--json")
+    summary = json.loads(simulated.stdout)["summary"]
+    room = 4 * summary["stderr"] + 1e-2
+    assert bounds["lower"] - room < summary["mean_discounted_return"] < bounds["upper"] + room
+
+
+def test_missions_of_a_problem_file_need_a_policy_of_that_file(
+    app: typer.Typer, tiger: Path, tmp_path: Path
+) -> None:
+    assert "aos solve" in run(app, "simulate", tiger).output
+    policy = tmp_path / "a.policy"
+    run(app, "solve", tiger.with_name("costs.pomdp"), "--out", policy)
+    other = run(app, "simulate", tiger, "--policy", policy).exception
+    assert isinstance(other, PlanningError)
+    assert other.code == "AOS322"
+    assert "--set" in run(app, "simulate", tiger, "--policy", policy, "--set", "a=1").output
+
+
 def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_printed(
     app: typer.Typer, tiger: Path, bundle: Path
 ) -> None:

@@ -82,10 +82,11 @@ def print_states(run: SimulatedRun) -> None:
     console(is_wide=True).print(table)
 
 
-def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
+def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_goals: bool = True) -> None:
     """The states of the missions that have them; one row for each mission, and the summary.
 
-    A row tells how the world has ended, and how the mission, which knows its belief alone.
+    A row tells how the world has ended, and how the mission, which knows its belief alone. Only documents
+    have goals and failures.
     """
     runs = tuple(runs)
     for run in runs:
@@ -102,12 +103,14 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
     out = console(is_wide=True)
     out.print(table)
     error = f" ± {summary['stderr']:.2f}" if "stderr" in summary else ""
-    out.print(
+    endings = (
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
-        f"believed in {summary['believed_goal_rate']:.0%}, failure in {summary['failure_rate']:.0%}, "
-        f"discounted return {summary['mean_discounted_return']:+.2f}{error}, "
-        f"{summary['mean_steps']:.1f} steps"
+        f"believed in {summary['believed_goal_rate']:.0%}, failure in {summary['failure_rate']:.0%}"
+        if has_goals
+        else f"{summary['runs']:.0f} missions"
     )
+    returned = f"discounted return {summary['mean_discounted_return']:+.2f}{error}"
+    out.print(f"{endings}, {returned}, {summary['mean_steps']:.1f} steps")
 
 
 def _story(run: SimulatedRun) -> list[str]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import statistics
+from collections.abc import Iterable
 from functools import partial
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
@@ -13,7 +15,6 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.mission_values import SetValues
 from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.planning_options import (
-    Bundle,
     Horizon,
     Never,
     PlannerName,
@@ -27,11 +28,15 @@ from aos_deploy.planning_options import (
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress
 from aos_deploy.views.tables import print_runs
+from aos_lab.formats import PROBLEM_ENDINGS
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 from aos_solver.offline.following import following
+
+if TYPE_CHECKING:
+    from aos_lab.problem_missions import ProblemPlayer
 
 __all__ = ["register"]
 
@@ -48,8 +53,27 @@ class Campaign(msgspec.Struct):
     summary: dict[str, float]
 
 
+Target = Annotated[
+    Path,
+    typer.Argument(
+        metavar="BUNDLE",
+        help="A directory of documents; a deploy file, for its bundles, constraints and values together; or, "
+        "with --policy, a .pomdp or .pomdpx file",
+    ),
+]
+GoalProbability = Annotated[float, typer.Option(callback=finite, help="Ends a mission when passed")]
+StepLimit = Annotated[
+    int | None,
+    typer.Option(min=1, help="Ends a mission when reached; else 30, of a problem file all steps that count"),
+]
+StopBelowValue = Annotated[
+    float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
+]
+States = Annotated[bool, typer.Option("--states", help="Also tell the world's state at each step")]
+
+
 def simulate(
-    bundle: Bundle,
+    bundle: Target,
     runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,
     seed: Seed = 1,
     simulations: Simulations = 100_000,
@@ -60,47 +84,73 @@ def simulate(
     policy: PolicyFile = None,
     never: Never = None,
     set_values: SetValues = None,
-    goal_probability: Annotated[
-        float, typer.Option(callback=finite, help="Ends a mission when passed")
-    ] = 0.9,
-    step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
-    stop_below_value: Annotated[
-        float | None, typer.Option(callback=finite, help="Ends a mission when no action can return so much")
-    ] = None,
-    states: Annotated[
-        bool, typer.Option("--states", help="Also tell the world's state at each step")
-    ] = False,
+    goal_probability: GoalProbability = 0.9,
+    step_limit: StepLimit = None,
+    stop_below_value: StopBelowValue = None,
+    states: States = False,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
     """Run whole missions against the documents' own model.
+
+    Or those of a .pomdp or .pomdpx file, by a policy of `aos solve` for it.
 
     Run k has seed SEED + k, from 0. Goals and failures are counted by what has
     become of the world; what the belief held for the goal is told beside.
     Ctrl-C ends it early and tells of the missions that have ended.
     """
     limits = MissionLimits(
-        goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
+        goal_probability=goal_probability, step_limit=step_limit or 30, stop_below_value=stop_below_value
     )
     search = Search(
         simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
     )
-    search = following(search, policy)
 
     done: list[SimulatedRun] = []
-    play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
+    is_problem = bundle.suffix in PROBLEM_ENDINGS and not bundle.is_dir()
     was_stopped = False
     try:
-        with_engine(bundle, seed, play, never=never, set_values=set_values)
+        if is_problem:
+            player = _problem_player(bundle, policy, step_limit, never=never, set=set_values)
+            _play_problem(player, range(seed, seed + runs), done, with_states=states)
+        else:
+            search = following(search, policy)
+            play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
+            with_engine(bundle, seed, play, never=never, set_values=set_values)
     except KeyboardInterrupt:
         was_stopped = True
     if done and as_json:
         print_json(Campaign(done, _summary(done)))
     elif done:
-        print_runs(done, _summary(done))
+        print_runs(done, _summary(done), has_goals=not is_problem)
     if was_stopped:
         typer.echo(f"aos: stopped after {len(done)} of {count(runs, 'mission')}", err=True)
         raise typer.Exit(ExitCode.INTERRUPTED)
+
+
+def _problem_player(
+    path: Path, policy: Path | None, step_limit: int | None, **of_documents: list[str] | None
+) -> ProblemPlayer:
+    """The player of a problem file; BadParameter for options that documents alone have."""
+    for name, given in of_documents.items():
+        if given:
+            raise typer.BadParameter("a problem file has none", param_hint=f"--{name}")
+    if policy is None:
+        hint = f"a problem file is simulated by a policy: aos solve {path} --out FILE.policy makes it"
+        raise typer.BadParameter(hint, param_hint="--policy")
+    # Numbers take a tenth of a second to import, and missions of documents do without.
+    from aos_lab.problem_missions import ProblemPlayer
+    from aos_solver.offline.policy import Policy
+
+    return ProblemPlayer(path, Policy.load(policy), step_limit)
+
+
+def _play_problem(
+    player: ProblemPlayer, seeds: Iterable[int], done: list[SimulatedRun], *, with_states: bool
+) -> None:
+    with progress() as bar:
+        shown = bar.track(list(seeds), description="missions", update_period=0.2)
+        done.extend(player.play(seed, with_states=with_states) for seed in shown)
 
 
 async def _play(

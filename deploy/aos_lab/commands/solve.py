@@ -24,9 +24,10 @@ from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress, waiting
+from aos_lab.formats import PROBLEM_ENDINGS
 from aos_lab.formats.graph_writers import c_header, graphviz, write_text
 from aos_lab.formats.policy_graph import PolicyGraph, policy_graph
-from aos_lab.formats.problem_files import PROBLEM_ENDINGS, read_problem
+from aos_lab.formats.problem_files import read_problem
 from aos_lab.formats.problem_writers import WRITERS, write_problem
 from aos_protocol.documents import MissionValue
 from aos_protocol.errors import DeployError, PlanningError

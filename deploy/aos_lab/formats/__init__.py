@@ -1,1 +1,5 @@
 """Problem files of other planners: read into models of numbers, and written from them."""
+
+__all__ = ["PROBLEM_ENDINGS"]
+
+PROBLEM_ENDINGS = (".pomdpx", ".pomdp")

@@ -11,9 +11,7 @@ from aos_lab.formats.pomdpx_reader import read_pomdpx
 from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel
 
-__all__ = ["PROBLEM_ENDINGS", "read_problem"]
-
-PROBLEM_ENDINGS = (".pomdpx", ".pomdp")
+__all__ = ["read_problem"]
 
 
 def read_problem(

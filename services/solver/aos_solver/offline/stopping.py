@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from aos_solver.offline.explicit_model import ExplicitModel, with_more_outcomes
 
-__all__ = ["STOP", "with_stopping"]
+__all__ = ["STOP", "over_states", "with_stopping"]
 
 STOP = "stop"
 
@@ -26,7 +26,7 @@ def with_stopping(model: ExplicitModel, value: float) -> ExplicitModel:
     outcomes, sensings = with_more_outcomes(model, rows, row_count, more, states, np.ones(len(more)))
     rewards = np.zeros((states + 1, actions + 1))
     rewards[:states, :actions] = model.rewards
-    rewards[:states, actions] = np.where(_is_over(model), 0.0, value)
+    rewards[:states, actions] = np.where(over_states(model), 0.0, value)
     return msgspec.structs.replace(
         model,
         states=(*model.states, "stopped"),
@@ -39,7 +39,7 @@ def with_stopping(model: ExplicitModel, value: float) -> ExplicitModel:
     )
 
 
-def _is_over(model: ExplicitModel) -> NDArray[np.bool_]:
+def over_states(model: ExplicitModel) -> NDArray[np.bool_]:
     """The states that nothing leaves and in which nothing is worth anything."""
     actions = len(model.actions)
     state = model.outcomes.row_numbers // actions
