@@ -9,6 +9,7 @@ import msgspec
 
 from aos_deploy.constraints import constrained
 from aos_deploy.deploy_file import Deployment, read_deploy_file
+from aos_deploy.deploy_folder import deploy_file_at, deploy_files_in
 from aos_deploy.mission_values import with_values
 from aos_deploy.printing import from_here
 from aos_language.load import load_files, read_bundle_files
@@ -86,7 +87,12 @@ class Planned(msgspec.Struct, frozen=True):
 
 
 def planned_of(path: Path) -> Planned:
-    """Reads a bundle, or the bundles of a deploy file; errors are those of `read_deploy_file`."""
+    """Reads a bundle, or the bundles of a deploy file; errors are those of `read_deploy_file`.
+
+    A folder with no document and a deploy file stands for that file, as it does for `aos-up`.
+    """
+    if path.is_dir() and not read_bundle_files(path)[0] and next(deploy_files_in(path), None):
+        path = deploy_file_at(path)
     if path.suffix not in (".yaml", ".yml") or not path.is_file():
         files, remarks = read_bundle_files(path)
         return Planned(files, tuple(remarks))

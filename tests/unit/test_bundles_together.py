@@ -64,6 +64,15 @@ def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path: Path) -
     assert (linted.exit_code, "0 errors" in linted.stdout) == (0, True)
 
 
+def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path: Path) -> None:
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    (tmp_path / "yard.yaml").write_text("aos: 1\nrobot: yard\nbundles: [yard]\n")
+    assert sorted(planned_of(tmp_path).files) == ["push.sd", "yard.ef"]
+    (tmp_path / "other.yaml").write_text("aos: 1\nrobot: yard\nbundles: [yard]\n")
+    with pytest.raises(DeployError, match="has 2 deploy files"):
+        planned_of(tmp_path)
+
+
 def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path: Path) -> None:
     bundle(tmp_path, "world", yard_ef=ENVIRONMENT)
     bundle(tmp_path, "skills", push_sd=SKILL)
