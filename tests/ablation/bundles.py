@@ -14,6 +14,7 @@ from statistics import fmean
 from typing import Any
 
 from tests.wide.problems import PROBLEMS, SIZES
+from tests.wide.rescue import rescue
 from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 
 from .losses import error_of_mean
@@ -56,12 +57,12 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP
+    problems = PROBLEMS | UPKEEP | {"rescue": rescue}
     if name not in problems:
         return None
     written = scratch / name
     written.mkdir(exist_ok=True)
-    for file, text in problems[name]((SIZES | UPKEEP_SIZES)[name]).items():
+    for file, text in problems[name]((SIZES | UPKEEP_SIZES | {"rescue": 3})[name]).items():
         (written / file).write_text(text)
     return written
 

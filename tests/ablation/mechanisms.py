@@ -43,7 +43,12 @@ ROUTES = (
         ),
     ),
     Route("pomcp", "pomcp", (), ("listed_values", "step_table", *_SEARCH)),
-    Route("auto, states unlisted", "auto", _UNLISTED, ("options", "enough_ways", "learned_values")),
+    Route(
+        "auto, states unlisted",
+        "auto",
+        _UNLISTED,
+        ("options", "enough_ways", "tests_first", "learned_values"),
+    ),
     Route(
         "pomcp with learned values",
         "auto",
@@ -114,6 +119,7 @@ BUNDLES = (
     BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("harbour", 1000, 60, ("options", "learned_values")),
+    BundleRoute("rescue", 1000, 40, ("options", "tests_first")),
     BundleRoute("shelf", 1000, 60, ("estimated_draws",)),
     BundleRoute(
         "pocman", 1000, 60, ("rollout_shares", "max_backup", "turns", "own_spread", "learned_values")

@@ -58,10 +58,11 @@ class Plan(msgspec.Struct, frozen=True):
 
     Skills that the search did without have no actions here; `place` is where the best one stands among those
     that have, None where that is its index. `planner` has made it with so many `threads`, and `why` says why
-    that planner did. `known_simulations` were in the tree before the search. The search took `search_s` of
-    processor time, and before it the lists, values and first bounds, which no budget counts, `preparation_s`.
-    `by_thread` are the simulations of each thread where POMCP searched, and `pondered` those that were made
-    since the plan before while an action was carried out.
+    that planner did. Where it `is_idle`, the action changes nothing and tells nothing. `known_simulations`
+    were in the tree before the search. The search took `search_s` of processor time, and before it the
+    lists, values and first bounds, which no budget counts, `preparation_s`. `by_thread` are the simulations
+    of each thread where POMCP searched, and `pondered` those that were made since the plan before while an
+    action was carried out.
     """
 
     index: int
@@ -80,6 +81,7 @@ class Plan(msgspec.Struct, frozen=True):
     place: int | None = None
     by_thread: tuple[int, ...] = ()
     pondered: tuple[int, ...] = ()
+    is_idle: bool = False
 
     @property
     def best(self) -> ActionValue:

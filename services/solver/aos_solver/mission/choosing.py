@@ -79,6 +79,7 @@ class _Without(msgspec.Struct, frozen=True):
         )
 
 
+_IDLE_DECISIONS = 5  # in a row: one or two may be bad luck of a search
 _GIVES_UP = (Ending.SKILLS_FAILED, Ending.NOTHING_WORTHWHILE)
 
 
@@ -104,6 +105,17 @@ class Chooser:
         self._budget = budget
         self._left_out = left_out
         self._searches: list[SearchMade] = []
+        self._idle = 0  # decisions in a row
+
+    @property
+    def remark_of_idling(self) -> str:
+        """The remark on decisions that would be made for ever; empty where there are none."""
+        if self._idle < _IDLE_DECISIONS:
+            return ""
+        return (
+            f"the last {self._idle} decisions changed nothing and told nothing, "
+            "since nothing is known that is worth more"
+        )
 
     def drop(self, choice: Choice) -> None:
         """The choice is not carried out; the next decision's record tells of its searches."""
@@ -199,6 +211,8 @@ class Chooser:
             plan, is_cautious = await self._plan(engine, step, belief, barred, without)
             if actions[plan.index].skill in self._around.unavailable:
                 continue
+            is_free = not barred and not without.reasons
+            self._idle = self._idle + 1 if plan.is_idle and is_free else 0
             ended = await self._ending(engine, plan, belief, without)
             plan = _explained(plan, without.reasons, is_cautious)
             if ended is not None:
@@ -308,6 +322,8 @@ class Chooser:
                 is_reason = (await engine.may_reach_goal(cautious=is_cautious)).is_reachable
             if is_reason and not reach.is_reachable:
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
+        if self.remark_of_idling and self._limits.stops_for_nothing:
+            return Ended(Ending.NOTHING_WORTHWHILE, self.remark_of_idling)
         ending = ending_after_planning(plan.best, plan.actions, self._limits)
         if ending and without.reasons.keys() & self._set_aside().keys():
             return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))

@@ -57,6 +57,11 @@ class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
         return self.stop_below_value if self.stop_below_value is not None else 0.0
 
     @property
+    def stops_for_nothing(self) -> bool:
+        """True if the mission ends where it could as well do nothing for ever."""
+        return self.stop_below_value is not None and self.stop_below_value >= 0
+
+    @property
     def refuted_below(self) -> float:
         """The cautious belief is refuted once observations are less probable in it by this factor.
 

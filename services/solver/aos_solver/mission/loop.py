@@ -176,7 +176,9 @@ class Mission:
             await self._terms.search.ponder(self._model.engine, decision.step, choice.plan.index)
             if self._is_stopped() or not await self._finish(decision, await self._act(decision)):
                 return
-        self._reports.end(ending, remark_of(ending, self.belief, self._terms.limits))
+        remark = remark_of(ending, self.belief, self._terms.limits)
+        idling = self._chooser.remark_of_idling if ending == Ending.STEP_LIMIT else ""
+        self._reports.end(ending, f"{remark}; {idling}" if idling else remark)
 
     async def _take_up(self) -> bool:
         """Brings the mission to where the memory ends, and the step that is not over to its end.

@@ -24,6 +24,7 @@
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/idle_actions.hpp"
 #include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 
@@ -187,7 +188,8 @@ class PlanningCommands {
     json.begin_object().member("index", numbers[static_cast<std::size_t>(best)]).member("place", best);
     json.member("simulations", simulations).member("horizon", horizon).member("known_simulations", known);
     const std::string_view name = search.name();
-    json.member("planner", name).member("why", search.why());
+    const bool idles = is_idle(belief, best);
+    json.member("planner", name).member("why", search.why() + (idles ? idle_text : "")).member("is_idle", idles);
     json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
     write_numbers(json.key("by_thread"), search.simulations_by_thread());
     write_numbers(json.key("pondered"), std::exchange(pondered_simulations_, {}));
@@ -208,6 +210,8 @@ class PlanningCommands {
     json.member("seconds", spent.count()).member("cpu_seconds", processor.count());
     json.member("preparation_s", search.preparing().count()).member("search_s", search.searching().count()).end_object();
   }
+
+  static constexpr const char* idle_text = "; nothing is known that is worth more than this action, which changes nothing and tells nothing";
 
   // The actions that the command bars, by their numbers among `numbers`.
   static BarredActions barred_by(const Command& command, const std::vector<int>& numbers) {

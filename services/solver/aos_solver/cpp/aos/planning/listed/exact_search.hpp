@@ -46,7 +46,7 @@ class ExactSearch final : public Planner<Model> {
 
   // Finds what missions lose that begin with the best action and plan anew at each step, which takes a quarter of the budget
   // at most.
-  std::uint64_t search(const Question<Model>& question, Sampler& /*random*/, std::string& /*why*/) override {
+  std::uint64_t search(const Question<Model>& question, Sampler& /*random*/, std::string& why) override {
     const auto action = static_cast<std::size_t>(best(question.barred));
     mean_loss_ = loss_error_ = 0;
     const auto losses = evaluation_->losses(space_.weights_of(question.belief), action, horizon_, limits_of(question.budget, horizon_));
@@ -55,6 +55,7 @@ class ExactSearch final : public Planner<Model> {
     for (const double loss : losses) mean_loss_ += loss / count;
     for (const double loss : losses) squares += (loss - mean_loss_) * (loss - mean_loss_);
     if (count > 1) loss_error_ = std::sqrt(squares / (count - 1) / count);
+    why += unplayed_text(losses.size());
     loss_error_ = std::hypot(loss_error_, error_of_unplayed(count, std::abs(values_[action].value)));
     const std::uint64_t taken = simulations();
     evaluation_.reset();

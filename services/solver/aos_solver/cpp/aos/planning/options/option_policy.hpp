@@ -85,7 +85,7 @@ class OptionPolicy {
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
     const std::size_t observing = candidates_.size();
     for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
-    pairs_.add_to(candidates_, observing, left, random);
+    if (switches::tests_first) pairs_.add_to(candidates_, observing, left, random);
     settle(belief.probability_of(Ending::running));
     taken_ = affordable_ - left;
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
@@ -169,7 +169,7 @@ class OptionPolicy {
     double gained = 0;
     for (std::size_t i = 0; i < gains.size() && gains[i].first > gained; ++i) {
       const auto& [gain, candidate] = gains[i];
-      if (i >= most_after || left <= 0 || clock_.is_over()) return gain;
+      if (!switches::tests_first || i >= most_after || left <= 0 || clock_.is_over()) return gain;
       const double here = candidate->spared - candidate->avoided[likely];
       const double there = moves_.spared_after(library_.options()[option], likely, candidate->way, here, left, random);
       gained = std::max(gained, gain - candidate->discount * std::max(here - there, 0.0));

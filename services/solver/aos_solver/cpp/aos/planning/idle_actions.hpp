@@ -1,0 +1,49 @@
+// Actions after which everything is as before, so that the next decision is the same one again.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/listed/state_numbers.hpp"
+
+namespace aos {
+
+inline constexpr std::size_t most_states_compared = 20'000;
+
+// Whether an action earns nothing, changes no running state of a belief, and is answered alike in all of them, without a draw.
+template <class Model>
+bool is_idle(const Belief<Model>& belief, int action) {
+  if (belief.particles().size() > most_states_compared) return false;
+  const ForgottenTexts forgotten;
+  const StateNumbers<Model> numbers;
+  Enumerator draws;
+  typename Model::State next{};
+  Step step;
+  std::optional<Observation> told;
+  try {
+    for (const auto& [state, weight] : belief.particles()) {
+      if (Model::ending(state) != Ending::running) continue;
+      const auto run = [&](Enumerator& path) {
+        next = state;
+        step = Model::step(next, action, path);
+      };
+      draws.for_each_path(run, [](Enumerator&) {}, /*max_paths=*/1);
+      if (!told) told = step.observation;
+      if (step.reward > 0 || step.observation != *told || Model::ending(next) != Ending::running || !numbers.are_same(state, next)) return false;
+    }
+  } catch (const NotEnumerable&) {
+    blame::at(0);
+    return false;
+  } catch (const ModelFault&) {
+    blame::at(0);
+    return false;
+  }
+  return told.has_value();
+}
+
+}  // namespace aos

@@ -1,0 +1,74 @@
+"""A mission that decides for what changes nothing and tells nothing: it says so, or gives up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from models import built_text
+from scripted_missions import Surroundings, observed, run_mission
+from wide.writing import BundleWriter
+
+from aos_protocol.messages import MissionState
+from aos_solver.mission.endings import MissionLimits
+
+_SAID = "changed nothing and told nothing, since nothing is known that is worth more"
+
+
+def _door(by_itself: str) -> dict[str, str]:
+    """A door: going through it earns 5 where it is open and costs 5 elsewhere, and waiting costs nothing."""
+    writer = BundleWriter(
+        "door",
+        f"""horizon: 4
+discount: 0.9
+
+state_variable: bool is_open
+
+state_variable: bool is_through
+
+initial_belief:
+state.is_open = false;
+
+extrinsic_code:
+{by_itself}
+
+reward_code:
+if (state.is_through) __isGoalState = true;
+""",
+    )
+    writer.skill(
+        "go",
+        ["through", "hurt"],
+        "__reward = state_.is_open ? 5 : -5;\nstate__.is_through = state_.is_open;\n"
+        "__moduleResponse = state_.is_open ? through : hurt;",
+    )
+    writer.skill("wait", ["open", "closed"], "__moduleResponse = state_.is_open ? open : closed;")
+    return writer.files
+
+
+async def _mission(
+    by_itself: str, limits: MissionLimits, cache_dir: Path
+) -> tuple[MissionState, Surroundings]:
+    built = await built_text(_door(by_itself), cache_dir)
+    return await run_mission(
+        built, lambda request: observed(request, "closed"), limits=limits, simulations=200
+    )
+
+
+async def test_the_step_limit_and_each_record_tell_that_nothing_happened(cache_dir: Path) -> None:
+    state, around = await _mission("", MissionLimits(step_limit=7), cache_dir)
+    assert state.ending == "step_limit"
+    assert state.remark == f"the step limit of 7 is reached; the last 7 decisions {_SAID}"
+    assert "which changes nothing and tells nothing" in around.decisions[0].why
+
+
+async def test_a_mission_that_may_stop_for_nothing_gives_up(cache_dir: Path) -> None:
+    state, _around = await _mission("", MissionLimits(step_limit=9, stop_below_value=0), cache_dir)
+    assert (state.ending, state.step) == ("nothing_worthwhile", 4)
+    assert state.remark == f"the last 5 decisions {_SAID}"
+
+
+async def test_who_waits_for_what_happens_by_itself_is_not_idle(cache_dir: Path) -> None:
+    opens = "if (!state.is_open) state_.is_open = AOS.Bernoulli(0.3);"
+    state, around = await _mission(opens, MissionLimits(step_limit=7, stop_below_value=0), cache_dir)
+    assert state.ending == "step_limit"
+    assert "changes nothing" not in around.decisions[0].why
