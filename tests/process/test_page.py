@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -184,6 +186,18 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
         page.keyboard.press("ArrowLeft")
         expect(page.locator(".alarm")).to_have_count(0)
         page.close()
+
+
+def test_a_run_that_is_killed_is_told_as_such(browser: Browser, living: tuple[Gateway, Path]) -> None:
+    served, run = living
+    page = opened(browser, served)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}")
+    expect(page.get_by_role("button", name="Hold", exact=True)).to_be_visible()
+    os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
+    expect(page.locator(".phase[role=status]")).to_contain_text("Killed")
+    expect(page.locator(".remark").first).to_contain_text("aos-up --resume")
+    expect(page.get_by_role("button", name="Hold", exact=True)).to_have_count(0)
+    expect(page.locator(".connection")).to_contain_text("Recorded")
 
 
 def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_shown(

@@ -1,7 +1,7 @@
 // One mission: where it is, what was decided, and the views below.
 import { Card, Findings, html, useEffect } from "./ui.js";
 import { addressOf, route, VIEWS } from "./route.js";
-import { alarms, at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
+import { alarms, at, close, connection, index, isGone, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps } from "./store.js";
 import { chance, ending, phase } from "./format.js";
 import { Controls, LeftOut } from "./steering.js";
 import { Next } from "./next.js";
@@ -50,10 +50,13 @@ export function Mission() {
   </main>`;
 }
 
+const GONE = "Its aos-up has gone before the mission ended. Where it was killed, aos-up --resume takes the mission up.";
+
 function Head() {
   const view = mission.value;
   const now = state.value;
   const isOver = now?.phase === "ended";
+  const ended = isOver ? now.ending : isGone.value ? "killed" : null;
   const endings = at.value && (isLive.value || at.value === last.value ? at.value.endings_after ?? at.value.endings : at.value.endings_after ?? at.value.endings);
   const goal = endings?.goal ?? now?.goal_probability;
   return html`<header class="head">
@@ -62,11 +65,11 @@ function Head() {
       <p class="muted">${route.value.name}</p>
     </div>
     <div class="head-state">
-      <p class=${`phase is-${isOver ? now.ending : now?.phase ?? "waiting"}`} role="status">
-        <i class=${isOver || !view?.is_running ? "still-dot" : "pulse"}></i>${isOver ? ending(now.ending) : phase(now?.phase ?? "waiting")}
+      <p class=${`phase is-${ended ?? now?.phase ?? "waiting"}`} role="status">
+        <i class=${isOver || !view?.is_running ? "still-dot" : "pulse"}></i>${ended ? ending(ended) : phase(now?.phase ?? "waiting")}
         ${!isLive.value && html`<span class="past">showing step ${at.value?.step}</span>`}
       </p>
-      <p class="remark">${now?.remark ?? ""}</p>
+      <p class="remark">${isGone.value ? GONE : now?.remark ?? ""}</p>
       <${Alarm} />
     </div>
     <div class="goal" title="How probable the goal is, as the belief has it">

@@ -23,6 +23,7 @@ export const successor = signal(null);
 export const loadedIn = signal(null);
 
 export const last = computed(() => steps.value.at(-1) ?? null);
+export const isGone = computed(() => !!mission.value && !mission.value.is_running && state.value?.phase !== "ended");
 export const isLive = computed(() => route.value.step === null);
 export const at = computed(() => {
   const all = steps.value;
@@ -78,7 +79,7 @@ export function listen(name = "", since = 0) {
   const query = name ? `?mission=${encodeURIComponent(name)}&since=${since}` : "";
   source = new EventSource(`/v1/events${query}`);
   const own = source;
-  source.onopen = () => (connection.value = state.value?.phase === "ended" ? "over" : "live");
+  source.onopen = () => (connection.value = state.value?.phase === "ended" || isGone.value ? "over" : "live");
   source.onerror = () => {
     if (own !== source) return;
     connection.value = "lost";
@@ -179,10 +180,18 @@ function flush() {
       else if (kind === "service") services.value = new Map(services.value).set(event.service, event.is_there);
       else if (kind === "progress") progress.value = event;
       else if (kind === "bundle") reports.value = [event, ...reports.value].slice(0, 20);
-      else if (kind === "runs") runs.value = event;
+      else if (kind === "runs") takeRuns(event);
     }
     if (rows.length) takeRows(rows);
   });
+}
+
+// A run that is killed says nothing, and neither does one that is taken up.
+function takeRuns(event) {
+  runs.value = event;
+  const view = mission.value;
+  const run = view && event.find((each) => each.run === view.run && each.directory);
+  if (run && run.is_running !== view.is_running && state.value?.phase !== "ended") open(route.value.name, { again: true });
 }
 
 function takeState(event) {
@@ -198,7 +207,7 @@ function takeState(event) {
       () => {},
     );
     loadPictures(event.mission);
-  } else if (connection.value === "over") connection.value = "live";
+  } else if (connection.value === "over" && !isGone.value) connection.value = "live";
 }
 
 function takeRows(events) {
