@@ -101,6 +101,8 @@ for (int i = 0; i < 2; i++) {
     if (face == 0) i--;
     state__.spot += face;
 }"""
+UTILITIES = """state__.spot = 0;
+while (state__.spot == 0) state__.spot = AOSUtils::SampleDiscrete(vector<double>{0.5, 0.2, 0.3});"""
 EXACT: dict[str, tuple[str, dict[int, Fraction]]] = {
     "again": (
         "state__.spot = 0; while (state__.spot == 0) { state__.spot = AOS.Bernoulli(0.5) ? 0 : 1; }",
@@ -118,6 +120,7 @@ EXACT: dict[str, tuple[str, dict[int, Fraction]]] = {
     "broken_off": (BROKEN_OFF, {1: Fraction(1, 3), 2: Fraction(1, 3), 3: Fraction(1, 3)}),
     "shared": ("state__.spot = 0; state__.spot = rolled(1) + rolled(1);", sum_of_rolls(2)),
     "redrawn": (REDRAWN, sum_of_rolls(2)),
+    "utilities": (UTILITIES, ROLL),
 }
 PLACES = 5
 

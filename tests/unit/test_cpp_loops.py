@@ -24,6 +24,7 @@ def found(code: str) -> tuple[DrawingLoop, ...]:
         "for (int i = 0; i < 3; i++) if (AOS.Bernoulli(0.5)) i--;",
         "for (int i = 0; i < 3; i++) { int& j = i; if (AOS.Bernoulli(0.5)) j--; }",
         "while (AOS.Bernoulli(0.5))",
+        "do { state.side = AOSUtils::SampleDiscrete(state.odds); } while (state.side == 0);",
     ],
 )
 def test_a_loop_that_draws_is_told(code: str) -> None:

@@ -311,5 +311,5 @@ def _root(place: tree_sitter.Node | None) -> set[str]:
 
 
 def _names(node: tree_sitter.Node | None) -> set[str]:
-    """The identifiers below a node."""
-    return {text_of(part) for part in below(node) if part.type == "identifier"}
+    """The identifiers below a node, also those before `::`, as `AOSUtils`."""
+    return {text_of(part) for part in below(node) if part.type in ("identifier", "namespace_identifier")}
