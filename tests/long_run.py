@@ -27,8 +27,11 @@ SKILLS = ("look", "go(to=hall)", "go(to=lab)", "pick", "put", "wait")
 PLACES = ("hall", "lab", "yard", "office")
 
 
-def write_long_run(runs: Path, steps: int, *also: Marginal) -> str:
-    """Writes the run of a mission with so many steps, and returns its name. Each belief has `also` these."""
+def write_long_run(runs: Path, steps: int, *also: Marginal, has_ended: bool = True) -> str:
+    """Writes the run of a mission with so many steps, and returns its name. Each belief has `also` these.
+
+    One that has not ended was killed.
+    """
     draws = random.Random(7)
     run = RunDirectory.create(runs, "marathon", now_ns=1_700_000_000 * 10**9)
     name = run.path.name
@@ -61,7 +64,8 @@ def write_long_run(runs: Path, steps: int, *also: Marginal) -> str:
                     2 * step - 1, name, skill, belief=_belief(draws, also), outcome=outcome, **common
                 ),
             )
-        journal.append("mission", MissionState(name, "ended", steps, 0.0, "step_limit", "the step limit"))
+        if has_ended:
+            journal.append("mission", MissionState(name, "ended", steps, 0.0, "step_limit", "the step limit"))
     run.close()
     return name
 

@@ -10,6 +10,7 @@ import typer
 
 from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import Mission
+from aos_deploy.printing import from_here
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import lines_of, on_one_line
@@ -63,16 +64,31 @@ def decisions(
         directory = chosen_run(system.run, system.runs)
         newest = max(mission_folders(directory.path), default=0)
         if not directory.is_running or mission not in (None, newest):
-            for event in _journaled(directory, mission or newest):
+            number = mission or newest
+            has_ended = False
+            for event in _journaled(directory, number):
                 show(event)
+                has_ended = has_ended or isinstance(event, MissionState)
+            if not has_ended:
+                _tell_no_end(directory)
             return
         system = System(run=directory.path)
     has_ended = system.do(lambda aos: _stream(aos, show, is_following=follow), user=WATCHER)
     if follow and not has_ended and not system.is_at_endpoint:
         # The system stopped meanwhile, and took the end with it.
         for event in _journaled(directory, newest):
+            has_ended = has_ended or isinstance(event, MissionState)
             if isinstance(event, MissionState) or (event.mission, event.sequence) not in shown:
                 show(event)
+        if not has_ended:
+            _tell_no_end(directory)
+
+
+def _tell_no_end(directory: RunDirectory) -> None:
+    """Says on standard error that a mission has no end, where nobody is there who could give it one."""
+    if not directory.is_running and directory.read_summary() is None:
+        what = f"aos: {directory.path.name} was killed before its mission ended"
+        typer.echo(f"{what}. `aos-up --resume {from_here(directory.path)}` takes it up", err=True)
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:

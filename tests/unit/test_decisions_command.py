@@ -1,0 +1,23 @@
+"""`aos decisions` of a run that is over."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from long_run import write_long_run
+from typer.testing import CliRunner
+
+from aos_deploy.cli import aos_app
+
+
+@pytest.mark.parametrize("is_killed", [True, False])
+def test_a_mission_that_was_killed_is_told_apart_from_one_that_has_ended(
+    tmp_path: Path, is_killed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
+    run = tmp_path / "runs" / write_long_run(tmp_path / "runs", 2, has_ended=not is_killed)
+    told = CliRunner().invoke(aos_app(), ["decisions", "--run", str(run)])
+    assert told.exit_code == 0
+    assert told.stdout.count("step  2") == 2
+    assert ("aos-up --resume" in told.stderr, "mission ended" in told.stdout) == (is_killed, not is_killed)
