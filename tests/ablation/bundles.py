@@ -13,8 +13,10 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from tests.wide.lock import lock
 from tests.wide.problems import PROBLEMS, SIZES
 from tests.wide.rescue import rescue
+from tests.wide.together import TOGETHER, TOGETHER_SIZES
 from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 
 from .losses import error_of_mean
@@ -57,12 +59,13 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | {"rescue": rescue}
+    problems = PROBLEMS | UPKEEP | TOGETHER | {"rescue": rescue, "lock": lock}
+    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | {"rescue": 3, "lock": 5}
     if name not in problems:
         return None
     written = scratch / name
     written.mkdir(exist_ok=True)
-    for file, text in problems[name]((SIZES | UPKEEP_SIZES | {"rescue": 3})[name]).items():
+    for file, text in problems[name](sizes[name]).items():
         (written / file).write_text(text)
     return written
 

@@ -117,6 +117,8 @@ BUNDLES = (
     BundleRoute("cleaning", 4000, 60, _SAVINGS),
     BundleRoute("parcels", 1000, 60, ("options", "learned_values")),
     BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
+    BundleRoute("lock", 4000, 80, ("goal_conditions",)),
+    BundleRoute("tidy", 4000, 100, ("goal_conditions",)),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("harbour", 1000, 60, ("options", "learned_values")),
     BundleRoute("rescue", 1000, 40, ("options", "tests_first")),

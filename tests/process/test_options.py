@@ -7,6 +7,7 @@ from statistics import fmean
 
 from models import built_text, engine_of
 from wide.delivery import delivery
+from wide.lock import lock
 from wide.problems import open_field, parcels
 from wide.rescue import rescue
 
@@ -81,3 +82,12 @@ async def test_a_reward_that_was_earned_is_not_expected_again_where_the_mission_
         searches = (Search(simulations=1000, seed=seed) for seed in range(8))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
     assert fmean(run.discounted_return for run in runs) > 10
+
+
+async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir: Path) -> None:
+    """A lock opens when five dials are right, and nothing is earned before. Random actions return -24."""
+    async with engine_of(await built_text(lock(5), cache_dir)) as engine:
+        search = Search(simulations=10_000, seed=1)
+        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
+    assert run.actions[-1] == "pull"
+    assert run.discounted_return > 5

@@ -21,12 +21,14 @@ import numpy as np
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
 from .inspection import inspection, inspection_rule
+from .lock import Lock, lock, lock_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
 from .screws import Screws, screws, screws_rule
 from .tabletop import Tabletop, tabletop, tabletop_rule
+from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
@@ -36,21 +38,30 @@ _SINGLE = {
     "screws": screws,
     "rescue": rescue,
     "tabletop": tabletop,
+    "lock": lock,
 }
-_BUNDLES = PROBLEMS | APART | UPKEEP | _SINGLE
-_SIZES = SIZES | APART_SIZES | UPKEEP_SIZES | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5}
+_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | _SINGLE
+_SIZES = (
+    SIZES
+    | APART_SIZES
+    | UPKEEP_SIZES
+    | TOGETHER_SIZES
+    | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5}
+)
 _RULES = (
     RULES
     | APART_RULES
     | UPKEEP_RULES
+    | TOGETHER_RULES
     | {
         "inspection": inspection_rule,
         "screws": screws_rule,
         "rescue": rescue_rule,
         "tabletop": tabletop_rule,
+        "lock": lock_rule,
     }
 )
-_WORLDS = {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop}
+_WORLDS = TOGETHER_WORLDS | {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop, "lock": Lock}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:

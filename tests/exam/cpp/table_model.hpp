@@ -41,6 +41,7 @@ struct TableModel {
   static constexpr const char* project = "exam";
   static constexpr bool has_rollout_policy = false;
   static constexpr bool has_state_heuristic = false;
+  static constexpr bool has_goal_conditions = false;
   static constexpr int skill_count = 1;
   inline static int horizon = 0;
   inline static double discount = 0;
@@ -137,6 +138,7 @@ struct TableModel {
     return {outcome.reward, readings[chosen(weights_[problem_->rows.size() + outcome.sensing], random)].observation};
   }
   static bool meets_precondition(const State&, int, auto&) { return true; }
+  static int conditions_met(const State&) { return 0; }
 
   static double rollout(const State& state, int& left, aos::Sampler& random) {
     return aos::rollout<TableModel>(state, left, random);

@@ -135,6 +135,7 @@ class _Lowering:
         skills = tuple(self._skill(skill) for skill in project.skills)
         monitors = tuple(self._monitors())
         constraints = tuple(self._constraint(constraint) for constraint in project.constraints)
+        special_states, skills = self._with_goal_conditions(special_states, skills)
         names = frozenset(self._pieces.identifiers)
         headers = headers_for(names)
         low_level = project.low_level.constants if project.low_level is not None else ()
@@ -231,6 +232,26 @@ class _Lowering:
                 )
             )
         return tuple(lowered)
+
+    def _with_goal_conditions(
+        self, special_states: tuple[SpecialState, ...], skills: tuple[LoweredSkill, ...]
+    ) -> tuple[tuple[SpecialState, ...], tuple[LoweredSkill, ...]]:
+        """Adds the code that counts conditions, where a reward or goal has several."""
+        code, replace = self._code, msgspec.structs.replace
+        counted = []
+        for special, lowered in zip(self._project.environment.special_states, special_states, strict=True):
+            if lowered.section is not None:
+                section = code.goal_conditions(LOOKING, special.code)
+                counted.append(replace(lowered, goal_conditions=section))
+            elif special.condition is not None and (lowered.is_goal or lowered.reward > 0):
+                counted.append(replace(lowered, goal_condition=code.goal_condition(special.condition)))
+            else:
+                counted.append(lowered)
+        models = [skill.model.dynamic_model for skill in self._project.skills]
+        return tuple(counted), tuple(
+            replace(skill, goal_conditions=code.goal_conditions(DYNAMIC, model))
+            for skill, model in zip(skills, models, strict=True)
+        )
 
     def _skill(self, skill: Skill) -> LoweredSkill:
         model, mapping, code = skill.model, skill.mapping, self._code

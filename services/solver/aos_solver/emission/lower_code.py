@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
+from aos_language.cpp.goal_conditions import Edits, counted_conditions
 from aos_language.cpp.loops import Scope, loops_of
 from aos_language.cpp.shared import SharedCode
 from aos_language.cpp.snippets import (
@@ -46,6 +47,7 @@ class Phase(msgspec.Struct, frozen=True):
     previous_copy: str = "state"
 
 
+_UNCOUNTED: Mapping[str, Edits] = {}
 _LoopsByCode = Mapping[int, LoopsOfPiece]
 """The loops by the identity of the snippet, since two snippets of a section may be equal."""
 
@@ -189,13 +191,28 @@ class SectionLowering:
         self.outside = Rewriting(object_types, known, values, shared.drawing)
         """The meanings of names in code that stands alone."""
 
-    def section(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
+    def goal_conditions(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
+        """The section once more, which counts the conditions of rewards and goals; None if they are few."""
+        read = [cpp for _, cpp in snippets_of(assignments)]
+        counted = counted_conditions(read)
+        edits = {cpp.code: edits for cpp, edits in zip(read, counted, strict=False)}
+        return self.section(phase, assignments, edits) if counted else None
+
+    def goal_condition(self, condition: Snippet) -> Piece | None:
+        """The same of a special state's condition."""
+        (edits,) = counted_conditions([read_cpp_expression(condition.code)], is_expression=True) or ((),)
+        rewriting = msgspec.structs.replace(self.outside, counted={condition.code: edits})
+        return self._pieces.expression(condition, rewriting) if edits else None
+
+    def section(
+        self, phase: Phase, assignments: tuple[Assignment, ...], counted: Mapping[str, Edits] = _UNCOUNTED
+    ) -> Section | None:
         """The section's function; None if there is nothing in it."""
         read = list(snippets_of(assignments))
         if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
             return None
         enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
-        rewriting = msgspec.structs.replace(self.outside, enums=enums)
+        rewriting = msgspec.structs.replace(self.outside, enums=enums, counted=counted)
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
         scope = _drawing(self.outside.drawing).with_variables(phase.changes | (names & _RESULTS))
         of_loops = _loops_of(assignments, scope)

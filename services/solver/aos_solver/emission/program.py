@@ -201,7 +201,8 @@ class Section(msgspec.Struct, frozen=True):
 class SpecialState(msgspec.Struct, frozen=True):
     """Form A has a condition, form B a section. `bit` is the flag that uses it up; 0 for those that stay.
 
-    `says_failure`: the documents say here what is a failure, and not the reward's sign.
+    `says_failure`: the documents say here what is a failure, and not the reward's sign. `goal_condition` and
+    `goal_conditions` are the same code, which counts its conditions.
     """
 
     number: int
@@ -213,6 +214,8 @@ class SpecialState(msgspec.Struct, frozen=True):
     says_failure: bool
     is_one_time: bool
     section: Section | None
+    goal_condition: Piece | None = None
+    goal_conditions: Section | None = None
 
     @property
     def is_terminal(self) -> bool:
@@ -253,6 +256,7 @@ class Skill(msgspec.Struct, frozen=True):
     `has_alike_groundings`: its parameters shape only what is observed.
     `has_certain_rewards`: its draws shape only what is observed.
     `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lower_copies`).
+    `goal_conditions` is the dynamic model once more, which counts its conditions.
     """
 
     name: str
@@ -274,6 +278,7 @@ class Skill(msgspec.Struct, frozen=True):
     has_certain_rewards: bool = False
     keeps_state: bool = True
     keeps_state_: bool = True
+    goal_conditions: Section | None = None
 
     @property
     def is_corrected(self) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import msgspec
 
 from aos_language.cpp.flow import STATES
+from aos_language.cpp.goal_conditions import Edits
 from aos_language.cpp.loops import DrawingLoop
 from aos_language.cpp.shared import SharedFunction
 from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
@@ -29,13 +30,14 @@ class Rewriting(msgspec.Struct, frozen=True):
 
     `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
     constants that every section sees, `drawing` the shared functions that have a source of draws as their
-    first parameter.
+    first parameter. `counted` are the edits that count conditions, by the snippet's text.
     """
 
     object_types: frozenset[str]
     enums: Mapping[str, EnumValues]
     values: frozenset[str] = frozenset()
     drawing: frozenset[str] = frozenset()
+    counted: Mapping[str, Edits] = {}
 
 
 class LoopsOfPiece(msgspec.Struct, frozen=True):
@@ -83,6 +85,7 @@ def rewrite(
     for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     edits += _of_definitions(cpp, functions)
+    edits += rewriting.counted.get(cpp.code, ())
     own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:
         if len(call.name) == 1 and call.name[0] in rewriting.drawing - own:

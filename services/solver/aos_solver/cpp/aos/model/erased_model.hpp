@@ -29,6 +29,7 @@ struct ErasedModel {
   inline static const int skill_count = static_cast<int>(compiled_model.skills.size());
   inline static const bool has_rollout_policy = compiled_model.has_rollout_policy;
   inline static const bool has_state_heuristic = compiled_model.has_state_heuristic;
+  inline static const bool has_goal_conditions = compiled_model.has_goal_conditions;
 
   static void prepare() { compiled_model.prepare(); }
   // The constants that the mission sets; they have their values when all is prepared.
@@ -136,6 +137,8 @@ struct ErasedModel {
   static bool meets_precondition(const State& state, int action, DirectedDraws& random) {
     return compiled_model.meets_precondition(state.bytes, action, random);
   }
+  // How many of the conditions hold that rewards and goals have; 0 where none of them has several.
+  static int conditions_met(const State& state) { return compiled_model.conditions_met(state.bytes); }
   // The mission's constraints: their number, whether one of them reads the next state, and which ones a step violates.
   static int constraint_count() { return compiled_model.constraint_count; }
   static bool constraints_look_ahead() { return compiled_model.constraints_look_ahead; }

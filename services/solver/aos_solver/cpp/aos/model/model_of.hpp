@@ -1,6 +1,7 @@
 // A compiled model, made of what an emitted file says of its project. Everything that is the same for all projects is here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,12 +10,14 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/correction.hpp"
+#include "aos/model/goal_conditions.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
@@ -35,6 +38,7 @@ struct SkillList {
   template <class Model>
   static constexpr std::array<SkillFacts, sizeof...(Skills)> facts{facts_of<Skills>(Model::template read_locals<Skills>)...};
   static constexpr bool has_monitors = (Skills::is_monitor || ...);
+  static constexpr bool have_goal_conditions = (Skills::has_goal_conditions || ...);
   // The local variables of the last real observation of each skill.
   struct Locals : LocalsOf<Skills>... {};
 };
@@ -130,6 +134,27 @@ class ModelOf {
     Environment::initial_belief(state, random);
     Environment::special_states(state, random);
     blame::at(0);
+  }
+  // Whether some reward or goal has several conditions, and how many of them hold. A skill's are those of the parameters with which
+  // most hold.
+  static constexpr bool has_goal_conditions = Environment::has_goal_conditions || Skills::have_goal_conditions;
+  static int conditions_met(const State& state, auto& random) {
+    int met = 0;
+    if constexpr (Environment::has_goal_conditions) met += special_conditions_met<Environment>(state, random);
+    if constexpr (Skills::have_goal_conditions) {
+      const char* skill = "";
+      int most = 0;
+      with_each_grounding(Skills{}, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+        if constexpr (Skill::has_goal_conditions) {
+          if (skill != Skill::aos_name) met += std::exchange(most, 0);
+          skill = Skill::aos_name;
+          most = std::max(most, skill_conditions_met<Skill>(state, parameters, random));
+        }
+      });
+      met += most;
+    }
+    blame::at(0);
+    return met;
   }
   static Step step(State& state, int action, auto& random) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {

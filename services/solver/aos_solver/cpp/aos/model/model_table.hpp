@@ -51,6 +51,7 @@ struct ModelTable {
   const std::vector<GroundedAction>* monitors;
   bool has_rollout_policy;
   bool has_state_heuristic;
+  bool has_goal_conditions;
   std::size_t ending_offset;
   std::span<const ByteRange> irrelevant;  // parts of a state
   std::span<const Member> variables;      // that a saved state holds
@@ -76,6 +77,7 @@ struct ModelTable {
   void (*begin)(void* state, DirectedDraws& random);
   void (*correct)(const void* before, void* next, int action, DirectedDraws& random);
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
+  int (*conditions_met)(const void* state);
   Violations (*violations)(const void* before, const void* next, int action);
   double (*rollout)(const void* state, int& left, Sampler& random);
   void (*rollout_odds)(const void* state, double* odds, int count, Sampler& random);
@@ -119,6 +121,7 @@ constexpr ModelTable table_of() {
       .monitors = &Model::monitors(),
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
+      .has_goal_conditions = Model::has_goal_conditions,
       .ending_offset = offsetof(State, aos_ending),
       .irrelevant = Model::irrelevant,
       .variables = Model::variables,
@@ -171,6 +174,16 @@ constexpr ModelTable table_of() {
             blame::over();
             return meets;
           },
+      .conditions_met = [](const void* state) -> int {
+        if constexpr (Model::has_goal_conditions) {
+          Sampler same{1};
+          ModelSource<Sampler> draws{same};
+          const int met = Model::conditions_met(*static_cast<const State*>(state), draws);
+          blame::over();
+          return met;
+        }
+        return 0;
+      },
       .violations = [](const void* before, const void* next, int action) -> Violations {
         if constexpr (Model::constraint_count > 0) {
           return Model::violations(*static_cast<const State*>(before), *static_cast<const State*>(next), action);

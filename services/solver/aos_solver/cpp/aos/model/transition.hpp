@@ -70,6 +70,8 @@ struct SkillDefaults {
   static void execution_time(const auto&, int&, const auto&, auto&) {}
   static void next_state(auto&, auto&, auto&, bool, int, auto&, const auto&, auto&) {}
   static void rollout_policy(const auto&, double&, const auto&, auto&) {}
+  // Whether it counts the conditions of its rewards (goal_conditions.hpp).
+  static constexpr bool has_goal_conditions = false;
   // The local variables of the abstraction mapping at the time of the response.
   struct Locals {};
   static void given_observation(const auto&, auto&, const auto&, const auto&, auto&) {}
@@ -80,6 +82,7 @@ struct EnvironmentDefaults {
   static constexpr bool is_one_state = false;
   static constexpr bool has_extrinsic_changes = false;
   static constexpr bool has_special_states = false;
+  static constexpr bool has_goal_conditions = false;
   static void initial_belief(auto&, auto&) {}
   static void extrinsic_changes(auto&, auto&, double&, int, const auto&, auto&) {}
   static double special_states(auto&, auto&) { return 0; }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
@@ -26,11 +27,16 @@ class OptionLibrary {
 
   const std::vector<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
+  // Whether ways are found only by how many conditions of rewards and goals hold.
+  bool counts() const { return counts_; }
+  // Counts conditions from now on, where rewards and goals have some. Returns whether that is new.
+  bool count() { return !std::exchange(counts_, switches::goal_conditions && Model::has_goal_conditions) && counts_; }
   const DecisionClock& clock() const { return clock_; }
   // Whether the action alone is an option: it earns something at once in some state.
   bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }
 
-  // Begins a mission.
+  // Begins a mission, and looks for what changes in it.
+  void start_over() { counts_ = false; }
   void prepare(const Belief<Model>& belief, Sampler& random) {
     options_.clear();
     cells_.prepare(belief, random);
@@ -39,36 +45,37 @@ class OptionLibrary {
   // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
   // with an option. `steps` is counted down.
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
-    OptionSearch<Model> search{cells_, clock_};
     double found = 0;
     std::vector<State> rests;
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
-      bool has_way = follow(state, steps, random);
-      if (!has_way && is_left(steps) && add(search.from(state, steps, random))) has_way = follow(state, steps, random);
+      bool has_way = !counts_ && follow(state, steps, random);
+      if (!has_way && is_left(steps) && add_from(state, steps, random)) has_way = counts_ || follow(state, steps, random);
       if (!has_way) continue;
       found += belief.weights()[k];
-      if (Model::ending(state) == Ending::running) rests.push_back(state);
+      if (!counts_ && Model::ending(state) == Ending::running) rests.push_back(state);
     }
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
       State& rest = rests[i];
-      while (is_left(steps) && Model::ending(rest) == Ending::running && add(search.narrow(rest, steps, random))) {
+      while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{cells_, clock_, false}.narrow(rest, steps, random), max_options)) {
         if (!follow(rest, steps, random)) break;
       }
     }
     return found;
   }
 
-  // Drops what was never among the best since the gains were measured, where options are many.
+  // Drops what was never among the best since the gains were measured, where options are many. Ways that were searched for by
+  // conditions lead from few states, and to find them again takes less than to try them from others.
   void drop_unused(const OptionGains<Model>& gains) {
+    if (counts_) options_.clear();
     if (options_.size() <= many_options) return;
     std::vector<Option> used;
     for (std::size_t o = 0; o < gains.size(); ++o) {
       if (gains.is_used(o)) used.push_back(std::move(options_[o]));
     }
     options_.clear();
-    add(used);
+    add(used, max_options);
   }
 
  private:
@@ -79,10 +86,16 @@ class OptionLibrary {
 
   bool is_left(double steps) const { return steps > 0 && !clock_.is_over(); }
 
-  // Adds options, and what is left of each after its first actions. Returns whether there were any.
-  bool add(const std::vector<Option>& found) {
+  // The same for those from a state. Of ways that were searched for by conditions no rests are added.
+  bool add_from(const State& state, double& steps, Sampler& random) {
+    return add(OptionSearch<Model>{cells_, clock_, counts_}.from(state, steps, random), counts_ ? 1 : max_options);
+  }
+
+  // Adds options, and what is left of each after its first actions: at most so many for each. Returns whether there were any.
+  bool add(const std::vector<Option>& found, std::size_t most) {
     for (const Option& option : found) {
-      for (auto first = option.begin(); first != option.end() && options_.size() < max_options; ++first) {
+      const auto last = option.begin() + static_cast<std::ptrdiff_t>(std::min(most, option.size()));
+      for (auto first = option.begin(); first != last && options_.size() < max_options; ++first) {
         Option rest(first, option.end());
         if (std::ranges::find(options_, rest) == options_.end()) options_.push_back(std::move(rest));
       }
@@ -114,6 +127,7 @@ class OptionLibrary {
   const DecisionClock& clock_;
   LeafCells<Model> cells_;
   std::vector<Option> options_;
+  bool counts_ = false;
 };
 
 }  // namespace aos

@@ -38,28 +38,42 @@ class OptionMoves {
     }
   }
 
-  // Adds a move with what can best be observed after it, and not before.
-  void add_view(std::vector<OptionCandidate>& candidates, int move, const BarredActions& barred, double& steps, Sampler& random) {
+  // A move with the test that can best be made after it, and not before: what they earn, and what the test tells, in nats.
+  struct View {
+    int move;
+    int test = -1;  // none
+    double reward = 0;
+    double information = 0;
+  };
+
+  View best_view(int move, const BarredActions& barred, double& steps, Sampler& random) {
     std::vector<State> now = belief_.states();
     std::vector<StepReports> reports(now.size());
-    for (State& state : now) step_.take(state, move, reports.front(), steps, random);
-    int best = -1;
+    double paid = 0;
+    for (std::size_t k = 0; k < now.size(); ++k) paid += belief_.weights()[k] * step_.take(now[k], move, reports.front(), steps, random);
+    View best{move};
     double most = OptionTests<Model>::least_information;
     for (int action = 0; action < Model::action_count(); ++action) {
       if (barred.contains(static_cast<std::size_t>(action)) || tests_.is_move(action)) continue;
       if (tests_.clock().is_over()) break;
+      double reward = paid;
       for (std::size_t k = 0; k < now.size(); ++k) {
         State state = now[k];
-        step_.take(state, action, reports[k], steps, random);
+        reward += belief_.weights()[k] * step_.take(state, action, reports[k], steps, random);
       }
       steps -= OptionTests<Model>::steps_of_weighing(now.size());
       const double told = information(belief_.weights(), reports, OptionRegret<Model>::observations, random);
       const double gained = told - tests_.information_of(action);
       if (gained <= most) continue;
       most = gained;
-      best = action;
+      best = {move, action, reward, told};
     }
-    if (best >= 0) add_way(candidates, {move, best}, steps, random);
+    return best;
+  }
+
+  // Adds such a move.
+  void add_view(std::vector<OptionCandidate>& candidates, const View& view, double& steps, Sampler& random) {
+    if (view.test >= 0) add_way(candidates, {view.move, view.test}, steps, random);
   }
 
   // How much of the regret an observation spares after one of the likely options, but for what it tells of that option; as much as `here` for a test that

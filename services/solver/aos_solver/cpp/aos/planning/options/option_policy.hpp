@@ -55,13 +55,14 @@ class OptionPolicy {
     clock_.end_at(of_options);
     if (!is_prepared_) library_.prepare(belief, random);
     affordable_ = affordable;
-    const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, 64);
+    const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, library_.counts() ? 32 : 64);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
     library_.drop_unused(gains_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
     if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
-    const double found = library_.extend(belief_, left, random);
+    double found = library_.extend(belief_, left, random);
+    if (found < enough_found && library_.count()) found = library_.extend(belief_, left, random);
     clock_.end_at(of_gains);
     gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, clock_, left, random);
     taken_ = of_options * affordable_ - left;
@@ -105,6 +106,7 @@ class OptionPolicy {
     is_prepared_ = false;
     obstacle_.clear();
     gains_ = {};
+    library_.start_over();
     tests_.start_over();
   }
 
@@ -188,14 +190,32 @@ class OptionPolicy {
 
   void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
     tests_.observe_all(barred, left, random);
+    const std::vector<typename OptionMoves<Model>::View> views = library_.counts() ? priced_views(barred, left, random) : std::vector<typename OptionMoves<Model>::View>{};
     tests_.add_to(candidates_, left, random);
     moves_.add_to(candidates_, tried_moves_, left, random);
+    for (const auto& view : views) moves_.add_view(candidates_, view, left, random);
     for (const int move : tried_moves_) {
-      if (are_for_views_ && left > 0 && !clock_.is_over()) moves_.add_view(candidates_, move, barred, left, random);
+      if (are_for_views_ && !library_.counts() && left > 0 && !clock_.is_over()) moves_.add_view(candidates_, moves_.best_view(move, barred, left, random), left, random);
     }
     for (const std::size_t option : likely) {
-      if (left > 0 && !clock_.is_over() && library_.options()[option].size() > 1) moves_.add_view(candidates_, library_.options()[option].front(), barred, left, random);
+      if (left > 0 && !clock_.is_over() && library_.options()[option].size() > 1) {
+        moves_.add_view(candidates_, moves_.best_view(library_.options()[option].front(), barred, left, random), left, random);
+      }
     }
+  }
+
+  // The moves with what can be observed after them. The state can be found out at the price of a nat where that is cheapest.
+  std::vector<typename OptionMoves<Model>::View> priced_views(const BarredActions& barred, double& left, Sampler& random) {
+    std::vector<typename OptionMoves<Model>::View> views;
+    double price = tests_.price_of_nat(regret_.value_seen());
+    for (const int move : tried_moves_) {
+      if (left <= 0 || clock_.is_over()) break;
+      views.push_back(moves_.best_view(move, barred, left, random));
+      const double paid = (1 - Model::discount * Model::discount) * regret_.value_seen() - views.back().reward;
+      if (views.back().test >= 0) price = std::min(price, std::max(paid, 0.0) / views.back().information);
+    }
+    regret_.set_price(price);
+    return views;
   }
 
   // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -44,8 +45,15 @@ class OptionRegret {
   void begin() {
     seen_.clear();
     likely_.clear();
+    price_ = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < belief_.size(); ++k) seen_.push_back(gains_.best_in(k));
     value_seen_ = mean(belief_.weights());
+    regret_ = after(belief_.weights());
+  }
+  // Lets a robot find out the state at this price for each nat, so that it never loses more by not knowing it. What is told by
+  // tests together counts then, where each alone leaves the best options what they are.
+  void set_price(double price) {
+    price_ = price;
     regret_ = after(belief_.weights());
   }
   // The options that may be taken next.
@@ -64,7 +72,10 @@ class OptionRegret {
     }
     return std::sqrt(squares * concentration);
   }
-  double after(const StateWeights& weights) const { return std::max(mean(weights) - gains_.best(weights), 0.0); }
+  double after(const StateWeights& weights) const {
+    const double blind = std::max(mean(weights) - gains_.best(weights), 0.0);
+    return blind > 0 && std::isfinite(price_) ? std::min(blind, price_ * entropy(weights)) : blind;
+  }
 
   // The mean regret after an observation that is made so many times, and what it tells of each likely option. Where these are too many to list, `see(k, weights)`
   // draws from state k what is observed. `steps` is counted down.
@@ -106,12 +117,19 @@ class OptionRegret {
     return sum;
   }
 
+  static double entropy(const StateWeights& weights) {
+    double nats = 0;
+    for (const double weight : weights) nats -= weight > 0 ? weight * std::log(weight) : 0;
+    return nats;
+  }
+
   const SampledBelief<Model>& belief_;
   const OptionGains<Model>& gains_;
   std::vector<std::size_t> likely_;
   std::vector<double> seen_;  // what the states are worth if they are seen
   double value_seen_ = 0;
   double regret_ = 0;
+  double price_ = std::numeric_limits<double>::infinity();  // of a nat
 };
 
 }  // namespace aos

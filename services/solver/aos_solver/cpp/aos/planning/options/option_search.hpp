@@ -4,6 +4,9 @@
 // 2012). At width 1 a value of a variable has to be new, at width 2 a pair of values. So it finds what is far away, where
 // random walks do not get, in work that grows with the variables and not with the states. The state is seen, and steps
 // are drawn: each way is tried again under other luck before it counts.
+//
+// Where a reward asks for many conditions at once, no value and no pair of values tells the way. Then it is searched best
+// first, and what is new is so among states in which as many conditions hold (best-first width search: Lipovetzky and Geffner, 2017).
 #pragma once
 
 #include <algorithm>
@@ -11,6 +14,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <queue>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -76,11 +82,12 @@ class OptionSearch {
  public:
   using State = typename Model::State;
 
-  OptionSearch(const LeafCells<Model>& cells, const DecisionClock& clock) : cells_(cells), clock_(clock) {}
+  // `counts`: the conditions of rewards and goals that hold, before pairs of values are tried.
+  OptionSearch(const LeafCells<Model>& cells, const DecisionClock& clock, bool counts) : cells_(cells), clock_(clock), counts_(counts) {}
 
   // The ways from a state, the best first. `steps` is counted down.
   std::vector<Option> from(const State& state, double& steps, Sampler& random) {
-    std::vector<Option> found = narrow(state, steps, random);
+    std::vector<Option> found = counts_ ? by_conditions(state, steps, random) : narrow(state, steps, random);
     if (found.empty()) found = searched(state, 2, steps, random);
     return found;
   }
@@ -93,6 +100,7 @@ class OptionSearch {
   static constexpr std::size_t max_dear = 16;   // of the others, that earn most
   static constexpr int tries = 4;  // of each way that was found
   static constexpr std::uint32_t asked_every = 32;  // nodes, the clock
+  static constexpr int most_rounds = 3;  // through the states of one search
   static constexpr double needs_luck = 0.9;
   static constexpr std::uint32_t longer_by = 2;
   static constexpr std::uint32_t later_ends = 1;
@@ -119,21 +127,23 @@ class OptionSearch {
       ways.insert(ways.end(), longer.begin(), longer.end());
       sort_stably(ways, has_more_income);
     }
+    return options_of(ways);
+  }
+  std::vector<Option> by_conditions(const State& start, double& steps, Sampler& random) {
+    return options_of(confirmed(start, found_by_conditions(start, steps, random), steps, random));
+  }
+  static std::vector<Option> options_of(const std::vector<Way>& ways) {
     std::vector<Option> options;
-    for (Way& way : ways) options.push_back(std::move(way.option));
+    for (const Way& way : ways) options.push_back(way.option);
     return options;
   }
 
   // The ways that are at most `longer` steps longer than the shortest one.
   const std::vector<Found>& found_within(const State& start, int width, std::uint32_t longer, double& steps, Sampler& random) {
     double limit = max_steps;
-    found_.clear();
-    nodes_.clear();
+    begin(start);
     seen_.clear();
-    cells_before_.resize(cells_.size());
-    cells_after_.resize(cells_.size());
-    nodes_.push_back({start, 0, -1, 0, 0});
-    note_start(start, width);
+    note_all(start, seen_, width);
     std::uint32_t last_depth = std::numeric_limits<std::uint32_t>::max();
     for (std::uint32_t number = 0; number < nodes_.size() && limit > 0 && nodes_[number].depth <= last_depth; ++number) {
       if (number % asked_every == 0 && clock_.is_over()) break;
@@ -154,6 +164,59 @@ class OptionSearch {
         }
       }
     }
+    return best_found();
+  }
+
+  // The ways that are found first if states in which more conditions hold come first, and of these those with a new value before those with
+  // a new pair of values.
+  const std::vector<Found>& found_by_conditions(const State& start, double& steps, Sampler& random) {
+    double limit = max_steps;
+    begin(start);
+    std::map<int, SeenBits> seen;  // by how many conditions hold
+    std::priority_queue<std::tuple<int, int, std::int64_t>> open;  // conditions that hold, -width, -node
+    std::vector<int> met{Model::conditions_met(start)};
+    for (const int width : {1, 2}) note_all(start, seen[met.front()], width);
+    open.emplace(met.front(), 0, 0);
+    int rounds = 1;
+    for (std::uint32_t expanded = 0; !open.empty() && found_.empty() && limit > 0; ++expanded) {
+      if (expanded % asked_every == 0 && clock_.is_over()) break;
+      const auto number = static_cast<std::uint32_t>(-std::get<2>(open.top()));
+      open.pop();
+      cells_.write(nodes_[number].state, cells_before_.data());
+      const double discount = std::pow(Model::discount, nodes_[number].depth);
+      for (int action = 0; action < Model::action_count(); ++action, --limit, --steps) {
+        State next = nodes_[number].state;
+        const Step step = Model::step(next, action, random);
+        const double earned = nodes_[number].earned + discount * step.reward;
+        const Ending ending = Model::ending(next);
+        if ((step.reward > 0 && ending != Ending::failure) || ending == Ending::goal) {
+          found_.push_back({number, action, earned, income<Model>(earned, nodes_[number].depth + 1)});
+        } else if (ending == Ending::running) {
+          const int holding = Model::conditions_met(next);
+          const int width = width_of(next, seen[holding], holding != met[number]);
+          if (width > 2) continue;
+          open.emplace(holding, -width, -static_cast<std::int64_t>(nodes_.size()));
+          met.push_back(holding);
+          nodes_.push_back({next, number, action, earned, nodes_[number].depth + 1});
+        }
+      }
+      // What has failed for want of luck may go well at another try.
+      if (open.empty() && rounds++ < most_rounds) {
+        for (std::size_t again = 0; again < nodes_.size(); ++again) open.emplace(met[again], 0, -static_cast<std::int64_t>(again));
+      }
+    }
+    return best_found();
+  }
+
+  void begin(const State& start) {
+    found_.clear();
+    nodes_.clear();
+    cells_before_.resize(cells_.size());
+    cells_after_.resize(cells_.size());
+    nodes_.push_back({start, 0, -1, 0, 0});
+  }
+
+  const std::vector<Found>& best_found() {
     sort_stably(found_, has_more_income);
     // Those that are no longer among the first may still earn most.
     if (found_.size() > max_found) {
@@ -180,22 +243,34 @@ class OptionSearch {
     return ways;
   }
 
-  void note_start(const State& state, int width) {
+  void note_all(const State& state, auto& seen, int width) {
     cells_.write(state, cells_after_.data());
-    for (std::size_t i = 0; i < cells_.size(); ++i) seen_.note(cells_after_.data(), cells_.size(), i, width);
+    for (std::size_t i = 0; i < cells_.size(); ++i) seen.note(cells_after_.data(), cells_.size(), i, width);
   }
   // Notes the values of a state. Returns whether it has any that no state before it had.
   bool is_new(const State& state, int width) {
     cells_.write(state, cells_after_.data());
+    return is_new_among(seen_, width, false);
+  }
+  // Whether a value of the state is new, or else a pair of values: 1 or 2; 3 if neither is. `all` of its values are looked at, or
+  // those that have changed.
+  int width_of(const State& state, SeenBits& seen, bool all) {
+    cells_.write(state, cells_after_.data());
+    const bool has_new_value = is_new_among(seen, 1, all);
+    const bool has_new_pair = is_new_among(seen, 2, all);
+    return has_new_value ? 1 : has_new_pair ? 2 : 3;
+  }
+  bool is_new_among(auto& seen, int width, bool all) {
     bool is_new = false;
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (cells_after_[i] != cells_before_[i]) is_new = seen_.note(cells_after_.data(), cells_.size(), i, width) || is_new;
+      if (all || cells_after_[i] != cells_before_[i]) is_new = seen.note(cells_after_.data(), cells_.size(), i, width) || is_new;
     }
     return is_new;
   }
 
   const LeafCells<Model>& cells_;
   const DecisionClock& clock_;
+  bool counts_;
   std::vector<WayNode<State>> nodes_;
   std::vector<Found> found_;
   SeenCells seen_;

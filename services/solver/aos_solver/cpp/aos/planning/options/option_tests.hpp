@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -72,6 +73,12 @@ class OptionTests {
   }
 
   bool empty() const { return tests_.empty(); }
+  // What a nat costs, with the time that it takes, by the test where it is cheapest; infinite without a test.
+  double price_of_nat(double value_seen) const {
+    double price = std::numeric_limits<double>::infinity();
+    for (const Test& test : tests_) price = std::min(price, std::max((1 - Model::discount) * value_seen - test.reward, 0.0) / test.information);
+    return price;
+  }
   // The actions that change the state, those that are barred left out.
   const std::vector<int>& moves() const { return moves_; }
   bool is_move(int action) const { return changes_.is_move(action); }

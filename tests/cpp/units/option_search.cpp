@@ -1,0 +1,78 @@
+// Ways to rewards that ask for many conditions at once: option_search.hpp.
+#include "aos/planning/options/option_search.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+#include "check.hpp"
+#include "worlds.hpp"
+
+namespace option_search_tests {
+
+constexpr std::size_t dials = 5;
+constexpr std::uint32_t digits = 4;
+constexpr std::uint32_t right = 2;
+
+// A lock that opens when all dials are right. It says how many are.
+struct Lock : units::TableModel {
+  static constexpr bool has_goal_conditions = true;
+  static int conditions_met(const State& state) {
+    int met = 0;
+    for (std::size_t dial = 0; dial < dials; ++dial) met += state.variables[dial] == right ? 1 : 0;
+    return met;
+  }
+};
+struct SilentLock : units::TableModel {};
+
+// Action d turns dial d on by one, and the last action pulls.
+units::Problem lock() {
+  std::uint32_t states = 1;
+  for (std::size_t dial = 0; dial < dials; ++dial) states *= digits;
+  units::Problem problem = units::world(states + 1, dials + 1, 0.95);
+  problem.horizon = 60;
+  problem.variables = dials;
+  problem.values.assign((states + 1) * dials, static_cast<int>(digits));
+  problem.endings[states] = 1;
+  for (std::uint32_t state = 0; state < states; ++state) {
+    std::uint32_t place = 1;
+    bool is_right = true;
+    for (std::size_t dial = 0; dial < dials; ++dial, place *= digits) {
+      const std::uint32_t digit = state / place % digits;
+      problem.values[state * dials + dial] = static_cast<int>(digit);
+      is_right = is_right && digit == right;
+      const std::uint32_t turned = state - digit * place + (digit + 1) % digits * place;
+      units::row(problem, state, dial) = {{1.0, turned, 0, -0.1}};
+    }
+    units::row(problem, state, dials) = {{1.0, is_right ? states : state, 0, is_right ? 50.0 : -1.0}};
+  }
+  return problem;
+}
+
+template <class Model>
+std::vector<aos::Option> ways(const units::Problem& problem, double& steps) {
+  Model::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<Model>::initial(random);
+  aos::LeafCells<Model> cells;
+  cells.prepare(belief, random);
+  const aos::DecisionClock clock;
+  aos::OptionSearch<Model> search{cells, clock, Model::has_goal_conditions};
+  return search.from(belief.particles().front().state, steps, random);
+}
+
+TEST("A way to a reward that asks for five conditions is found by how many of them hold") {
+  const units::Problem problem = lock();
+  double steps = 20'000;
+  const auto found = ways<Lock>(problem, steps);
+  EXPECT(!found.empty());
+  if (!found.empty()) EXPECT_EQUAL(found.front().size(), right * dials + 1);
+  EXPECT(steps > 18'000);
+}
+
+TEST("No new value and no new pair of values leads to a reward that asks for five conditions") {
+  const units::Problem problem = lock();
+  double steps = 20'000;
+  EXPECT(ways<SilentLock>(problem, steps).empty());
+}
+
+}  // namespace option_search_tests
