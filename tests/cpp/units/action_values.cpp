@@ -14,4 +14,9 @@ TEST("A value is in the middle of its own bounds, and none is above that of the 
   EXPECT_NEAR(estimates[2].q, 9, 1e-12);
 }
 
+TEST("An exact value that few missions were played for says so, and one with enough of them says nothing") {
+  EXPECT_EQUAL(aos::unplayed_text(2), std::string{"; the bounds are exact, and the error is that of 2 of 30 missions that plan anew"});
+  EXPECT(aos::unplayed_text(30).empty());
+}
+
 }  // namespace action_values_tests

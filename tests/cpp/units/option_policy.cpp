@@ -1,0 +1,69 @@
+// What options decide in a world that is small enough for the exact value: option_policy.hpp, option_pairs.hpp.
+#include "aos/planning/options/option_policy.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "aos/planning/listed/exact_root.hpp"
+#include "aos/planning/listed/state_space.hpp"
+#include "check.hpp"
+#include "numbers/exact.hpp"
+#include "numbers/observable_values.hpp"
+#include "worlds.hpp"
+
+namespace option_policy_tests {
+
+using units::Problem;
+using units::TableModel;
+using Belief = aos::Belief<TableModel>;
+
+constexpr int look = 0, go = 1, take = 2;
+
+// Two rooms, in each of which a thing may be. To look tells of the room where the robot is. To take the thing earns 10, and 6 is lost
+// where there is none. A state has a bit for the room, two for the things, and two for those that are taken.
+Problem two_rooms(double first, double second) {
+  Problem problem = units::world(32, 3, 0.95);
+  problem.sensings.push_back({{0, 0.85}, {1, 0.15}});
+  problem.sensings.push_back({{0, 0.15}, {1, 0.85}});
+  problem.starts.clear();
+  for (const std::uint32_t one : {0u, 1u}) {
+    for (const std::uint32_t other : {0u, 1u}) {
+      problem.starts.push_back({2 * one + 4 * other, (one ? first : 1 - first) * (other ? second : 1 - second)});
+    }
+  }
+  for (std::uint32_t state = 0; state < 32; ++state) {
+    const std::uint32_t room = state & 1, thing = 2u << room, taken = 8u << room;
+    const bool is_there = (state & thing) && !(state & taken);
+    units::row(problem, state, look) = {{1.0, state, is_there ? 1u : 2u, -0.2}};
+    units::row(problem, state, go) = {{1.0, state ^ 1u, 0, -1}};
+    units::row(problem, state, take) = {{1.0, is_there ? state | taken : state, 0, is_there ? 10.0 : -6.0}};
+  }
+  return problem;
+}
+
+// What each action is worth with so many decisions to go.
+std::vector<aos::ExactValue> exact_values(const Belief& belief, int decisions) {
+  aos::StateSpace<TableModel> space;
+  space.reach(belief);
+  const aos::ObservableValues observable{space.rows(), space.numbering(), decisions};
+  aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 1'000'000}};
+  return evaluation.action_values(aos::exact_root(space, belief), decisions);
+}
+
+TEST("Before a robot leaves for what may be better elsewhere it looks where it is") {
+  for (const double first : {0.3, 0.5, 0.6}) {
+    const Problem problem = two_rooms(first, 0.7);
+    TableModel::take(problem);
+    aos::Sampler random{1};
+    const Belief belief = Belief::initial(random);
+    const auto exact = exact_values(belief, 7);
+    EXPECT(exact[look].value > std::max(exact[go].value, exact[take].value) + 0.3);
+    aos::OptionPolicy<TableModel> policy;
+    EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
+    policy.search(belief, problem.horizon, random, {});
+    const auto& estimates = policy.estimates();
+    EXPECT(estimates[look].q > std::max(estimates[go].q, estimates[take].q));
+  }
+}
+
+}  // namespace option_policy_tests
