@@ -10,9 +10,11 @@ from mapping_documents import emitted, project_in
 from mappings import mapping_text
 from scripted_models import text_project
 
+from aos_language.load import load_files
 from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised
 from aos_middleware.low_level import LowLevelValues, assigned_variables, default_constants
 from aos_middleware.worker import LoadedMapping
+from aos_protocol.diagnostics import Severity
 from aos_protocol.messages import Activate, ActivationId, Outcome
 
 GARDEN = {
@@ -96,6 +98,16 @@ def test_they_begin_as_the_constants_that_types_and_variables_have_by_default() 
         "roses.near.pose": "___origin",
         "gate.pose": "___gate",
     }
+
+
+def test_a_field_that_a_low_level_type_has_not_is_a_warning_where_it_is_set() -> None:
+    files = GARDEN | {"garden.lf": GARDEN["garden.lf"].replace("___gate.x", "___gate.z")}
+    loaded = load_files({name: text.encode() for name, text in files.items()})
+    found = [f for f in loaded.diagnostics if "`z`" in f.message]
+    assert [(f.code, f.severity, f.span.line, f.span.column) for f in found] == [
+        ("AOS110", Severity.WARNING, 11, 9)
+    ]
+    assert loaded.project is not None
 
 
 def test_the_original_armadillos_places_have_their_constants(corpus: Path) -> None:

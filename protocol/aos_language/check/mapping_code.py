@@ -8,7 +8,7 @@ import re
 import warnings
 from collections.abc import Iterable, Iterator
 
-from aos_language.check.python_names import PythonNames, check_names
+from aos_language.check.python_names import PythonNames, check_fields_set, check_names
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.python_syntax import tree_of
@@ -76,6 +76,7 @@ def check_low_level(
         tree = parsed(constant.code, "exec", findings)
         if tree is not None:
             check_names(constant.code, tree, names, findings)
+            check_fields_set(constant, tree, document.types, findings)
 
 
 def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:

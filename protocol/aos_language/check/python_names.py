@@ -17,10 +17,18 @@ from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.findings import Findings
 from aos_language.python_syntax import module_of
 from aos_protocol.diagnostics import Severity
-from aos_protocol.documents import AbstractionMapping, Import, LowLevelDocument, SkillModel, Snippet
+from aos_protocol.documents import (
+    AbstractionMapping,
+    Import,
+    LowLevelConstant,
+    LowLevelDocument,
+    LowLevelType,
+    SkillModel,
+    Snippet,
+)
 from aos_protocol.spelling import nearest, quoted
 
-__all__ = ["PythonNames", "check_names", "column_of", "top_level_names"]
+__all__ = ["PythonNames", "check_fields_set", "check_names", "column_of", "top_level_names"]
 
 _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """The names by which rules read how a skill has failed."""
@@ -155,6 +163,24 @@ def check_names(
             candidates = ()
         message = f"no local variable gives `{node.id}`"
         findings.unknown(node.id, candidates, message, span, hint, severity=severity)
+
+
+def check_fields_set(
+    constant: LowLevelConstant, tree: ast.AST, types: Iterable[LowLevelType], findings: Findings
+) -> None:
+    """Warns (AOS110) where a constant's code sets a field that its low-level type has not."""
+    known = {type.name: [field.name for field in type.fields] for type in types}.get(constant.type)
+    for node in ast.walk(tree) if known is not None else ():
+        match node:
+            case ast.Attribute(value=ast.Name(id=constant.name), attr=name, ctx=ast.Store()):
+                if known is None or name in known:
+                    continue
+                line, end = node.end_lineno or node.lineno, node.end_col_offset or 0
+                column = column_of(constant.code, line, end - len(name.encode()))
+                message = f"the low-level type {constant.type} has no field `{name}`"
+                span = constant.code.locate(line, column)
+                hint = f"The fields are {quoted(known)}"
+                findings.unknown(name, known, message, span, hint, severity=Severity.WARNING)
 
 
 def _bound_names(tree: ast.AST) -> frozenset[str]:
