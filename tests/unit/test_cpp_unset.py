@@ -54,6 +54,7 @@ RIGHT = [
     "int x; for (auto& o : list) { if (o.p) { x = 1; continue; } x = 2; } y = x;",
     "int x; { int x = 1; y = x; }",
     "int x{}; int z(1); y = x + z;",
+    "if (int n = count(state)) y = n; while (double d = next()) y += d;",
     "static int x; int row[3]; Cup cup; std::vector<int> v; y = x + row[0] + cup.size + v[0];",
     "int x; y = sizeof(x);",
     "int x; try { x = f(); } catch (...) { x = 2; } y = x;",

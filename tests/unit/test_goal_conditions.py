@@ -7,7 +7,12 @@ import pytest
 from aos_language.cpp.goal_conditions import counted_conditions
 from aos_language.cpp.snippets import read_cpp, read_cpp_expression
 
-MARKS = {"aos_effect.holds(": "+(", "aos_effect.fails(": "-("}
+MARKS = {
+    "aos_effect.holds(": "+(",
+    "aos_effect.fails(": "-(",
+    "& aos::evaluate_all &": "&",
+    "| aos::evaluate_all |": "|",
+}
 
 
 def counted(code: str, *, is_expression: bool = False) -> str:

@@ -27,6 +27,7 @@ _IN_A_LOOP = 3
 """A condition in a loop counts as so many: rounds are not counted."""
 _ENOUGH = 3
 """Fewer conditions are found together by a search for new pairs of values."""
+_ALL = {True: "& aos::evaluate_all &", False: "| aos::evaluate_all |"}
 _BEFORE = {False: "void f() {", True: "auto x = ("}
 _LOOPS = ("for_statement", "for_range_loop", "while_statement", "do_statement")
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
@@ -112,7 +113,7 @@ class _Reading:
             self.want(right, truth)
             sign = node.child_by_field_name("operator")
             if sign is not None and _cannot_fail(right):
-                self._edit(node, sign.start_byte, sign.end_byte, "&" if truth else "|")
+                self._edit(node, sign.start_byte, sign.end_byte, _ALL[truth])
         elif node.type == "identifier" and text_of(node) in self._locals:
             self._want_flag(text_of(node), truth)
         elif not self._want_number(node, truth):

@@ -260,6 +260,8 @@ def _unset(node: tree_sitter.Node) -> Iterator[int]:
     """Yields the ends of the declaration's variables without a first value."""
     if node.type != "declaration" or any(child.type == "storage_class_specifier" for child in node.children):
         return
+    if node.child_by_field_name("value") is not None:  # `if (int n = count())`
+        return
     for declarator in node.children_by_field_name("declarator"):
         if declarator.type in ("identifier", "array_declarator", "pointer_declarator"):
             yield declarator.end_byte

@@ -101,6 +101,8 @@ class _Walk(Evaluation):
         kind = node.child_by_field_name("type")
         words = {text_of(child) for child in node.children if child.type == "storage_class_specifier"}
         is_number = kind is not None and (kind.type in _NUMBERS or text_of(kind) in self._enums)
+        of_condition = node.child_by_field_name("value")  # `if (int n = count())`
+        self.expression(of_condition, state)
         for declarator in node.children_by_field_name("declarator"):
             if declarator.type == "init_declarator":
                 inner = declarator.child_by_field_name("declarator")
@@ -109,6 +111,8 @@ class _Walk(Evaluation):
                     self.may_be_set(value, state)
                 self.expression(value, state)
                 self.may_be_set(inner, state)
+            elif of_condition is not None:
+                self.may_be_set(declarator, state)
             elif declarator.type == "identifier" and is_number and not words & {"static", "extern"}:
                 assert kind is not None
                 self.declared[text_of(declarator)] = (declarator.start_byte, text_of(kind))

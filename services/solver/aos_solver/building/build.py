@@ -84,6 +84,9 @@ _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
 NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values", "numbers/compact_model")
 """The parts of the engine that know models as numbers only, the same for states of any size: mostly loops."""
+_UNCOUNTED = "AOS_UNCOUNTED"
+"""Leaves out the code that counts the conditions of rewards and goals (`goal_conditions.py`)."""
+
 _NUMBERS_OPTION = "-O3"
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
@@ -268,14 +271,18 @@ class _Build(msgspec.Struct, frozen=True):
     async def _compile(self, staging: Path) -> None:
         (staging / MODEL_FILE).write_text(self.emitted.cpp)
         (staging / _SOURCE).write_text(without_line_directives(self.emitted.cpp))
-        options = [*_OPTIONS[self.kind], *self._precompiled, *_LIMITS]
-        compilation = self.compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
-        output, status = await self._run(
-            compilation, staging, [SOURCES, *self._ready_entry], cpu_s=self._cpu_s
-        )
+        output, status = await self._compiled(staging)
+        if status != 0 and _UNCOUNTED in self.emitted.cpp:
+            # Counting code is made of the documents' text, and errors are told of that text alone.
+            output, status = await self._compiled(staging, f"-D{_UNCOUNTED}")
         if status != 0:
             raise self._failure(output, status)
         (staging / _SOURCE).unlink()
+
+    async def _compiled(self, staging: Path, *more: str) -> tuple[str, int]:
+        options = [*_OPTIONS[self.kind], *self._precompiled, *_LIMITS, *more]
+        compilation = self.compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
+        return await self._run(compilation, staging, [SOURCES, *self._ready_entry], cpu_s=self._cpu_s)
 
     @property
     def _precompiled(self) -> list[str]:

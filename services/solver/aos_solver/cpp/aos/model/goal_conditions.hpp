@@ -14,15 +14,30 @@ struct CountingEffect : EffectWithText {
   bool is_failure = false;
   bool is_used_up = false;
 
-  auto holds(auto condition) {
-    met += condition ? 1 : 0;
-    return condition;
-  }
-  auto fails(auto condition) {
-    met += condition ? 0 : 1;
+  const auto& holds(const auto& condition) { return counted(condition, true); }
+  const auto& fails(const auto& condition) { return counted(condition, false); }
+
+ private:
+  // What is no truth value, such as a text that is compared later, does not count.
+  const auto& counted(const auto& condition, bool wanted) {
+    if constexpr (requires { condition ? 1 : 0; }) met += (condition ? true : false) == wanted ? 1 : 0;
     return condition;
   }
 };
+
+// `a & evaluate_all & b` is `a && b`, and `a | evaluate_all | b` is `a || b`, but `b` is always evaluated.
+struct EvaluateAll {};
+inline constexpr EvaluateAll evaluate_all;
+struct Truth {
+  bool value;
+  operator bool() const { return value; }
+};
+Truth operator&(const auto& left, EvaluateAll) { return {left ? true : false}; }
+Truth operator|(const auto& left, EvaluateAll) { return {left ? true : false}; }
+inline Truth operator&(Truth left, EvaluateAll) { return left; }
+inline Truth operator|(Truth left, EvaluateAll) { return left; }
+Truth operator&(Truth left, const auto& right) { return {(right ? true : false) && left.value}; }
+Truth operator|(Truth left, const auto& right) { return {(right ? true : false) || left.value}; }
 
 namespace detail {
 
