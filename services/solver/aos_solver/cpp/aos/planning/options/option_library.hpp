@@ -35,8 +35,9 @@ class OptionLibrary {
   // Whether the action alone is an option: it earns something at once in some state.
   bool earns_at_once(int action) const { return std::ranges::find(options_, Option{action}) != options_.end(); }
 
-  // Begins a mission, and looks for what changes in it.
+  // Begins a mission.
   void start_over() { counts_ = false; }
+  // Forgets all options, and finds what variables the missions of this belief change.
   void prepare(const Belief<Model>& belief, Sampler& random) {
     options_.clear();
     cells_.prepare(belief, random);
