@@ -148,7 +148,7 @@ for (int i = 0; i < 8; i++) {
     async with engine_of(await built_text({**DOORS, "listen.sd": words}, cache_dir)) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
     assert plan.planner == "pomcp"
-    assert plan.why.endswith("; their probabilities cannot be estimated: hardly a response comes twice")
+    assert "; their probabilities cannot be estimated: hardly a response comes twice" in plan.why
 
 
 async def test_pomcp_that_was_asked_for_stays_pomcp(cache_dir: Path) -> None:
