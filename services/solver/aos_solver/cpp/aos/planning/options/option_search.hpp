@@ -150,17 +150,15 @@ class OptionSearch {
       cells_.write(nodes_[number].state, cells_before_.data());
       const double discount = std::pow(Model::discount, nodes_[number].depth);
       for (int action = 0; action < Model::action_count(); ++action, --limit, --steps) {
-        State next = nodes_[number].state;
-        const Step step = Model::step(next, action, random);
-        const double earned = nodes_[number].earned + discount * step.reward;
-        const Ending ending = Model::ending(next);
-        if ((step.reward > 0 && ending != Ending::failure) || ending == Ending::goal) {
-          found_.push_back({number, action, earned, income<Model>(earned, nodes_[number].depth + 1)});
+        WayNode<State> next = next_to(number, action);
+        const bool earns = take(next, discount, random);
+        const bool goes_on = Model::ending(next.state) == Ending::running;
+        if (earns) {
           // What ends the mission ends with it what could have been earned a step later.
-          const std::uint32_t more = ending == Ending::running ? longer : std::max(longer, later_ends);
+          const std::uint32_t more = goes_on ? longer : std::max(longer, later_ends);
           last_depth = std::min(last_depth, nodes_[number].depth + more);
-        } else if (ending == Ending::running && is_new(next, width)) {
-          nodes_.push_back({next, number, action, earned, nodes_[number].depth + 1});
+        } else if (goes_on && is_new(next.state, width)) {
+          nodes_.push_back(std::move(next));
         }
       }
     }
@@ -185,20 +183,14 @@ class OptionSearch {
       cells_.write(nodes_[number].state, cells_before_.data());
       const double discount = std::pow(Model::discount, nodes_[number].depth);
       for (int action = 0; action < Model::action_count(); ++action, --limit, --steps) {
-        State next = nodes_[number].state;
-        const Step step = Model::step(next, action, random);
-        const double earned = nodes_[number].earned + discount * step.reward;
-        const Ending ending = Model::ending(next);
-        if ((step.reward > 0 && ending != Ending::failure) || ending == Ending::goal) {
-          found_.push_back({number, action, earned, income<Model>(earned, nodes_[number].depth + 1)});
-        } else if (ending == Ending::running) {
-          const int holding = Model::conditions_met(next);
-          const int width = width_of(next, seen[holding], holding != met[number]);
-          if (width > 2) continue;
-          open.emplace(holding, -width, -static_cast<std::int64_t>(nodes_.size()));
-          met.push_back(holding);
-          nodes_.push_back({next, number, action, earned, nodes_[number].depth + 1});
-        }
+        WayNode<State> next = next_to(number, action);
+        if (take(next, discount, random) || Model::ending(next.state) != Ending::running) continue;
+        const int holding = Model::conditions_met(next.state);
+        const int width = width_of(next.state, seen[holding], holding != met[number]);
+        if (width > 2) continue;
+        open.emplace(holding, -width, -static_cast<std::int64_t>(nodes_.size()));
+        met.push_back(holding);
+        nodes_.push_back(std::move(next));
       }
       // What has failed for want of luck may go well at another try.
       if (open.empty() && rounds++ < most_rounds) {
@@ -214,6 +206,21 @@ class OptionSearch {
     cells_before_.resize(cells_.size());
     cells_after_.resize(cells_.size());
     nodes_.push_back({start, 0, -1, 0, 0});
+  }
+
+  // The node after an action that has not been taken yet.
+  WayNode<State> next_to(std::uint32_t number, int action) const {
+    const WayNode<State>& before = nodes_[number];
+    return {before.state, number, action, before.earned, before.depth + 1};
+  }
+  // Takes the action of a node. Returns whether something is earned, which is noted as a way.
+  bool take(WayNode<State>& node, double discount, Sampler& random) {
+    const Step step = Model::step(node.state, node.action, random);
+    node.earned += discount * step.reward;
+    const Ending ending = Model::ending(node.state);
+    const bool earns = (step.reward > 0 && ending != Ending::failure) || ending == Ending::goal;
+    if (earns) found_.push_back({node.before, node.action, node.earned, income<Model>(node.earned, node.depth)});
+    return earns;
   }
 
   const std::vector<Found>& best_found() {
