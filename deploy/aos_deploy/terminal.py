@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import typer
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -20,7 +21,9 @@ from rich.progress import (
     TimeElapsedColumn,
 )
 
-__all__ = ["console", "progress", "waiting", "write_what_fits"]
+from aos_deploy.exit_codes import ExitCode
+
+__all__ = ["console", "interruption_told", "progress", "waiting", "write_what_fits"]
 
 LINE_EVERY_S = 20.0
 _PIPED_COLUMNS = 1000
@@ -50,6 +53,16 @@ def progress(*columns: ProgressColumn) -> Progress:
     usual = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     shown = console(stderr=True)
     return Progress(*(columns or usual), console=shown, transient=True, disable=not shown.is_terminal)
+
+
+@contextmanager
+def interruption_told(text: Callable[[], str]) -> Iterator[None]:
+    """Ends a command at Ctrl-C with the text on standard error, and with the exit code of an interruption."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(f"aos: {text()}", err=True)
+        raise typer.Exit(ExitCode.INTERRUPTED) from None
 
 
 @contextmanager

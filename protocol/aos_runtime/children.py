@@ -145,6 +145,10 @@ class Child:
         """The exit status, or minus the signal that ended it; None while it runs."""
         return self._process.returncode
 
+    def is_frozen(self) -> bool:
+        """Returns whether a signal such as SIGSTOP has stopped it, or a process that it has started."""
+        return self.returncode is None and any(map(_is_stopped, (self.pid, *_children(self.pid))))
+
     @property
     def stdin(self) -> asyncio.StreamWriter:
         """Its input, if started with PIPE."""
@@ -209,3 +213,18 @@ class Child:
             return
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.pid, number)
+
+
+def _children(pid: int) -> list[int]:
+    try:
+        return [int(word) for word in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except OSError:
+        return []
+
+
+def _is_stopped(pid: int) -> bool:
+    try:
+        # The state follows the name, which may itself have brackets.
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "T"
+    except OSError:
+        return False

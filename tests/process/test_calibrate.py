@@ -92,7 +92,7 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(tmp_path: Pat
     held: list[bool] = []
     for first_seed in (1, 1001):
         missions = recorded(tmp_path / str(first_seed), "armadillo.yaml", first_seed, 40)
-        result = asyncio.run(calibrate(missions, [FINER, RETRACT]))
+        result = calibrate(missions, [FINER, RETRACT])
         assert not result.remarks
         assert all(estimate.is_counted for estimate in result.estimates)
         held += covered(result)
@@ -110,7 +110,7 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path:
         )
         for mission in recorded_missions
     )
-    results = [asyncio.run(calibrate(missions, bundles)) for missions in (recorded_missions, unseen)]
+    results = [calibrate(missions, bundles) for missions in (recorded_missions, unseen)]
     picks = [next(e for e in result.estimates if e.draw.skill == "pick") for result in results]
     widths = [pick.outcomes[0].probability.high - pick.outcomes[0].probability.low for pick in picks]
     assert picks[0].is_counted
@@ -199,6 +199,6 @@ def test_missions_are_explained_with_the_values_that_they_had(tmp_path: Path) ->
         asyncio.run(play_campaign(setting, range(1, 5), folder=DEPLOY, out=out, on_trial=lambda: None))
         missions += read_missions(out)
     assert {mission.mission_parameters["target"] for mission in missions} == {"alice", "bob"}
-    result = asyncio.run(calibrate(missions, [DEPLOY / "bundles" / "errand"]))
+    result = calibrate(missions, [DEPLOY / "bundles" / "errand"])
     assert (result.missions, result.remarks) == (8, ())
     assert result.steps == sum(len(mission.steps) for mission in missions)

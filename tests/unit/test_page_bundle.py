@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gzip
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -13,6 +14,7 @@ from page_sources import installed_sources
 from processes import COMMAND_S
 from starlette.requests import Request
 
+from aos_gateway import page
 from aos_gateway.page import page_routes
 
 MADE = "services/gateway/aos_gateway/page"
@@ -73,3 +75,21 @@ def test_a_browser_gets_a_file_as_it_understands_it(name: str, root: Path) -> No
     assert "content-encoding" not in plain.headers
     assert gzip.decompress(packed.body) == plain.body == files.get(f"{name}.gz", files.get(name))
     assert packed.headers["content-type"] == plain.headers["content-type"]
+
+
+def test_a_page_that_is_made_anew_is_what_a_browser_gets_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def body() -> bytes:
+        return bytes(asyncio.run(route.endpoint(Request({"type": "http", "headers": []}))).body)
+
+    made = tmp_path / "page.js.gz"
+    made.write_bytes(gzip.compress(b"before"))
+    monkeypatch.setattr(page, "_FOLDER", tmp_path)
+    (route,) = page.page_routes()
+    assert body() == b"before"
+    for content, expected in ((gzip.compress(b"after")[:-9], b"before"), (gzip.compress(b"after"), b"after")):
+        made.write_bytes(content)
+        made_at_ns = made.stat().st_mtime_ns + 1_000_000_000
+        os.utime(made, ns=(made_at_ns, made_at_ns))
+        assert body() == expected

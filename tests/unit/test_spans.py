@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import socket
 from pathlib import Path
 from typing import Any
 
@@ -146,6 +147,16 @@ def test_a_collector_that_is_not_there_is_an_error_that_says_what_to_do(tmp_path
         with pytest.raises(DeployError, match="does not take spans") as caught:
             export([run], otlp=got.address)
     assert "OTLP over HTTP" in caught.value.hint
+
+
+def test_a_collector_where_nobody_listens_is_told_at_once(tmp_path: Path) -> None:
+    run = tmp_path / "a-run"
+    write(run, decided(1))
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))  # Nobody listens, and nobody else takes the port.
+        port = taken.getsockname()[1]
+        with pytest.raises(DeployError, match=f"no collector answers at 127.0.0.1, port {port}: Conn"):
+            export([run], otlp=f"http://127.0.0.1:{port}")
 
 
 HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"

@@ -71,6 +71,7 @@ def _send_spans(runs: list[Path], address: str, *, as_json: bool) -> None:
     sent: dict[str, int] = {}
     for run in runs:
         collector = Collector(address, RunDirectory(run).read_record().robot)
+        collector.check_reachable()
         number, is_whole = Sender(run, collector, keeps_place=False).send()
         if not is_whole:
             raise DeployError(

@@ -6,11 +6,13 @@ Headers, certificates and compression are the SDK's: it reads `OTEL_EXPORTER_OTL
 from __future__ import annotations
 
 import math
+import socket
 from collections import defaultdict
 from collections.abc import Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
+from urllib.request import getproxies, proxy_bypass
 
 from aos_deploy.spans.spans import Span
 from aos_protocol import __version__
@@ -64,8 +66,28 @@ class Collector:
 
         self.address = address.rstrip("/") + _PATH if urlsplit(address).path in ("", "/") else address
         self._robot = robot
+        self._timeout_s = timeout_s
         # Its type of the timeout is whole seconds, what it does with it is not.
         self._exporter: Any = OTLPSpanExporter(endpoint=self.address, timeout=timeout_s)
+
+    def check_reachable(self) -> None:
+        """Raises DeployError AOS805 where nobody listens at the address: `send` would try until its timeout.
+
+        Behind a proxy nobody knows before something is sent.
+        """
+        parts = urlsplit(self.address)
+        host = parts.hostname or ""
+        if parts.scheme in getproxies() and not proxy_bypass(host):
+            return
+        port = parts.port or (443 if parts.scheme == "https" else 80)
+        try:
+            socket.create_connection((host, port), timeout=self._timeout_s).close()
+        except OSError as error:
+            raise DeployError(
+                f"no collector answers at {host}, port {port}: {error.strerror or error}",
+                code="AOS805",
+                hint="Start a collector that takes OTLP over HTTP, or name another address",
+            ) from error
 
     def send(self, spans: Sequence[Span]) -> bool:
         """Sends spans and says whether the collector has taken them; waits, so call it in a thread."""

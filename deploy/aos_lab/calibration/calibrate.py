@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import msgspec
 from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.printing import from_here
 from aos_deploy.program import cache_dir
-from aos_lab.calibration.draws import Skipped, draws_of
+from aos_lab.calibration.draws import Draws, Skipped, draws_of
 from aos_lab.calibration.estimation import DrawEstimate, estimate
 from aos_lab.calibration.lattice import Lattice, Layers, lattice_of
 from aos_lab.calibration.patch import patch_of
@@ -63,14 +64,17 @@ class Calibration(msgspec.Struct, frozen=True):
     by_hand: tuple[str, ...]
 
 
-async def calibrate(
+def calibrate(
     missions: Sequence[RecordedMission],
     bundles: Sequence[Path],
     *,
     on_mission: Callable[[], None] = lambda: None,
     on_sweep: Callable[[int, int], None] = lambda done, of: None,
 ) -> Calibration:
-    """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors."""
+    """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors.
+
+    It has an event loop of its own for the engine, and none while it estimates: Ctrl-C ends that at once.
+    """
     files: dict[str, bytes] = {}
     paths: dict[str, str] = {}
     for bundle in bundles:
@@ -83,18 +87,7 @@ async def calibrate(
             "the documents have errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
         )
     draws = draws_of(loaded.project)
-    built = await build_project(draws.keeping, cache_dir())
-    engine = await Engine.start(built, seed=1, keeps_belief=False)
-    try:
-        lattices: list[Lattice] = []
-        for values, alike in _by_values(missions):
-            await engine.start_with(values)
-            layers = Layers(engine, [draw.variable for draw in draws.draws])
-            for mission in alike:
-                lattices.append(await lattice_of(mission, layers))
-                on_mission()
-    finally:
-        await engine.close()
+    lattices = asyncio.run(_lattices(missions, draws, on_mission))
     estimates = estimate(draws.draws, lattices, on_sweep)
     patch, by_hand = patch_of((estimate for estimate in estimates if estimate.is_contradicted), files, paths)
     return Calibration(
@@ -106,3 +99,22 @@ async def calibrate(
         patch=patch,
         by_hand=(*by_hand, *_not_proposed(estimates)),
     )
+
+
+async def _lattices(
+    missions: Sequence[RecordedMission], draws: Draws, on_mission: Callable[[], None]
+) -> list[Lattice]:
+    """Returns all that each mission may have been, by the engine of the documents."""
+    built = await build_project(draws.keeping, cache_dir())
+    engine = await Engine.start(built, seed=1, keeps_belief=False)
+    try:
+        lattices: list[Lattice] = []
+        for values, alike in _by_values(missions):
+            await engine.start_with(values)
+            layers = Layers(engine, [draw.variable for draw in draws.draws])
+            for mission in alike:
+                lattices.append(await lattice_of(mission, layers))
+                on_mission()
+        return lattices
+    finally:
+        await engine.close()

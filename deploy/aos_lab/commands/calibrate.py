@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,7 +12,7 @@ from rich.table import Table
 
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_json
-from aos_deploy.terminal import console, progress
+from aos_deploy.terminal import console, interruption_told, progress
 
 if TYPE_CHECKING:
     from aos_lab.calibration.calibrate import Calibration
@@ -59,16 +58,14 @@ def calibrate(
     from aos_lab.calibration.records import read_missions
 
     missions = [mission for path in runs for mission in read_missions(path)]
-    with progress() as bar:
+    with progress() as bar, interruption_told(lambda: "stopped; nothing was estimated"):
         reading = bar.add_task("missions", total=len(missions))
         drawing = bar.add_task("what they leave open", total=None, visible=False)
-        result = asyncio.run(
-            calibrate_bundles(
-                missions,
-                [bundle, *(also or ())],
-                on_mission=lambda: bar.advance(reading),
-                on_sweep=lambda done, of: bar.update(drawing, completed=done, total=of, visible=True),
-            )
+        result = calibrate_bundles(
+            missions,
+            [bundle, *(also or ())],
+            on_mission=lambda: bar.advance(reading),
+            on_sweep=lambda done, of: bar.update(drawing, completed=done, total=of, visible=True),
         )
     if write is not None:
         write.write_text(result.patch, encoding="utf-8")

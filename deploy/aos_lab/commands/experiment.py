@@ -16,6 +16,7 @@ from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
 from aos_deploy.printing import from_here, print_json
 from aos_deploy.shipped import shipped
 from aos_deploy.terminal import progress
+from aos_lab.commands.interrupted import interruption_among_missions
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import pip_install
 
@@ -88,7 +89,7 @@ def run(
     place = Place(on=on, jobs=jobs, on_progress=lambda text: typer.echo(text, err=True))
     missions = ExperimentRun(path, experiment, folder, first_seed, place)
     names = [key for key in experiment.parts if not part or key in part]
-    with progress() as bar:
+    with progress() as bar, interruption_among_missions(bar, are_kept=True):
         by: dict[Player, int] = {"model": seeds, "system": system_seeds}
         results = tuple(missions.results(names, by, partial(_begin, bar)))
     whole = Results(
@@ -145,7 +146,7 @@ def statistics(
 
     path = _experiment_file(name, "deploy/experiments/statistics")
     folder = (out or Path("experiments") / f"{path.stem}-statistics").resolve()
-    with progress() as bar:
+    with progress() as bar, interruption_among_missions(bar, are_kept=True):
         found = statistics_of(
             path,
             read_script_file(path),

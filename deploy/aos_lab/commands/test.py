@@ -16,6 +16,7 @@ from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
+from aos_lab.commands.interrupted import interruption_among_missions
 
 if TYPE_CHECKING:
     from aos_lab.trials.junit import Tested
@@ -62,7 +63,11 @@ def run_tests(
 
     tests = read_test_file(file).tests
     tested: dict[str, Tested] = {}
-    with tempfile.TemporaryDirectory() as passing, progress() as bar:
+    with (
+        tempfile.TemporaryDirectory() as passing,
+        progress() as bar,
+        interruption_among_missions(bar, are_kept=keep is not None),
+    ):
         out = (keep or Path(passing)).resolve()
         for name, test in tests.items():
             numbers = range(test.first_seed, test.first_seed + (seeds or test.seeds))

@@ -108,7 +108,7 @@ def statistics_of(
     missions = [mission for run in runs.values() for mission in run.missions]
     steps: list[ScriptedStep] = [step for name, run in runs.items() for step in steps_of(name, run.missions)]
     calibrations = {
-        name: asyncio.run(calibrate(missions, [(path.parent / bundle).resolve() for bundle in bundles]))
+        name: calibrate(missions, [(path.parent / bundle).resolve() for bundle in bundles])
         for name, bundles in file.calibrates.items()
     }
     return Statistics(

@@ -5,11 +5,15 @@ A file whose name ends in `.gz` is kept compressed, and is known by the name wit
 
 from __future__ import annotations
 
+import contextlib
 import gzip
 import hashlib
+import zlib
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from typing import Self
 
+import msgspec
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
@@ -38,19 +42,49 @@ def page_routes() -> list[Route]:
     return routes
 
 
+class _Content(msgspec.Struct, frozen=True):
+    """A file's content, plain and packed, and the tag that browsers know it by."""
+
+    plain: bytes
+    packed: bytes
+    tag: str
+
+    @classmethod
+    def of(cls, path: Path) -> Self:
+        kept = path.read_bytes()
+        is_packed = path.suffix == ".gz"
+        plain = gzip.decompress(kept) if is_packed else kept
+        packed = kept if is_packed else gzip.compress(plain, 9, mtime=0)
+        return cls(plain, packed, f'"{hashlib.sha256(plain).hexdigest()[:16]}"')
+
+
+class _File:
+    """A file of the page, read again once `make page` has made it anew."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._made_at_ns = path.stat().st_mtime_ns
+        self._content = _Content.of(path)
+
+    def content(self) -> _Content:
+        # While it is being written, what was read before is as good.
+        with contextlib.suppress(OSError, EOFError, zlib.error):
+            made_at_ns = self._path.stat().st_mtime_ns
+            if made_at_ns != self._made_at_ns:
+                self._content, self._made_at_ns = _Content.of(self._path), made_at_ns
+        return self._content
+
+
 def _answer_of(path: Path, media: str) -> Callable[[Request], Awaitable[Response]]:
-    kept = path.read_bytes()
-    is_packed = path.suffix == ".gz"
-    data = gzip.decompress(kept) if is_packed else kept
-    packed = kept if is_packed else gzip.compress(data, 9, mtime=0)
-    tag = f'"{hashlib.sha256(data).hexdigest()[:16]}"'
+    file = _File(path)
 
     async def answer(request: Request) -> Response:
-        headers = {"etag": tag, "cache-control": "no-cache", "vary": "accept-encoding"}
-        if request.headers.get("if-none-match") == tag:
+        content = file.content()
+        headers = {"etag": content.tag, "cache-control": "no-cache", "vary": "accept-encoding"}
+        if request.headers.get("if-none-match") == content.tag:
             return Response(status_code=304, headers=headers)
         if "gzip" in request.headers.get("accept-encoding", ""):
-            return Response(packed, 200, headers | {"content-encoding": "gzip"}, media)
-        return Response(data, 200, headers, media)
+            return Response(content.packed, 200, headers | {"content-encoding": "gzip"}, media)
+        return Response(content.plain, 200, headers, media)
 
     return answer

@@ -98,7 +98,7 @@ class EngineStart(msgspec.Struct, frozen=True):
 
 
 class KilledError(ModelError):
-    """The child was ended by SIGKILL: from outside, not by model code, so asking again is right."""
+    """The child was killed or frozen from outside, not by model code, so asking another one is right."""
 
 
 class OverdueError(EndlessCodeError):
@@ -190,6 +190,10 @@ class EngineChild:
                     if on_progress is not None:
                         on_progress(self._decoded(line, _ProgressLine).progress)
         except TimeoutError:
+            if child.is_frozen():
+                await self.close()
+                text = f"the engine was frozen by a signal, and has not answered within {deadline_s:.0f} s"
+                raise KilledError(text, code="AOS213") from None
             text = f"the model did not finish within {deadline_s:.0f} s"
             raise await self._lost(EndlessCodeError, text) from None
         except (ConnectionError, ValueError):

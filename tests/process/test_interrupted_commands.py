@@ -1,0 +1,111 @@
+"""Ctrl-C in commands that work for long: what they say, and that they end at once."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from aos_deploy import cli
+from aos_lab.calibration import calibrate as calibration
+from aos_lab.calibration import records
+from aos_lab.calibration.records import RecordedMission
+from aos_lab.commands import simulate
+from aos_lab.trials.model_player import ModelPlayer
+from aos_lab.trials.trial import Trial
+from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+
+DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
+
+MISSIONS = f"""
+aos: 1
+tests:
+  finer:
+    deploy: {DEPLOY}/armadillo.yaml
+    bundles: [{DEPLOY}/bundles/armadillo-finer]
+    seeds: 5
+    simulations: 100
+    step_limit: 2
+    claims: [{{says: it never picks, never: pick}}]
+"""
+
+
+def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
+    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def third_interrupted(*arguments: Any, **options: Any) -> SimulatedRun:
+        if arguments[1].seed == 3:
+            os.kill(os.getpid(), signal.SIGINT)
+            await asyncio.Event().wait()
+        return await simulate_mission(*arguments, **options)
+
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    monkeypatch.setattr(simulate, "simulate_mission", third_interrupted)
+    command = ["simulate", str(bundles / "bench" / "tiger"), "--runs", "5", "--simulations", "10", "--json"]
+    done = CliRunner().invoke(cli.aos_app(), command)
+    assert done.exit_code == 130
+    assert [run["seed"] for run in json.loads(done.stdout)["runs"]] == [1, 2]
+    assert "stopped after 2 of 5 missions" in done.stderr
+
+
+def test_ctrl_c_while_a_command_is_imported_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "import_module", interrupted)
+    monkeypatch.setattr(sys, "argv", ["aos", "lint"])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    assert end.value.code == 130
+
+
+@pytest.mark.parametrize("keeps", [False, True], ids=["passing", "kept"])
+def test_ctrl_c_tells_after_how_many_missions_of_a_test(
+    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keeps: bool
+) -> None:
+    play = ModelPlayer.play
+
+    async def third_interrupted(player: ModelPlayer, seed: int) -> Trial:
+        if seed == 3:
+            os.kill(os.getpid(), signal.SIGINT)
+            await asyncio.Event().wait()
+        return await play(player, seed)
+
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    monkeypatch.setattr(ModelPlayer, "play", third_interrupted)
+    file = tmp_path / "missions.yaml"
+    file.write_text(MISSIONS)
+    command = ["test", str(file), *(["--keep", str(tmp_path / "kept")] if keeps else [])]
+    done = CliRunner().invoke(cli.aos_app(), command)
+    assert done.exit_code == 130
+    after = "the same command goes on" if keeps else "with --keep DIR the same command would go on"
+    assert done.stderr == f"aos: stopped in finer after 2 of its 5 missions; {after} from there\n"
+
+
+def test_ctrl_c_ends_a_calibration_while_it_computes(
+    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    has_gone_on = False
+
+    def interrupted(*arguments: Any) -> tuple[()]:
+        nonlocal has_gone_on
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0)  # Python runs the signal's handler before the next line.
+        has_gone_on = True
+        return ()
+
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    monkeypatch.setattr(records, "read_missions", lambda path: [RecordedMission("run", ())])
+    monkeypatch.setattr(calibration, "estimate", interrupted)
+    bundle = DEPLOY / "bundles" / "armadillo-finer"
+    done = CliRunner().invoke(cli.aos_app(), ["calibrate", str(tmp_path), str(bundle)])
+    assert (done.exit_code, done.stderr) == (130, "aos: stopped; nothing was estimated\n")
+    assert not has_gone_on
