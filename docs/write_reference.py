@@ -7,8 +7,6 @@ not). In http-api.md, languages.md, limits.md and protocol.md the text between `
 
 from __future__ import annotations
 
-import ast
-import inspect
 import json
 import re
 import sys
@@ -23,21 +21,9 @@ from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
 from aos_protocol import access, errors, keys
-from aos_protocol.messages import base, bundles, drift, mission, records, skills, steering, study
 
 DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
-MESSAGES = {
-    "around every message": base,
-    "bundles": bundles,
-    "mission": mission,
-    "steering": steering,
-    "records": records,
-    "drift": drift,
-    "study": study,
-    "skills": skills,
-}
-"""The modules of messages, each under the title of its conversation."""
 
 
 # --- errors --------------------------------------------------------------------------------------------
@@ -86,11 +72,10 @@ def key_rows() -> Iterator[tuple[str, str, str, str]]:
 
 
 def key_table() -> str:
-    """The key table as Markdown, message names linked to their section."""
+    """The key table as Markdown."""
     lines = ["| Key | Kind | What for | Message |", "| --- | --- | --- | --- |"]
     for key, kind, what, said in key_rows():
-        linked = re.sub(r"\w+", lambda name: f"[{name[0]}](#{name[0].lower()})", said)
-        lines.append(f"| `{key}` | {kind} | {what} | {linked.replace('->', '→')} |")
+        lines.append(f"| `{key}` | {kind} | {what} | {said.replace('->', '→')} |")
     return "\n".join(lines) + "\n"
 
 
@@ -151,28 +136,6 @@ def _roles(roles: tuple[str, ...]) -> str:
     return "all" if roles == access.ROLES else ", ".join(roles)
 
 
-# --- messages ------------------------------------------------------------------------------------------
-
-
-def message_sections() -> str:
-    """Every message with the first sentence of its docstring, under the conversations of the source files."""
-    parts: list[str] = []
-    for title, module in MESSAGES.items():
-        source = Path(inspect.getfile(module)).name
-        link = f"[`{source}`](../protocol/aos_protocol/messages/{source})"
-        parts.append(f"### {title.capitalize()}\n\nIn {link}.\n")
-        nodes = ast.parse(inspect.getsource(module)).body
-        classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
-        parts += [_message(node) for node in classes if node.name != "Message"]
-    return "\n".join(parts)
-
-
-def _message(node: ast.ClassDef) -> str:
-    """Returns a message's section; the source that is linked has its fields."""
-    told = re.match(r".*?[.?](?= |$)", " ".join((ast.get_docstring(node) or "").split()))
-    return f"#### {node.name}\n\n{told[0] if told else ''}\n"
-
-
 # --- words ---------------------------------------------------------------------------------------------
 
 
@@ -213,7 +176,6 @@ def with_generated_parts(current: str) -> str:
         "http": operation_table,
         "keys": key_table,
         "access": access_table,
-        "messages": message_sections,
         "limits": limits_table,
         "words": words_tables,
     }
