@@ -30,3 +30,15 @@ def test_what_is_proven_of_values_is_rounded_outwards(capsys: pytest.CaptureFixt
     assert [cell.strip() for cell in rows["open"][5:7]] == ["-1.001", "+3.001"]
     assert [cell.strip() for cell in rows["wait"][5:7]] == ["+0.250", "+0.250"]
     assert [cell.strip() for cell in rows["leave"][5:7]] == ["", ""]
+
+
+@pytest.mark.parametrize("columns", ["30", "40", "60"])
+def test_a_narrow_terminal_cuts_no_value(
+    columns: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    print_values([ActionValue("take(side=right_side)", -14.798, 1, 0.0)], 30, "")
+    table = capsys.readouterr().out
+    assert "-14.798" in table
+    assert "…" not in table
+    assert all(len(line) <= int(columns) for line in table.splitlines())

@@ -22,6 +22,8 @@ LONGEST_ACTION = 48
 NUMBERS_WIDTH = 38
 """The width of all but the action, the bounds and the bar, with the lines between."""
 BOUNDS_WIDTH = 24
+VALUE_WIDTH = 22
+"""The width of the value, of a bar of one letter, and of the lines between."""
 
 STORY_WIDTH = 120
 FIRST_STEPS, LAST_STEPS = 8, 6
@@ -36,21 +38,23 @@ _LESS_THAN_THE_PLAN = (
 def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
     """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations.
 
-    What is proven of values stands beside them, rounded outwards, where there is room.
+    Errors and visits stand beside values where there is room, and what is proven of them, rounded outwards.
     """
     tried = [value.q for value in values if (value.n or not simulations) and math.isfinite(value.q)]
     lowest, highest = min(tried, default=0.0), max(tried, default=0.0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
     out = console(is_wide=True)
     # Bars give way first: actions often differ in their last letters only.
-    action_width = min(max(len(value.action) for value in values), LONGEST_ACTION)
+    longest = min(max(len(value.action) for value in values), LONGEST_ACTION)
+    has_errors = bool(simulations) and longest + NUMBERS_WIDTH <= out.width
+    action_width = longest if has_errors else max(min(longest, out.width - VALUE_WIDTH), 1)
     has_room = action_width + NUMBERS_WIDTH + BOUNDS_WIDTH <= out.width
     has_bounds = has_room and any(value.at_least is not None or value.at_most is not None for value in values)
     numbers_width = NUMBERS_WIDTH + (BOUNDS_WIDTH if has_bounds else 0)
     bar_width = max(min(BAR_WIDTH, out.width - action_width - numbers_width), 1)
     table.add_column("action", overflow="fold", min_width=action_width)
     table.add_column("value", justify="right")
-    if simulations:
+    if has_errors:
         table.add_column("stderr", justify="right")
         table.add_column("visits", justify="right")
     if has_bounds:
@@ -59,7 +63,7 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
     table.add_column("")
     for value in values:
         row = [value.action, value_text(value.q, 3)]
-        if simulations:
+        if has_errors:
             row += [f"{value.stderr:.3f}", f"{value.n:,}"]
         if has_bounds:
             row += [at_least_text(value, 3), at_most_text(value, 3)]
@@ -94,8 +98,9 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_g
             print_states(run)
     table = Table()
     for name in ("seed", "world", "mission", "steps", "return"):
-        table.add_column(name, justify="left" if name in ("world", "mission") else "right")
-    table.add_column("actions and observations", max_width=STORY_WIDTH)
+        is_text = name in ("world", "mission")
+        table.add_column(name, justify="left" if is_text else "right", overflow="fold")
+    table.add_column("actions and observations", max_width=STORY_WIDTH, overflow="fold")
     for run in runs:
         story = ", ".join(_story(run))
         world = run.world_ending.value if run.world_ending is not None else "goes on"

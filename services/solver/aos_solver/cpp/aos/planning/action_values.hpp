@@ -72,10 +72,10 @@ inline double error_of_unplayed(double played, double most) {
   return std::max(1 - played / missions_that_tell, 0.0) * std::max(most, 0.0) / (played + 2);
 }
 
-// What is exact and what is not, where an exact value rests on fewer missions.
+// What the error of a value rests on, where fewer missions than these were played.
 inline std::string unplayed_text(std::size_t played) {
   if (static_cast<double>(played) >= missions_that_tell) return {};
-  return "; the bounds are exact, and the error is that of " + std::to_string(played) + " of 30 missions that plan anew";
+  return "the error is that of " + std::to_string(played) + " of 30 missions that plan anew";
 }
 
 // The values of actions with bounds; `lowers` and `uppers` are between what the values may be, proven or not.

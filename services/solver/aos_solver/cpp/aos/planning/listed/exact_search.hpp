@@ -55,7 +55,7 @@ class ExactSearch final : public Planner<Model> {
     for (const double loss : losses) mean_loss_ += loss / count;
     for (const double loss : losses) squares += (loss - mean_loss_) * (loss - mean_loss_);
     if (count > 1) loss_error_ = std::sqrt(squares / (count - 1) / count);
-    why += unplayed_text(losses.size());
+    if (const std::string unplayed = unplayed_text(losses.size()); !unplayed.empty()) why += "; the bounds are exact, and " + unplayed;
     loss_error_ = std::hypot(loss_error_, error_of_unplayed(count, std::abs(values_[action].value)));
     const std::uint64_t taken = simulations();
     evaluation_.reset();

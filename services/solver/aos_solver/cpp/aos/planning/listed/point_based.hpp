@@ -73,6 +73,14 @@ class PointBased {
   }
   // The simple policy that decides, if one does.
   const std::optional<point_based::PolicyValue>& policy() const { return policy_; }
+  // What the error of an action's value rests on, where most of it is that too few missions were played.
+  std::string unplayed_text(int action) const {
+    if (running_ <= 0 || policy_) return {};
+    const point_based::ActionBounds bounds = search_->action_bounds()[static_cast<std::size_t>(action)];
+    const double unknown = error_of_unplayed(played_, lost_at_most(bounds.lower));
+    const bool is_proven = is_endless_ && unknown >= bounds.upper - bounds.lower;
+    return unknown > loss_error_ && !is_proven ? aos::unplayed_text(missions_) : std::string{};
+  }
   // How many simulations all searches took so far.
   std::uint64_t known_simulations() const { return known_; }
 
@@ -214,8 +222,10 @@ class PointBased {
   // The error of what planning anew loses: that of the missions that were played, and that too few were. A simple policy that
   // decides anew tells how much may be lost, with twice the error of its mean: it puts off for ever what the mission may put off.
   double error_of_missions(double promised) const {
-    const double most = anew_ ? promised - (anew_->value - 2 * anew_->standard_error) : std::abs(promised);
-    return std::hypot(loss_error_, policy_ ? policy_->standard_error : 0, error_of_unplayed(played_, most));
+    return std::hypot(loss_error_, policy_ ? policy_->standard_error : 0, error_of_unplayed(played_, lost_at_most(promised)));
+  }
+  double lost_at_most(double promised) const {
+    return anew_ ? promised - (anew_->value - 2 * anew_->standard_error) : std::abs(promised);
   }
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {

@@ -42,9 +42,10 @@ class SarsopPlanner final : public Planner<Model> {
   }
 
   std::uint64_t search(const Question<Model>& question, Sampler& /*random*/, std::string& why) override {
-    const std::uint64_t simulations =
-        used().search(question.budget, [&] { return this->choice(used().estimates(), question.horizon, question.barred); });
+    const auto chosen = [&] { return this->choice(used().estimates(), question.horizon, question.barred); };
+    const std::uint64_t simulations = used().search(question.budget, chosen);
     why += "; " + bounds_text(question);
+    if (const std::string unplayed = used().unplayed_text(chosen()); !unplayed.empty()) why += ", and " + unplayed;
     if (const auto& policy = used().policy()) {
       why += "; a simple policy decides, since it returns " + rounded_down(policy->value) + " in played missions";
     }
