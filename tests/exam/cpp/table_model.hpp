@@ -80,11 +80,17 @@ struct TableModel {
     }
   }
 
-  // Of a state of the problem; there are no others.
+  // Of a state of the problem, or of one that agrees with it in what matters: a list of states keeps irrelevant variables of
+  // one state only.
   static std::uint32_t number_of(const State& state) {
     const std::size_t number = slots_[slot_of(state)];
-    if (number == none) throw aos::ModelFault{"AOS215", "a state that the exam's model does not have"};
-    return static_cast<std::uint32_t>(number);
+    if (number != none) return static_cast<std::uint32_t>(number);
+    for (const State& listed : states_) {
+      State alike = state;
+      for (const std::size_t variable : problem_->irrelevant) alike.variables[variable] = listed.variables[variable];
+      if (alike == listed) return static_cast<std::uint32_t>(&listed - states_.data());
+    }
+    throw aos::ModelFault{"AOS215", "a state that the exam's model does not have"};
   }
 
   static void prepare() {}
