@@ -111,3 +111,34 @@ def test_an_adapter_whose_file_is_no_python_is_told_with_its_line(
     assert told.value.code == "AOS802"
     place = f"{tmp_path / 'unfinished_arm.py'}:3"
     assert f"unfinished_arm:Arm cannot be loaded: {place}: 'await' outside" in told.value.message
+
+
+ODD_ADAPTERS = """
+class Bare:
+    pass
+
+class Arm:
+    version = "1"
+    def __init__(self, host): pass
+    async def start(self): pass
+    async def close(self): pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("Bare", "the adapter odd_arms:Bare cannot be made with its host: too many positional arguments"),
+        ("Arm", "odd_arms:Arm is no adapter: it has no `call`"),
+        ("Leg", "the adapter odd_arms:Leg cannot be loaded: module 'odd_arms' has no attribute 'Leg'"),
+    ],
+)
+def test_a_class_that_is_no_adapter_is_told_before_it_serves(
+    name: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "odd_arms.py").write_text(ODD_ADAPTERS)
+    monkeypatch.syspath_prepend(tmp_path)
+    host: Any = None
+    with pytest.raises(DeployError) as told:
+        load_adapter(f"odd_arms:{name}", host)
+    assert (told.value.code, told.value.message) == ("AOS802", message)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 import logging
 from collections.abc import Callable
 from pathlib import Path
@@ -159,10 +160,20 @@ class Calls:
             )
 
     def _begin(self, call: Call) -> RunningCall:
-        task = asyncio.ensure_future(self._adapter.call(call))
+        task = asyncio.create_task(self._answer_of(self._adapter, call))
         running = self._running = RunningCall(call, task, self._tell)
         running.tell("accepted")
         return running
+
+    async def _answer_of(self, adapter: Adapter, call: Call) -> Answer:
+        answer = adapter.call(call)
+        if not inspect.isawaitable(answer):
+            raise SkillError(
+                f"{call.path} answered at once, which `call` of an adapter may not",
+                code="AOS510",
+                hint=f"Write it as `async def call(self, call)` in the adapter {self._settings.service}",
+            )
+        return await answer
 
     async def _ended(self, running: RunningCall) -> Answer:
         """Runs a call to its end, by itself, by its deadline or by a cancellation."""
@@ -177,7 +188,9 @@ class Calls:
         if error is None and not task.cancelled():
             return task.result()
         if is_late:
-            raise SkillError(f"{call.path} took longer than it may, {call.deadline_s:g} s", code="AOS503")
+            raise SkillError(
+                f"{call.path} took longer than it may, {round(call.deadline_s, 1):g} s", code="AOS503"
+            )
         if error is None:
             raise SkillError(f"{call.path} was cancelled: {running.reason}", code="AOS507")
         if isinstance(error, AosError):

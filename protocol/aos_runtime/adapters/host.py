@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import asyncio
 import importlib
+import inspect
 import logging
 import os
 import sys
 import threading
 from collections.abc import AsyncIterator, Awaitable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +42,8 @@ __all__ = ["Host", "load_adapter", "serve_adapter"]
 _ASK_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 2.0
 """A process has this time for saying why it ends, when something in it cannot be ended."""
+
+_PARTS = ("version", "start", "call", "close")
 
 _log = logging.getLogger("aos.adapter")
 
@@ -225,10 +229,35 @@ class Host:
 
 
 def load_adapter(name: str, host: Host) -> Adapter:
-    """An adapter by `module:Class`; DeployError AOS802 without such a class, or Python in its file."""
+    """An adapter by `module:Class`; DeployError AOS802 where there is no such class, or it is no adapter."""
+    adapter: Adapter = _made(name, _class_named(name), host)
+    lacking = [f"`{attribute}`" for attribute in _PARTS if not hasattr(adapter, attribute)]
+    if lacking:
+        raise DeployError(
+            f"{name} is no adapter: it has no {' and no '.join(lacking)}",
+            code="AOS802",
+            hint="An adapter has `version`, and `async def` start(self), call(self, call) and close(self)",
+        )
+    return adapter
+
+
+def _made(name: str, of: Any, host: Host) -> Any:
+    with suppress(ValueError):  # Of what is written in C nobody knows.
+        try:
+            inspect.signature(of).bind(host)
+        except TypeError as error:
+            raise DeployError(
+                f"the adapter {name} cannot be made with its host: {error}",
+                code="AOS802",
+                hint="Write `def __init__(self, host)`",
+            ) from error
+    return of(host)
+
+
+def _class_named(name: str) -> Any:
     module, _, attribute = name.partition(":")
     try:
-        adapter: Adapter = getattr(importlib.import_module(module), attribute)(host)
+        return getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError) as error:
         raise DeployError(
             f"the adapter {name} cannot be loaded: {error}",
@@ -241,4 +270,3 @@ def load_adapter(name: str, host: Host) -> Adapter:
             code="AOS802",
             hint="It is no Python as it stands there",
         ) from error
-    return adapter

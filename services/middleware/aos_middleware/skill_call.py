@@ -140,7 +140,7 @@ class Call:
 
 def _timed_out(path: str, limit_s: float) -> SkillError:
     return SkillError(
-        f"the skill at {path} did not answer within {limit_s:g} s",
+        f"the skill at {path} did not answer within {round(limit_s, 1):g} s",
         code="AOS503",
         hint="See the skill's log; its time is the mapping's `max_duration` or the mission's limit",
     )
