@@ -9,6 +9,7 @@ from pathlib import Path
 import typer
 
 from aos_deploy.bundle_files import planned_of, with_mission
+from aos_deploy.endless import endless_findings
 from aos_deploy.program import cache_dir
 from aos_language.load import load_files, with_excerpts
 from aos_protocol.diagnostics import Severity, render
@@ -33,7 +34,8 @@ async def engine_of_bundle(
     """The engine of a bundle, compiled if need be, for missions with these constraints and values.
 
     A deploy file stands for its bundles, and adds its own constraints and values. Mistakes in documents come
-    as one DocumentError; faults of the model show the line of the document.
+    as one DocumentError; faults of the model show the line of the document. Loops that no draw ended are told
+    in the end.
     """
     planned = planned_of(bundle)
     loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
@@ -59,6 +61,8 @@ async def engine_of_bundle(
         engine = await Engine.start(built, seed=seed)
         try:
             yield engine
+            for finding in with_excerpts(await endless_findings(built, engine), planned.files):
+                typer.echo(render(finding), err=True)
         finally:
             await engine.close()
     except ModelError as error:

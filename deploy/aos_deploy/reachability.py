@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_deploy.endless import endless_findings
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
@@ -27,8 +28,9 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
 
     What is missing is a warning where all states were looked at. Where there are more, a missing goal is a
     remark with the search's extent if that is at least the horizon, and nothing is said of preconditions.
-    Nothing is said where the initial belief cannot be enumerated. Where not all is looked at, random actions
-    are tried as well. A fault of model code on the way is an error at its place.
+    Loops that never end there are warnings, too. Nothing more is said where the initial belief cannot be
+    enumerated. Where not all is looked at, random actions are tried as well. A fault of model code on the way
+    is an error at its place.
     """
     try:
         engine = await Engine.start(built, seed=1)
@@ -36,6 +38,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
             if reach.limit:
                 await engine.rate(_DRAWN_TIME_S, seed=1, max_seconds=MAX_CPU_S)
+            endless = await endless_findings(built, engine)
         finally:
             await engine.close()
     except ModelError as error:
@@ -44,7 +47,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
             raise
         return tuple(_reached(diagnostic, is_fault) for diagnostic in error.diagnostics)
     if reach.states == 0:
-        return ()
+        return endless
     findings = Findings()
     is_whole = not reach.limit
     goal = _goal_span(project.environment)
@@ -59,7 +62,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         if unmet and skill.model.precondition:
             message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
             findings.warning("AOS131", message, skill.model.precondition[0].span, _extent(reach))
-    return findings.diagnostics
+    return (*endless, *findings.diagnostics)
 
 
 def _reached(diagnostic: Diagnostic, is_fault: bool) -> Diagnostic:

@@ -133,7 +133,7 @@ REACHED = [
     (STEP + "if (state.place == 2) throw 1;", "AOS215"),
     (STEP + "int i = 0; while (i >= 0) { i = state.place; state__.place = i; }", "AOS211"),
     (STEP + "std::vector<int> cells(2); cells.at(state.place + 1) = 1;", "AOS215"),
-    (STEP + "while (true) { if (AOS.Bernoulli(0.5) && state.place < 0) break; }", "AOS211"),
+    (STEP + "while (true) { if (AOS.SampleUniform(0, 1) < 0.5 && state.place < 0) break; }", "AOS211"),
     (STEP + "if (AOS.SampleNormal(0, 1) > -9) throw 1;", "AOS215"),
 ]
 """The last two cannot be enumerated, so they are met by random actions."""
@@ -173,6 +173,16 @@ def test_steps_that_wait_for_a_processor_are_not_slow(
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     waiting = "timespec pause{0, 300'000'000}; nanosleep(&pause, nullptr);\n"
     assert linted(app, hall(waiting + STEP)) == {}
+
+
+@pytest.mark.parametrize("draw", ["", "state__.place += AOS.SampleUniform(0, 1) > 2;\n"])
+def test_a_loop_that_no_draw_ends_is_a_warning(
+    app: typer.Typer, hall: Callable[..., Path], draw: str
+) -> None:
+    loop = "while (state.place > 0) { if (AOS.Bernoulli(0.5) && state.place > 1) break; }"
+    severity, place, hint = linted(app, hall(draw + STEP + loop))["AOS211"]
+    assert (severity, place) == ("warning", f"walk.sd:{5 + bool(draw)}")
+    assert hint.startswith("Such a step ends the mission as a failure")
 
 
 def test_a_loop_that_chance_ends_is_no_error(app: typer.Typer, hall: Callable[..., Path]) -> None:

@@ -92,6 +92,60 @@ async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir
         assert update.summary.states == 500
 
 
+SLOTS = """project: slots
+horizon: 4
+discount: 0.5
+
+state_variable: bool is_full [Slot]
+default_value: false
+
+state_variable: int carried
+default_value: 1
+
+define_type: Slot
+enum_members: Left, Right
+
+initial_belief:
+state.is_full[Left] = AOS.Bernoulli(0.75);
+state.is_full[Right] = AOS.Bernoulli(0.5);
+
+reward_code:
+if (state.carried == 0) { __reward = 10; __isGoalState = true; }
+"""
+PLACE = """project: slots
+
+precondition:
+__meetPrecondition = !state.is_full[Left];
+violate_penalty: -4
+
+dynamic_model:
+__reward = -1;
+while (true) {
+    Slot slot = AOS.SampleDiscrete(Slot, {0.5, 0.5});
+    if (!state.is_full[slot]) { state__.is_full[slot] = true; break; }
+}
+state__.carried = 0;
+__moduleResponse = placed;
+"""
+PLACED = mapping_text("placed: is_done", project="slots", skill="place", reports={"is_done": "bool"})
+
+
+async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_dir: Path) -> None:
+    files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        # The reward before the loop is not earned.
+        values = await engine.exact(horizon=1)
+        assert values.actions[0].q == pytest.approx(0.25 * 9 + 0.375 * 5 - 0.375 * 4)
+        prediction = await engine.predict(0)
+        odds = {predicted.response: predicted.probability for predicted in prediction.predicted}
+        assert odds == {"placed": pytest.approx(0.625), "(never ends)": pytest.approx(0.375)}
+        update = await engine.update("place", "placed")
+        assert update.probability == pytest.approx(0.625)
+        assert update.summary.error_bound == 0
+        (loop,) = (await engine.endless_steps()).loops
+        assert "state.is_full[Left]=true, state.is_full[Right]=true" in loop.state
+
+
 async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path) -> None:
     files = {"loops.ef": ENVIRONMENT, "turn.sd": ENDLESS, "turn.am": MAPPING}
     with pytest.raises(ModelError) as raised:

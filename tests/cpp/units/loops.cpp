@@ -177,6 +177,62 @@ TEST("A loop that fills an array is walked without cuts where its rounds are too
   EXPECT_EQUAL(fill(18, 1'000'000), 1 << 18);
 }
 
+// Leaves its loop with place 3, or stays in places 1 and 2 for ever.
+int place_of_trap(DirectedDraws& AOS) {
+  int place = 0;
+  DrawingLoop loop{AOS, 1};
+  while (loop.head(std::tie(place), std::tie()), place != 3) {
+    place = place == 0 ? (AOS.Bernoulli(0.25) ? 1 : AOS.Bernoulli(0.2) ? 0 : 3) : (AOS.Bernoulli(0.5) ? 1 : 2);
+  }
+  return place;
+}
+
+TEST("Code that takes an endless path as an outcome is enumerated") {
+  const auto caught = [](auto&& code) {
+    return [code](DirectedDraws& AOS) {
+      try {
+        return code(AOS);
+      } catch (const aos::EndlessPath&) {
+        return -1;
+      }
+    };
+  };
+  const Outcomes found = outcomes_of(caught(place_of_trap));
+  EXPECT_NEAR(found.odds.at(-1), 0.25 / 0.85, 1e-15);
+  EXPECT_NEAR(found.odds.at(3), 0.6 / 0.85, 1e-15);
+  EXPECT_EQUAL(found.left_out, 0);
+  const Outcomes all = outcomes_of(caught([](DirectedDraws& AOS) {
+    DrawingLoop loop{AOS, 1};
+    while (loop.head(std::tie(), std::tie()), true) AOS.Bernoulli(0.5);
+    return 0;
+  }));
+  EXPECT_NEAR(all.odds.at(-1), 1, 1e-15);
+}
+
+TEST("A loop that other numbers may end counts as endless for no numbers") {
+  Enumerator draws;
+  draws.leave_numbers_to(1);
+  bool is_endless = false;
+  const auto run = [&](Enumerator& path) {
+    DirectedDraws& AOS = path;
+    DrawingLoop loop{AOS, 1};
+    try {
+      while (loop.head(std::tie(), std::tie()), true) {
+        if (AOS.SampleUniform(0, 1) > 0.999) return;
+      }
+    } catch (const aos::EndlessPath&) {
+      is_endless = true;
+    }
+  };
+  bool is_refused = false;
+  try {
+    draws.for_nearly_each_path(run, [](Enumerator&) {});
+  } catch (const aos::NotEnumerable&) {
+    is_refused = true;
+  }
+  EXPECT(is_refused && !is_endless);
+}
+
 TEST("A loop that never ends for some draws is not enumerated") {
   const auto enumerated = [](auto&& code) {
     try {
@@ -191,14 +247,7 @@ TEST("A loop that never ends for some draws is not enumerated") {
     while (loop.head(std::tie(), std::tie()), true) AOS.Bernoulli(0.5);
     return 0;
   }));
-  EXPECT(!enumerated([](DirectedDraws& AOS) {
-    int place = 0;
-    DrawingLoop loop{AOS, 1};
-    while (loop.head(std::tie(place), std::tie()), place != 3) {
-      place = place == 0 ? (AOS.Bernoulli(0.5) ? 1 : 3) : (AOS.Bernoulli(0.5) ? 1 : 2);
-    }
-    return place;
-  }));
+  EXPECT(!enumerated(place_of_trap));
 }
 
 TEST("Numbers that a loop reports weigh its ends") {

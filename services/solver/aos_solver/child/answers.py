@@ -156,6 +156,20 @@ class Reach(msgspec.Struct, frozen=True):
     limit: str
 
 
+class EndlessLoop(msgspec.Struct, frozen=True):
+    """A loop that had no end in so many steps of a child, and the state before the first of them."""
+
+    loop: int
+    steps: int
+    state: str
+
+
+class EndlessSteps(msgspec.Struct, frozen=True):
+    """The loops in which steps of a child did not come to an end."""
+
+    loops: tuple[EndlessLoop, ...]
+
+
 class GoalReach(msgspec.Struct, frozen=True):
     """The answer whether actions lead to a goal from the running states, by a list or by random walks."""
 

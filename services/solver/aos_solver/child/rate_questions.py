@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from aos_solver.child.answers import EndlessSteps
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
 from aos_solver.child.command_line import command_line
 from aos_solver.child.slow_code import SlowCode, slow_code
@@ -26,6 +27,10 @@ class RateQuestions(Asking):
         name = "rate" if stepping == "code" else "rate_by_table"
         command = command_line(name, seconds=seconds, seed=seed, max_seconds=max_seconds)
         return await self._ask(command, SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S)
+
+    async def endless_steps(self) -> EndlessSteps:
+        """The loops in which steps of the running child did not come to an end, whatever it was asked."""
+        return await self._ask(command_line("endless_steps"), EndlessSteps)
 
     async def slow_code(self) -> SlowCode | None:
         """The code in which random steps spend half of their time or more, of another child; None where no

@@ -77,6 +77,14 @@ class EmittedModel(msgspec.Struct, frozen=True):
             return self.pieces[inside[0].piece - 1].locate(inside[0].line, column - inside[0].column + 1)
         return self.pieces[origins[0].piece - 1].locate(origins[0].line, 1)
 
+    def place_of_loop(self, number: int) -> Span | None:
+        """The document place of a loop that draws, by its number in the file."""
+        found = re.search(rf"aos::DrawingLoop \w+\{{AOS, {number}\}}; ", self.cpp)
+        if found is None:
+            return None
+        before = self.cpp[: found.end()].split("\n")
+        return self.locate(len(before), len(before[-1].encode()) + 1)
+
 
 def emit(program: Program) -> EmittedModel:
     """The C++ of a program."""

@@ -78,6 +78,7 @@ int Enumerator::choose(const double* weights, int count, double total) {
 }
 
 double Enumerator::uniform() {
+  has_number_since_ = events_ > 0;
   if (luck_) return drawn_.uniform();
   meets_number_ = has_drawn_number_ = true;
   if (strata_.count == 0) throw NotEnumerable{"a draw is continuous"};
@@ -85,7 +86,8 @@ double Enumerator::uniform() {
 }
 
 double Enumerator::walk(Run run, Run visit, int max_paths, std::size_t max_depth_first) {
-  has_loops_ = false;
+  has_loops_ = has_number_between_ = has_number_since_ = false;
+  events_ = 0;
   is_listing_ = is_cutting_ = true;
   visits_ = 1;
   paths_left_ = max_paths;
@@ -160,6 +162,8 @@ void Enumerator::run_once(Run run, End at_end) {
     run(*this);
   } catch (const CutPath&) {
     return;
+  } catch (const EndlessPath&) {
+    throw NotEnumerable{"a loop may never end"};  // Only a step that never ends is an outcome.
   }
   at_end();
 }
@@ -204,7 +208,7 @@ void Enumerator::begin_run_with_loops() {
   at_ = LoopChain::start;
   next_stop_ = draws_at_ = 0;
   events_ = events_at_ = 0;
-  has_arrived_ = false;
+  has_arrived_ = has_number_since_ = false;
 }
 
 int Enumerator::choose_given() {
@@ -240,6 +244,8 @@ std::string* Enumerator::arrive(std::uint32_t loop, std::uint32_t entry) {
       at_ = stop.head;
       draws_at_ = stop.draws;
       events_at_ = events_;
+      has_number_since_ = false;
+      if (!is_listing_ && stop.head == from_ && chain_.is_endless(from_)) leave_endless(loop);
     }
     return nullptr;
   }
@@ -251,7 +257,13 @@ std::string* Enumerator::arrive(std::uint32_t loop, std::uint32_t entry) {
   return is_cutting_ ? &key_ : nullptr;
 }
 
+void Enumerator::leave_endless(std::uint32_t loop) const {
+  if (has_number_between_) throw NotEnumerable{"a loop may never end"};
+  throw EndlessPath{loop};
+}
+
 void Enumerator::cut() {
+  has_number_between_ = has_number_between_ || has_number_since_;
   if (is_listing_) {
     std::vector<int> choices;
     for (std::size_t draw = 0; draw < depth_; ++draw) choices.push_back(choices_[draw].taken);

@@ -40,6 +40,8 @@ inline constexpr double max_left_out = 1e-6;            // the same once the bud
 // times that a run comes to the head (see loop_chain.hpp), which is known once all heads are walked. So ends after
 // heads are walked again then.
 //
+// A head from which no path comes to an end is an end itself: model code is left there by an EndlessPath.
+//
 // A loop whose heads all differ, such as one that counts its rounds, has heads without end. The likeliest are walked
 // first, until the others are negligible. If there are too many heads, as in a loop that fills an array, paths are not
 // cut. They are then walked depth first, and a new draw takes its first outcome first. A path that gets long makes its
@@ -133,6 +135,8 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   [[noreturn]] void give_up() const;
   void begin_run_with_loops();
   int choose_given();
+  // Throws an EndlessPath, or NotEnumerable where other numbers might lead to an end.
+  [[noreturn]] void leave_endless(std::uint32_t loop) const;
   void run_once(Run run, End at_end);
 
   double best_first(Run run, End at_end);
@@ -170,6 +174,8 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   bool is_listing_ = false;
   bool is_cutting_ = false;
   bool has_arrived_ = false;  // at a head where paths are cut
+  bool has_number_since_ = false;    // a continuous draw since the last head of the run
+  bool has_number_between_ = false;  // one between two heads, so that luck may lead a loop to its end
   std::string way_;
   std::string key_;
 

@@ -99,11 +99,12 @@ class LoopChain {
   // The head to list next.
   Number likeliest() const { return likeliest_.top().second; }
 
-  // Computes how often a run comes to each head. Returns the probability of what is not listed, or lost. Throws
-  // NotEnumerable if a loop may have no end.
+  // Computes how often a run comes to each head. Returns the probability of what is not listed, or lost. A head that leads
+  // to no end is the end of the paths that come there.
   double settle();
   double visits(Number head) const { return heads_[head].visits; }
-  bool has_ends(Number head) const { return heads_[head].ends > 0; }
+  bool has_ends(Number head) const { return heads_[head].ends > 0 || heads_[head].is_endless; }
+  bool is_endless(Number head) const { return heads_[head].is_endless; }
 
  private:
   struct Edge {
@@ -115,6 +116,7 @@ class LoopChain {
     std::vector<int> choices{};  // since `before`
     std::uint64_t events = 0;
     bool is_listed = false;
+    bool is_endless = false;
     double mass = 0;  // a lower bound of `visits`, as long as the head is not listed
     double visits = 0;
     std::vector<Edge> edges{};
@@ -122,6 +124,9 @@ class LoopChain {
     double lost = 0;
   };
   class Elimination;
+
+  // Notes the listed heads from which no path comes to an end, nor to a head that is not listed.
+  void find_endless();
 
   std::vector<Head> heads_;
   std::unordered_map<std::string, Number> numbers_;

@@ -51,7 +51,8 @@ class LoopChain::Elimination {
       if (!heads[from].is_listed) continue;
       Row& row = rows_[from];
       row.is_left = true;
-      row.exit = heads[from].ends + heads[from].lost;
+      row.exit = heads[from].is_endless ? 1 : heads[from].ends + heads[from].lost;
+      if (heads[from].is_endless) continue;
       for (const auto& [to, probability] : heads[from].edges) {
         if (!heads[to].is_listed) {
           row.exit += probability;
@@ -140,7 +141,30 @@ class LoopChain::Elimination {
   std::size_t work_ = 0;
 };
 
+void LoopChain::find_endless() {
+  std::vector<std::vector<Number>> sources(heads_.size());
+  std::vector<bool> ends(heads_.size(), false);
+  std::vector<Number> found;
+  const auto note = [&](Number head) {
+    if (ends[head]) return;
+    ends[head] = true;
+    found.push_back(head);
+  };
+  for (Number from = 0; from < heads_.size(); ++from) {
+    const Head& head = heads_[from];
+    if (!head.is_listed || head.ends + head.lost > 0) note(from);
+    for (const auto& [to, probability] : head.edges) sources[to].push_back(from);
+  }
+  while (!found.empty()) {
+    const Number head = found.back();
+    found.pop_back();
+    for (const Number source : sources[head]) note(source);
+  }
+  for (Number head = start + 1; head < heads_.size(); ++head) heads_[head].is_endless = !ends[head];
+}
+
 double LoopChain::settle() {
+  find_endless();
   const std::vector<double> visits = Elimination{heads_}.visits();
   double left_out = 0;
   for (Head& head : heads_) {

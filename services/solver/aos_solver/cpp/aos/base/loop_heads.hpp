@@ -2,12 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace aos {
 
 // Thrown out of model code where the rest of a path is walked elsewhere.
 struct CutPath {};
+
+// Thrown out of model code that goes round in this loop for ever, whatever it draws.
+struct EndlessPath {
+  std::uint32_t loop;
+};
+
+// Thrown out of model code whose loop has taken as many rounds as are allowed, where nobody is told of heads.
+struct LongLoop {
+  std::uint32_t loop;
+};
+inline constexpr std::uint32_t any_rounds = std::numeric_limits<std::uint32_t>::max();
+inline thread_local std::uint32_t allowed_rounds = any_rounds;
+// Throws a LongLoop where somebody should look whether the loop has an end.
+void look_whether_it_ends(std::uint32_t loop, std::uint32_t rounds);
 
 class LoopHeads {
  public:

@@ -102,6 +102,7 @@ class Commands {
         {"describe", [](Commands& commands, JsonWriter& json, const Command&) { commands.describe(json); }},
         {"tell_progress", [](Commands&, JsonWriter& json, const Command& command) { tell_progress(json, command); }},
         {"rate", [](Commands&, JsonWriter& json, const Command& command) { write_code_rate<Model>(json, command); }},
+        {"endless_steps", [](Commands&, JsonWriter& json, const Command&) { write_endless_steps(json); }},
         {"rate_by_table",
          [](Commands&, JsonWriter& json, const Command& command) { write_table_rate<Model>(json, command); }},
         {"risks", [](Commands& commands, JsonWriter& json, const Command& command) {

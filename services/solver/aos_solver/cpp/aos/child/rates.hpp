@@ -11,6 +11,7 @@
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/command.hpp"
+#include "aos/model/endless_steps.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/listed/step_table.hpp"
 #include "aos/planning/values/mdp_values.hpp"
@@ -41,6 +42,15 @@ void write_rate(JsonWriter& json, double seconds, Sampler& random, StartState&& 
   json.begin_object().member("samples", samples).member("seconds", spent.count());
   json.member("cpu_seconds", processor.count());
   json.member("mean_reward", samples > 0 ? rewards / static_cast<double>(samples) : 0.0).end_object();
+}
+
+// Writes which loops had no end in steps of this process so far.
+inline void write_endless_steps(JsonWriter& json) {
+  json.begin_object().key("loops").begin_array();
+  endless_steps().for_each([&](std::uint32_t loop, const EndlessSteps::Told& told) {
+    json.begin_object().member("loop", loop).member("steps", told.steps).member("state", told.state).end_object();
+  });
+  json.end_array().end_object();
 }
 
 // Steps by the documents' code.

@@ -38,6 +38,7 @@ Observation observation_of(int action, std::string_view response) {
     if (response == Model::response_name(skill, number)) return number;
   }
   if (response == default_observation_text) return default_observation;
+  if (response == no_observation_text) return no_observation;
   return text_observation(response);
 }
 

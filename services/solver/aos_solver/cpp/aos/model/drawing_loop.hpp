@@ -17,6 +17,7 @@
 #include "aos/base/loop_heads.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/endless_steps.hpp"
 #include "aos/model/reflection.hpp"
 
 namespace aos {
@@ -114,7 +115,10 @@ class DrawingLoop {
   template <bool pointers, class... Mentioned, class... Others>
   void tell(const std::tuple<Mentioned&...>& mentioned, const std::tuple<Others&...>& others) {
     if constexpr ((detail::can_be_told<std::remove_cv_t<Mentioned>, pointers>() && ...)) {
-      if (heads_ == nullptr) [[likely]] return;
+      if (heads_ == nullptr) [[likely]] {
+        if (++rounds_ > allowed_rounds) [[unlikely]] look_whether_it_ends(number_, rounds_);
+        return;
+      }
       std::string* const key = heads_->arrive(number_, entry_);
       if (key == nullptr) return;
       const auto write = [&]<class T>(const T& value) {
@@ -130,6 +134,7 @@ class DrawingLoop {
   LoopHeads* heads_;
   std::uint32_t number_;
   std::uint32_t entry_ = 0;
+  std::uint32_t rounds_ = 0;
 };
 
 }  // namespace aos

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,10 @@ using Observation = std::int64_t;
 
 inline constexpr Observation default_observation = -1;
 inline constexpr const char* default_observation_text = "DefaultObservation";
+
+// Nobody observes a step that never ends: see endless_steps.hpp.
+inline constexpr Observation no_observation = std::numeric_limits<Observation>::min();
+inline constexpr const char* no_observation_text = "(never ends)";
 
 // The number that stands for no action where a belief is updated: time passes, and nothing is observed.
 inline constexpr int no_action = -1;
@@ -69,6 +74,7 @@ template <class Model>
 std::string name_of_observation(int skill, Observation observation) {
   if (observation >= 0) return Model::response_name(skill, static_cast<int>(observation));
   if (observation == default_observation) return default_observation_text;
+  if (observation == no_observation) return no_observation_text;
   return std::string{observation_text(observation)};
 }
 

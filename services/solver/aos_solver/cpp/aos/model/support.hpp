@@ -18,6 +18,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/reward_ledger.hpp"
 #include "aos/model/containers.hpp"
+#include "aos/model/endless_steps.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/named_array.hpp"
 #include "aos/model/reporting.hpp"
@@ -72,6 +73,25 @@ std::unordered_map<Observation, std::string>& observed_texts() {
 
 }  // namespace detail
 
+void look_whether_it_ends(std::uint32_t loop, std::uint32_t rounds) {
+  if (rounds > detail::rounds_before_a_look(loop)) throw LongLoop{loop};
+}
+
+std::uint32_t& detail::rounds_before_a_look(std::uint32_t loop) {
+  thread_local std::unordered_map<std::uint32_t, std::uint32_t> rounds;
+  return rounds.try_emplace(loop, long_loop).first->second;
+}
+
+EndlessSteps& endless_steps() {
+  static EndlessSteps steps;
+  return steps;
+}
+void EndlessSteps::add(std::uint32_t loop, AnyValue before) {
+  const std::lock_guard guard{mutex_};
+  Told& told = loops_[loop];
+  if (told.steps++ == 0) told.state = leaves_text("state", before, {});
+}
+
 Observation text_observation(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char character : text) {
@@ -79,6 +99,7 @@ Observation text_observation(std::string_view text) {
   }
   auto number = static_cast<Observation>(hash | (std::uint64_t{1} << 63));
   if (number == default_observation) --number;
+  if (number == no_observation) ++number;
   if (!remembers_texts) return number;
   // Most texts come again soon, so a small cache spares the map.
   thread_local std::array<Observation, 256> recent{};

@@ -77,8 +77,17 @@ struct SkillDefaults {
   static void given_observation(const auto&, auto&, const auto&, const auto&, auto&) {}
 };
 
+// How the phases of a step are run: each comes to an end. For other models see endless_steps.hpp.
+struct EndingSteps {
+  static Step run(auto& next, auto& random, double /*penalty*/, auto&& phases) {
+    bool meets_precondition = true;
+    return phases(next, random, meets_precondition);
+  }
+};
+
 // The defaults for what an environment document leaves out.
 struct EnvironmentDefaults {
+  using Steps = EndingSteps;
   static constexpr bool is_one_state = false;
   static constexpr bool has_extrinsic_changes = false;
   static constexpr bool has_special_states = false;
@@ -198,9 +207,8 @@ Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, i
 // Runs the phases in their order. They change the state in place, and what a later phase reads is copied
 // before. The copies never change, so a compiler copies only what is read.
 template <class Environment, class Skill, class State>
-Step transition(State& next, const auto& parameters, auto& random) {
+Step run_phases(State& next, const auto& parameters, auto& random, bool& meets_precondition) {
   Kept<State, Skill::keeps_state> state = next;
-  bool meets_precondition = true;
   Skill::precondition(state, meets_precondition, parameters, random);
   int execution_time = -1;
   Skill::execution_time(state, execution_time, parameters, random);
@@ -219,13 +227,21 @@ Step transition(State& next, const auto& parameters, auto& random) {
   }
 }
 
+template <class Environment, class Skill, class State>
+Step transition(State& next, const auto& parameters, auto& random) {
+  return Environment::Steps::run(next, random, Skill::violation_penalty, [&](State& state, auto& draws, bool& meets_precondition) {
+    return run_phases<Environment, Skill>(state, parameters, draws, meets_precondition);
+  });
+}
+
 // The observation in an ended state: what the documents give there, or the default observation if they raise
 // a ModelFault.
 template <class Environment, class Skill, class State>
 [[gnu::cold, gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
   copy.aos_ending = Ending::running;
   try {
-    return {0, transition<Environment, Skill>(copy, parameters, random).observation};
+    const Observation observation = transition<Environment, Skill>(copy, parameters, random).observation;
+    return {0, observation == no_observation ? default_observation : observation};
   } catch (const ModelFault&) {
     return {};
   }
