@@ -26,6 +26,8 @@ def check_endings(environment: Environment, findings: Findings) -> None:
         word = "`__isFailureState = true;`" if code else "`IsFailureState` (SDL: `is_failure_state:`)"
         if _is_negative(special, code):
             message = "an ending that is a failure because its reward is negative"
+            if _OTHER_REWARD.search(code):
+                message = "an ending that is a failure where its reward is negative"
             findings.remark("AOS137", message, special.span, f"Say so with {word}")
         elif _is_nothing(special, code):
             message = "an ending that is neither goal nor failure because its reward is 0"

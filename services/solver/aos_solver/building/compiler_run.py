@@ -19,7 +19,7 @@ LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 """The advice about a compiler that runs out of time or memory over a model."""
 
 _OUR_LIMIT_HINT = "The machine is too busy or too small for it; try again when less runs"
-"""The advice about a compiler that runs out of time over our own sources."""
+"""The advice about a compiler that runs out of time or memory over our own sources."""
 
 _DISK_IS_FULL = "No space left on device"
 _OUT_OF = (
@@ -129,10 +129,9 @@ def internal_error(what: str, output: str, status: int, source: Path) -> AosErro
         hint = "Make space there, or name another folder for compiled models in $AOS_CACHE_DIR"
         return StorageError(f"{what} cannot be compiled: {_DISK_IS_FULL}", hint=hint)
     reason = next(iter(output.strip().splitlines()), f"status {status}")
-    return ModelError(
-        f"the C++ of {what} does not compile: {reason}",
-        hint=f"This is not a mistake in the documents; please report it with {source}",
-    )
+    report = f"This is not a mistake in the documents; please report it with {source}"
+    hint = _OUR_LIMIT_HINT if ran_out(output, status) else report
+    return ModelError(f"the C++ of {what} does not compile: {reason}", hint=hint)
 
 
 async def _read(child: Child) -> str:
