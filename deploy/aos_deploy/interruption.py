@@ -15,6 +15,7 @@ from aos_deploy.events import Event, Report
 
 __all__ = ["Stoppable", "run_until_interrupted", "told_while_read"]
 
+ECHO_S = 0.3
 _STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -50,23 +51,24 @@ async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) ->
     """The exit code. The first signal stops everything in order, any further one at once. Everything stops in
     order also where nobody reads any more.
 
-    A signal after the end changes nothing: the process ignores it from then on.
+    A signal that comes within ECHO_S of the first is the same one: `timeout` and terminals send it to a
+    process and to its group. A signal after the end changes nothing: the process ignores it from then on.
     """
     loop = asyncio.get_running_loop()
     work = loop.create_task(mission.run())
-    has_interrupted = False
+    interrupted_s: float | None = None
 
     def interrupt() -> None:
-        nonlocal has_interrupted
-        if has_interrupted:
-            mission.kill()
-        else:
-            has_interrupted = True
+        nonlocal interrupted_s
+        if interrupted_s is None:
+            interrupted_s = loop.time()
             work.cancel()
+        elif loop.time() - interrupted_s > ECHO_S:
+            mission.kill()
 
     async def stop_unread() -> None:
         await is_unread.wait()
-        if not has_interrupted:  # Ctrl-C ends the reader as well.
+        if interrupted_s is None:  # Ctrl-C ends the reader as well.
             interrupt()
 
     for number in _STOPPING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import re
 import stat
 import time
@@ -68,6 +69,8 @@ class _Printed:
     def has_line(self) -> bool:
         """Returns whether one of the lines since the last question matches."""
         with self._log.open("rb") as log:
+            if log.seek(0, os.SEEK_END) < self._position:
+                self._position = 0  # It was so long that it was cut.
             log.seek(self._position)
             new = log.read()
             self._position = log.tell()

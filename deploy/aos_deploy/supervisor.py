@@ -22,6 +22,7 @@ import msgspec
 
 from aos_deploy.consequence import STARTED_AGAIN, THE_RUN_ENDS, RunningProgram, consequence, fatal_end
 from aos_deploy.events import Report, ServiceChanged
+from aos_deploy.log_sizes import keep_logs_short, shorten_all
 from aos_deploy.passes import Outsider, Passes
 from aos_deploy.process_end import look_at_log, status_text
 from aos_deploy.process_start import ROUTER_MODULE, start_process
@@ -130,6 +131,7 @@ class Supervisor:
 
         DeployError AOS802 if a process cannot be started. Nobody else may listen at the endpoint.
         """
+        self._beside(keep_logs_short(self._run.path / "logs"))
         later = [program for program in self._programs if program.command]
         if any(program.is_own for program in later):
             later = [program for program in self._programs if program.command or program.is_adapter]
@@ -343,6 +345,7 @@ class Supervisor:
         if self._bus is not None:
             await self._bus.close()
         await self._stop_one(ROUTER.name)
+        await asyncio.to_thread(shorten_all, self._run.path / "logs")
 
     def kill(self) -> None:
         """Ends every process at once; what they have started ends with them."""

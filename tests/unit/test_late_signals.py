@@ -1,4 +1,4 @@
-"""A signal that comes when the mission is over."""
+"""Signals that come when the mission is over, and two that are one."""
 
 from __future__ import annotations
 
@@ -31,3 +31,33 @@ def test_a_signal_after_the_end_leaves_the_exit_code(signal: str) -> None:
         [sys.executable, "-c", RUN.format(signal=signal)], timeout=HANG_S, capture_output=True, check=False
     )
     assert (ended.returncode, ended.stderr) == (6, b"")
+
+
+TWICE = """
+import asyncio, os, signal
+from aos_deploy.interruption import run_until_interrupted
+
+class Goes:
+    exit_code = 130
+    async def run(self):
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+            await asyncio.Event().wait()
+        except asyncio.CancelledError:
+            os.kill(os.getpid(), signal.SIGTERM)
+            for _ in range(10):
+                await asyncio.sleep(0)
+            print("stopped in order")
+            return self
+    def kill(self):
+        print("killed")
+
+asyncio.run(run_until_interrupted(Goes(), asyncio.Event()))
+"""
+
+
+def test_a_signal_that_comes_twice_at_once_is_one() -> None:
+    ended = subprocess.run(
+        [sys.executable, "-c", TWICE], timeout=HANG_S, capture_output=True, check=False, text=True
+    )
+    assert (ended.stdout, ended.stderr) == ("stopped in order\n", "")
