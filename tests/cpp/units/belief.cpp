@@ -145,6 +145,36 @@ TEST("Thinning out keeps heavy states as they are, tells what it drops, and chan
   }
 }
 
+TEST("Thinning out does not agree with a pattern in the order of the states") {
+  aos::Sampler random{5};
+  for (const double share : {0.25, 0.5}) {
+    std::vector<double> weights(4000, 1.0);
+    aos::thin_out(weights, static_cast<std::size_t>(share * 4000), random);
+    double even = 0;
+    double all = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      even += i % 2 == 0 ? weights[i] : 0;
+      all += weights[i];
+    }
+    EXPECT_NEAR(all, 4000, 1e-6);
+    EXPECT_NEAR(even / all, 0.5, 0.07);  // at even distances it is 0 or 1
+  }
+}
+
+TEST("States drawn by their weights do not agree with a pattern in their order") {
+  Problem problem = units::world(4000, 1, 0.9);
+  problem.starts.clear();
+  for (std::uint32_t state = 0; state < 4000; ++state) problem.starts.push_back({state, 1.0 / 4000});
+  TableModel::take(problem);
+  aos::Sampler random{6};
+  int even = 0;
+  const Belief belief = Belief::initial(random);
+  aos::draw_evenly<TableModel>(belief.particles(), 2000, random, [&](const TableModel::State& state) {
+    even += TableModel::number_of(state) % 2 == 0 ? 1 : 0;
+  });
+  EXPECT_NEAR(even / 2000.0, 0.5, 0.07);
+}
+
 TEST("The error bound holds how far a belief with too many states is from the exact one") {
   constexpr std::uint32_t many = 120'000;
   Problem problem = units::world(many, 1, 0.9);

@@ -18,17 +18,19 @@ struct Particle {
   double weight;
 };
 
-// Calls `visit(state)` for states at even distances in the cumulative weights, from a random start (systematic sampling).
+// Calls `visit(state)` for states drawn by their weights, one in each of `count` equal parts of the cumulative weights
+// (stratified sampling). Even distances would agree with a pattern in the order of the states.
 template <class Model>
 void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t count, Sampler& random,
                  FunctionRef<void(const typename Model::State&)> visit) {
   double total = 0;
   for (const auto& particle : particles) total += particle.weight;
-  const double distance = total / static_cast<double>(count);
-  double position = random.uniform() * distance;
+  const double length = total / static_cast<double>(count);
+  double below = 0;  // the weight of the particles before `number`
   std::size_t number = 0;
-  for (std::size_t i = 0; i < count; ++i, position += distance) {
-    while (position >= particles[number].weight && number + 1 < particles.size()) position -= particles[number++].weight;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double position = (static_cast<double>(i) + random.uniform()) * length;
+    while (position - below >= particles[number].weight && number + 1 < particles.size()) below += particles[number++].weight;
     visit(particles[number].state);
   }
 }
@@ -49,21 +51,43 @@ inline double common_weight(std::vector<double> weights, std::size_t count) {
 // Leaves at most `count` weights and sets the others to 0; no weight's mean changes (Fearnhead and Clifford,
 // 2003). Heavy weights stay as they are. Some of the light ones are drawn and get the same weight. Returns
 // the sum of the others, which is the total variation distance to the weights before, in their unit.
+//
+// Neighbours contend for their places, two at a time (Srinivasan, 2001; Gerber, Chopin and Whiteley, 2019): one of them drops
+// out, or one stays, and the other one goes on with what is left of both. Draws at even distances would agree with a pattern in
+// the order of the states: of pairs of equal weights they would leave all first ones, or all second ones.
 inline double thin_out(std::vector<double>& weights, std::size_t count, Sampler& random) {
   if (weights.size() <= count) return 0;
   const double common = common_weight(weights, count);
   double gone = 0;
-  double drawn = random.uniform() * common;
+  double* contender = nullptr;
+  double chance = 0;  // of the contender
+  const auto stays = [&](double& weight) { weight = common; };
+  const auto drops = [&](double& weight, double original) {
+    gone += original;
+    weight = 0;
+  };
+  double contending = 0;  // the contender's own weight
   for (double& weight : weights) {
-    if (weight >= common) continue;
-    if ((drawn -= weight) < 0) {
-      weight = common;
-      drawn += common;
-    } else {
-      gone += weight;
-      weight = 0;
+    if (weight >= common || weight <= 0) continue;
+    const double own = weight;
+    const double other = own / common;
+    if (contender == nullptr) {
+      contender = &weight, chance = other, contending = own;
+      continue;
     }
+    const double sum = chance + other;
+    const bool is_one_left = sum < 1;
+    // Whether the new one is the one that is decided on.
+    const bool is_new = is_one_left ? random.uniform() * sum < chance : random.uniform() * (2 - sum) >= 1 - other;
+    if (is_one_left) {
+      is_new ? drops(weight, own) : drops(*contender, contending);
+    } else {
+      is_new ? stays(weight) : stays(*contender);
+    }
+    if (!is_new) contender = &weight, contending = own;
+    chance = is_one_left ? sum : sum - 1;
   }
+  if (contender != nullptr) random.uniform() < chance ? stays(*contender) : drops(*contender, contending);
   return gone;
 }
 
