@@ -62,7 +62,7 @@ async def run_compiler(
     ModelError AOS202, which names `what` is compiled, if it takes longer than `deadline_s`; see `ran_out`.
     """
     memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
-    # The deadline is of the wall clock. This limit ends what outlives even the guard. Zig has threads.
+    # The deadline is not of processor time. This limit ends what outlives even the guard. Zig has threads.
     limits = Limits(
         address_space_bytes=memory,
         cpu_s=given.get("cpu_s") or int(deadline_s * 4) + 1,
@@ -86,9 +86,7 @@ async def run_compiler(
         stderr=asyncio.subprocess.STDOUT,
     )
     try:
-        async with asyncio.timeout(deadline_s):
-            output = await _read(child)
-            return output, await child.wait()
+        return await child.in_time(_output_and_status(child), deadline_s)
     except TimeoutError as error:
         message = f"the compiler did not finish {what} within {deadline_s:g} s"
         raise ModelError(message, code="AOS202", hint=given.get("hint", _OUR_LIMIT_HINT)) from error
@@ -132,6 +130,10 @@ def internal_error(what: str, output: str, status: int, source: Path) -> AosErro
     report = f"This is not a mistake in the documents; please report it with {source}"
     hint = _OUR_LIMIT_HINT if ran_out(output, status) else report
     return ModelError(f"the C++ of {what} does not compile: {reason}", hint=hint)
+
+
+async def _output_and_status(child: Child) -> tuple[str, int]:
+    return await _read(child), await child.wait()
 
 
 async def _read(child: Child) -> str:

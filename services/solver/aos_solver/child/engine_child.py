@@ -182,13 +182,7 @@ class EngineChild:
         """
         child = self._child
         try:
-            async with asyncio.timeout(deadline_s):
-                if command is not None:
-                    child.stdin.write(command.encode() + b"\n")
-                    await child.stdin.drain()
-                while (line := await child.stdout.readline()).startswith(_PROGRESS_LINE):
-                    if on_progress is not None:
-                        on_progress(self._decoded(line, _ProgressLine).progress)
+            line = await child.in_time(self._answer(command, on_progress), deadline_s)
         except TimeoutError:
             if child.is_frozen():
                 await self.close()
@@ -201,6 +195,16 @@ class EngineChild:
         if not line.endswith(b"\n"):
             raise await self._lost(CodeFaultError, "model code ended the engine")
         return self._decoded(line, kind)
+
+    async def _answer(self, command: str | None, on_progress: Callable[[Progress], None] | None) -> bytes:
+        child = self._child
+        if command is not None:
+            child.stdin.write(command.encode() + b"\n")
+            await child.stdin.drain()
+        while (line := await child.stdout.readline()).startswith(_PROGRESS_LINE):
+            if on_progress is not None:
+                on_progress(self._decoded(line, _ProgressLine).progress)
+        return line
 
     async def close(self) -> None:
         """Ends the child; closing twice does nothing."""

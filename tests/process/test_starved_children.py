@@ -1,0 +1,44 @@
+"""Deadlines of child processes on a machine that is busy with other work."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import AsyncIterator
+
+import pytest
+
+from aos_runtime.children import PIPE, Child, Limits, guarded
+
+BURN = "import time\nwhile time.process_time() < 0.3: pass\nprint('burnt')"
+COMPETITOR = "print(flush=True)\nwhile True: pass"
+
+
+@pytest.fixture
+async def one_busy_processor() -> AsyncIterator[None]:
+    """This process and what it starts have one processor, which another program keeps busy."""
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(before)})
+    competitor = await Child.start(guarded([sys.executable, "-c", COMPETITOR]), stdout=PIPE)
+    await competitor.stdout.readline()
+    try:
+        yield
+    finally:
+        await competitor.stop()
+        os.sched_setaffinity(0, before)
+
+
+@pytest.mark.usefixtures("one_busy_processor")
+async def test_the_time_in_which_a_child_waits_for_a_processor_does_not_count() -> None:
+    # Beside a program of niceness 0 it has a quarter of the processor or less.
+    child = await Child.start(guarded([sys.executable, "-c", BURN], Limits(niceness=5)), stdout=PIPE)
+    assert await child.in_time(child.stdout.readline(), 0.5) == b"burnt\n"
+    await child.wait()
+
+
+@pytest.mark.usefixtures("one_busy_processor")
+async def test_a_child_that_wants_no_processor_has_its_deadline_and_no_more() -> None:
+    child = await Child.start(["sleep", "1000"], stdout=PIPE)
+    with pytest.raises(TimeoutError):
+        await child.in_time(child.stdout.readline(), 0.3)
+    await child.stop()
