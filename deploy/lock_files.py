@@ -1,8 +1,9 @@
 """Writes lock files: `python deploy/lock_files.py PYLOCK [--without FILE]` prints requirements with hashes.
 
 PYLOCK is what `uv pip compile --format pylock.toml` writes. The requirements have the hashes of sources, and
-of wheels that AOS can run with: those for Linux on x86-64 and arm64, and CPython from 3.11 on. `--without`
-leaves out what another lock file pins. With the hashes of all wheels the files would be five times as large.
+of wheels that AOS can run with: those for Linux with glibc on x86-64 and arm64, and CPython from 3.11 on.
+`--without` leaves out what another lock file pins. With the hashes of all wheels the files would be eight
+times as large.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-_PLATFORM = re.compile(r"any|(manylinux|musllinux).*_(x86_64|aarch64)")
+_PLATFORM = re.compile(r"any|manylinux.*_(x86_64|aarch64)")
 _ABI = re.compile(r"none|abi3|cp31[1-9]")
 
 

@@ -158,7 +158,7 @@ def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path
     [
         ("https://a.b/numpy-2.4.6-cp311-cp311-manylinux_2_27_x86_64.manylinux_2_28_x86_64.whl", True),
         ("https://a.b/typer-0.28.0-py3-none-any.whl", True),
-        ("https://a.b/rpds_py-1-cp313-cp313-musllinux_1_2_aarch64.whl", True),
+        ("https://a.b/rpds_py-1-cp313-cp313-musllinux_1_2_aarch64.whl", False),
         ("https://a.b/tree_sitter_cpp-0.23-cp39-abi3-manylinux_2_17_aarch64.whl", True),
         ("https://a.b/numpy-2.4.6-cp311-cp311-win_amd64.whl", False),
         ("https://a.b/numpy-2.4.6-cp311-cp311-macosx_14_0_arm64.whl", False),
