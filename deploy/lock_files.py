@@ -2,7 +2,7 @@
 
 PYLOCK is what `uv pip compile --format pylock.toml` writes. The requirements have the hashes of sources, and
 of wheels that AOS can run with: those for Linux with glibc on x86-64 and arm64, and CPython from 3.11 on.
-`--without` leaves out what another lock file pins. With the hashes of all wheels the files would be eight
+`--without` leaves out what another lock file pins. With the hashes of all wheels the files would be four
 times as large.
 """
 
