@@ -17,7 +17,10 @@ from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
-__all__ = ["Clock", "Robot", "Surroundings", "jammed", "observed", "run_mission", "timed_out"]
+__all__ = [
+    "Clock", "Robot", "Surroundings", "breaking", "hears_left", "jammed", "observed", "run_mission",
+    "timed_out",
+]  # fmt: skip
 
 Robot = Callable[[Activate], Outcome]
 
@@ -86,6 +89,17 @@ def timed_out(request: Activate) -> Outcome:
 
 def jammed(request: Activate) -> Outcome:
     return Outcome(request.id, request.skill, "failed", fault=Fault("AOS510", "gripper jammed"))
+
+
+def hears_left(request: Activate) -> Outcome:
+    """The robot of the tiger problem, which hears the tiger on the left."""
+    return observed(request, "tiger_left" if request.skill == "listen" else "opened")
+
+
+def breaking(*, jams: int, is_late: int) -> Robot:
+    """A robot that breaks at two steps, in two ways, and else hears the tiger on the left."""
+    ways = {jams: jammed, is_late: timed_out}
+    return lambda request: ways.get(request.id.step, hears_left)(request)
 
 
 async def run_mission(

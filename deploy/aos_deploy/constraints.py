@@ -7,8 +7,8 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.told_mistakes import findings_of, refuse_errors
 from aos_language.check.constraints import check_constraints
-from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint, Project, Snippet
 from aos_protocol.errors import DeployError
@@ -51,15 +51,10 @@ def constrained(
 
     `sources` are the files in which they stand.
     """
-    findings = Findings()
-    for source in sources:
-        findings.add_source(str(source), Path(source).read_text(encoding="utf-8").splitlines())
+    findings = findings_of(sources)
     check_constraints(constraints, project, findings)
     if len(constraints) > MAX_CONSTRAINTS:
         where = constraints[MAX_CONSTRAINTS].never.span
         findings.error("AOS142", f"more than {MAX_CONSTRAINTS} constraints", where, "Join some of them by ||")
-    if findings.has_errors:
-        raise DeployError(
-            "the mission's constraints have errors", code="AOS801", diagnostics=findings.sorted()
-        )
+    refuse_errors(findings, "the mission's constraints have errors")
     return msgspec.structs.replace(project, constraints=tuple(constraints))

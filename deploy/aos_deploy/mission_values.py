@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
+from aos_deploy.told_mistakes import findings_of, refuse_errors
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode
 from aos_language.findings import Findings
 from aos_language.mission_parameters import (
@@ -19,7 +20,6 @@ from aos_language.mission_parameters import (
 )
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
-from aos_protocol.errors import DeployError
 
 __all__ = ["SetValues", "values_of_mapping", "values_of_node", "values_of_options", "with_values"]
 
@@ -75,12 +75,7 @@ def with_values(
 
     `sources` are the files in which they stand.
     """
-    findings = Findings()
-    for source in sources:
-        findings.add_source(str(source), Path(source).read_text(encoding="utf-8").splitlines())
+    findings = findings_of(sources)
     checked_values(values, parameter_leaves(project.environment), findings)
-    if findings.has_errors:
-        raise DeployError(
-            "what is set for the mission has errors", code="AOS801", diagnostics=findings.sorted()
-        )
+    refuse_errors(findings, "what is set for the mission has errors")
     return msgspec.structs.replace(project, mission_values=tuple(values))

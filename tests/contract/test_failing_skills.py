@@ -39,22 +39,20 @@ async def with_mapping(system: System, text: str) -> None:
     await system.state(system.registry.current.revision)
 
 
-async def test_a_rule_can_tell_how_a_skill_has_failed(system: System) -> None:
+@pytest.mark.parametrize(
+    ("step", "status", "response", "code", "message"),
+    [(1, "observed", "jammed", "AOS510", "the gripper is jammed"), (2, "failed", "", "AOS510", "no power")],
+    ids=["a rule tells it", "no rule tells it"],
+)
+async def test_a_rule_can_tell_how_a_skill_has_failed(
+    system: System, step: int, status: str, response: str, code: str, message: str
+) -> None:
     await with_mapping(system, JAMMED)
     await system.adapter.serve("/sense", failing)
-    outcome = await system.activate("sense", 1)
-    assert (outcome.status, outcome.response) == ("observed", "jammed")
+    outcome = await system.activate("sense", step)
+    assert (outcome.status, outcome.response) == (status, response)
     assert outcome.fault is not None
-    assert outcome.fault.message == "the gripper is jammed"
-
-
-async def test_a_failure_that_no_rule_tells_stays_one(system: System) -> None:
-    await with_mapping(system, JAMMED)
-    await system.adapter.serve("/sense", failing)
-    outcome = await system.activate("sense", 2)
-    assert (outcome.status, outcome.response) == ("failed", "")
-    assert outcome.fault is not None
-    assert (outcome.fault.code, outcome.fault.message) == ("AOS510", "no power")
+    assert (outcome.fault.code, outcome.fault.message) == (code, message)
 
 
 async def test_a_rule_can_tell_that_a_skill_was_too_late_or_has_succeeded(system: System) -> None:

@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 from gateway import Gateway, gateway, played, slow_system
+from models import built_bundle
 from supervised_system import TESTS, System
+
+from aos_solver.building.build import BuiltModel
 
 
 @pytest.fixture
@@ -31,3 +34,9 @@ def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
     """A gateway, and the directory of a mission that goes on."""
     with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
         yield served, run
+
+
+@pytest.fixture
+async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
+    """The tiger problem, compiled."""
+    return await built_bundle(bundles / "bench" / "tiger", cache_dir)

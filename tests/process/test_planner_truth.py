@@ -128,11 +128,6 @@ async def test_random_worlds_have_the_values_that_an_independent_program_gives(
     assert max(truth) - truth[plan.index] < 0.03
 
 
-@pytest.fixture
-async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
-
-
 async def test_the_tiger_is_listened_for_while_it_was_heard_on_both_sides(tiger: BuiltModel) -> None:
     async with engine_of(tiger) as engine:
         decisions = []

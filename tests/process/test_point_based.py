@@ -104,11 +104,6 @@ __moduleResponse = told == 0 ? zero : told == 1 ? one : told == 2 ? two : three;
 
 
 @pytest.fixture
-async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
-
-
-@pytest.fixture
 async def tag(bundles: Path, cache_dir: Path) -> BuiltModel:
     return await built_bundle(bundles / "bench" / "tag", cache_dir)
 

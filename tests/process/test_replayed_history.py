@@ -7,11 +7,11 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from models import built_bundle, engine_of
-from scripted_missions import Surroundings, jammed, observed, timed_out
+from models import engine_of
+from scripted_missions import Surroundings, breaking
 
 from aos_deploy.history_check.replayed import Replay, replayed
-from aos_protocol.messages import Activate, DecisionRecord, Message, MissionBegun, ModelAdopted, Outcome
+from aos_protocol.messages import DecisionRecord, Message, MissionBegun, ModelAdopted
 from aos_registry.catalogue import Catalogue
 from aos_runtime.journal import Journal
 from aos_solver.building.build import BuiltModel
@@ -30,19 +30,12 @@ Rows = list[tuple[str, Message]]
 replace = msgspec.structs.replace
 
 
-def robot(request: Activate) -> Outcome:
-    match request.id.step:
-        case 2:
-            return jammed(request)
-        case 3:
-            return timed_out(request)
-    return observed(request, "tiger_left" if request.skill == "listen" else "opened")
+robot = breaking(jams=2, is_late=3)
 
 
-@pytest.fixture
-async def tiger(bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> BuiltModel:
+@pytest.fixture(autouse=True)
+def cache(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
 
 
 async def played(tiger: BuiltModel) -> Rows:

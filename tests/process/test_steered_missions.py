@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
-from scripted_missions import Surroundings, jammed, observed
+from models import built_text, engine_of
+from scripted_missions import Surroundings, hears_left, jammed, observed
 from test_taking_up import rows_of
 
 from aos_deploy.commands.steering import _held
@@ -32,10 +32,6 @@ from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 OPEN_LEFT, OPEN_RIGHT = "open(door=left_door)", "open(door=right_door)"
-
-
-def hears_left(request: Activate) -> Outcome:
-    return observed(request, "tiger_left" if request.skill == "listen" else "opened")
 
 
 def hears_right(request: Activate) -> Outcome:
@@ -99,11 +95,6 @@ def in_turn(*answers: Callable[[], None]) -> Callable[[], None]:
     """Does one thing after the other, each time it is called."""
     left = iter(answers)
     return lambda: next(left)()
-
-
-@pytest.fixture
-async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
 
 
 async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tiger: BuiltModel) -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import msgspec
 import pytest
-from models import built_bundle, engine_of
-from scripted_missions import Surroundings, jammed, observed, timed_out
+from models import engine_of
+from scripted_missions import Surroundings, breaking, observed
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import (
@@ -33,19 +31,7 @@ from aos_solver.mission.terms import Terms
 RULES = FailureRules(skills={"listen": SkillRule(on_failure="retry", retries=1)})
 
 
-def robot(request: Activate) -> Outcome:
-    """Breaks in two ways, and else hears the tiger on the left: by the step alone."""
-    match request.id.step:
-        case 2:
-            return jammed(request)
-        case 4:
-            return timed_out(request)
-    return observed(request, "tiger_left" if request.skill == "listen" else "opened")
-
-
-@pytest.fixture
-async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
+robot = breaking(jams=2, is_late=4)
 
 
 def rows_of(journalled: list[tuple[str, Message]]) -> list[JournalRow]:
