@@ -69,6 +69,14 @@ def test_a_link_to_a_file_or_heading_that_is_not_there_is_found() -> None:
     assert [link for link in links if is_broken(page, link)] == links[2:]
 
 
+def test_no_table_is_cut_by_an_empty_line() -> None:
+    """The rest of such a table has no head, and is shown as text."""
+    cut = re.compile(r"^\|.*\n\n+\|.*\n(?!\|[ :|-]+\|$)", re.MULTILINE)
+    texts = {page: FENCED.sub("", page.read_text(encoding="utf-8")) for page in PAGES}
+    assert [name_of(page) for page, text in texts.items() if cut.search(text)] == []
+    assert cut.search("| a |\n| --- |\n| b |\n\n| c |\n")
+
+
 def test_pages_of_reference_have_a_date_only_at_the_head_of_their_figures() -> None:
     dated = []
     for page in PAGES:
