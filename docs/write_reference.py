@@ -13,11 +13,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import msgspec
 from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
+from aos_editor.meanings import SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
 from aos_protocol import access, errors, keys
@@ -105,17 +104,9 @@ def notebook(page: str) -> str:
 
 
 def operation_table() -> str:
-    """The operations of the gateway, with what each takes and gives."""
-    lines = ["| Operation | What it does | Takes | Gives |", "| --- | --- | --- | --- |"]
-    for one in OPERATIONS:
-        fields = msgspec.structs.fields(one.query) if one.query is not None else ()
-        takes = [f"`{field.name}`" for field in fields]
-        takes += [f"`{field.name}`" for field in msgspec.structs.fields(one.body)] if one.body else []
-        takes += [one.upload] if one.upload else []
-        is_json = one.media == "application/json" and isinstance(one.gives, type)
-        gives = f"`{one.gives.__name__}`" if is_json else f"`{one.media}`"
-        summary = one.summary.rstrip(".")
-        lines.append(f"| `{one.method} {one.path}` | {summary} | {', '.join(takes)} | {gives} |")
+    """The operations of the gateway; its OpenAPI document has what each takes and gives."""
+    lines = ["| Operation | What it does |", "| --- | --- |"]
+    lines += [f"| `{one.method} {one.path}` | {one.summary.rstrip('.')} |" for one in OPERATIONS]
     return "\n".join(lines) + "\n"
 
 
@@ -140,7 +131,7 @@ def _roles(roles: tuple[str, ...]) -> str:
 
 
 def words_tables() -> str:
-    """Every word of SDL by kind of file, then the built-ins; the same texts that editors show.
+    """Every word of SDL by kind of file, with the texts that editors show, but for those without effect.
 
     A word of all files stands in the first table, and parts of several sections below the first of them.
     """
@@ -157,13 +148,11 @@ def words_tables() -> str:
             own = [
                 f"| | `{part}` | {text} |"
                 for part, text in parts.items()
-                if not same or part not in before[same][1]
+                if (not same or part not in before[same][1]) and "has no effect" not in text
             ]
             lines += [f"| `{word}` | {f'those of `{same}`' if same else ''} | {meaning} |", *own]
             before.setdefault(word, (meaning, parts))
         lines.append("")
-    lines += ["### Names in code", "", "| Name | Meaning |", "| --- | --- |"]
-    lines += [f"| `{name}` | {meaning} |" for name, meaning in BUILT_INS.items()]
     return "\n".join(lines) + "\n"
 
 
