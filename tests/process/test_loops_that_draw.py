@@ -135,7 +135,7 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
     async with engine_of(await built_text(files, cache_dir)) as engine:
         # The reward before the loop is not earned.
         values = await engine.exact(horizon=1)
-        assert values.actions[0].q == pytest.approx(0.25 * 9 + 0.375 * 5 - 0.375 * 4)
+        assert values.values[0].q == pytest.approx(0.25 * 9 + 0.375 * 5 - 0.375 * 4)
         prediction = await engine.predict(0)
         odds = {predicted.response: predicted.probability for predicted in prediction.predicted}
         assert odds == {"placed": pytest.approx(0.625), "(never ends)": pytest.approx(0.375)}

@@ -43,6 +43,11 @@ class Evaluation:
             self.may_be_set(node, state)
         elif node.type == "call_expression":
             self._call(node, state)
+        elif node.type == "binary_expression" and operator_of(node) == ">>":
+            left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+            self.expression(left, state)
+            is_set = right is not None and right.type == "identifier" and self._is_stream(left)
+            (self.may_be_set if is_set else self.expression)(right, state)
         elif node.type == "binary_expression" and operator_of(node) in ("&&", "||"):
             left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
             self.expression(left, state)
@@ -91,6 +96,12 @@ class Evaluation:
                 state.set(text_of(argument))  # It may be taken by reference.
             else:
                 self.expression(argument, state)
+
+    def _is_stream(self, node: tree_sitter.Node | None) -> bool:
+        """Returns whether the first operand of `text >> first >> second` may be a stream, which sets them."""
+        while node is not None and node.type == "binary_expression" and operator_of(node) == ">>":
+            node = node.child_by_field_name("left")
+        return node is not None and node.type == "identifier" and text_of(node) not in self.declared
 
     def may_be_set(self, node: tree_sitter.Node | None, state: State) -> None:
         for part in below(node) if node is not None else ():

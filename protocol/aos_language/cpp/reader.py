@@ -273,6 +273,24 @@ class TreeReader:
                 self.declarations.append(declaration)
                 self._push([enumerator.child_by_field_name("value")])
 
+    def _captures(self, node: tree_sitter.Node, access: Access) -> None:
+        """Captures with a value, `[n = 1]`, are variables of the lambda. Others are named in its body."""
+        for capture in node.named_children:
+            left, right = (capture.child_by_field_name(side) for side in ("left", "right"))
+            if capture.type != "lambda_capture_initializer" or left is None or right is None:
+                continue
+            binds = any(child.type == "&" for child in capture.children)
+            self._push([right], Access.BIND if binds else Access.READ)
+            self.declarations.append(
+                Declaration(
+                    text_of(left),
+                    "auto&" if binds else "auto",
+                    DeclarationKind.VARIABLE,
+                    self.extent(left),
+                    self.extent(right),
+                )
+            )
+
     def _type(self, node: tree_sitter.Node, access: Access) -> None:
         self.types.append((text_of(node), self.extent(node)))
 
@@ -306,7 +324,7 @@ _HANDLERS = {
     "field_expression": TreeReader._path,
     "for_range_loop": TreeReader._declaration,
     "identifier": TreeReader._path,
-    "lambda_capture_specifier": TreeReader._skip,
+    "lambda_capture_specifier": TreeReader._captures,
     "optional_parameter_declaration": TreeReader._declaration,
     "parameter_declaration": TreeReader._declaration,
     "parenthesized_expression": TreeReader._pass_on,

@@ -68,8 +68,8 @@ def _not_a_document(source: Source, findings: Findings) -> None:
 
 
 def _without_header(record: Record, value: JsonObject, findings: Findings) -> None:
-    for key, _ in value.members:
-        if close := nearest(key.text, _HEADERS):
+    for key, part in value.members:
+        if isinstance(part, JsonObject) and (close := nearest(key.text, _HEADERS)):
             span = record.source.span(key.start + 1)
             findings.unknown(key.text, (close,), f'unknown key "{key.text}"', span, code="AOS102")
             return

@@ -12,8 +12,15 @@ _HEADERS = {
         "find_if_not for_each generate includes is_permutation is_sorted lower_bound max_element merge "
         "min_element minmax minmax_element mismatch next_permutation none_of nth_element partial_sort "
         "partition prev_permutation remove remove_if replace replace_if reverse rotate search "
-        "set_difference set_intersection set_union sort stable_sort transform unique upper_bound"
+        "set_difference set_intersection set_union sort stable_sort transform unique upper_bound "
+        "copy_backward copy_n equal_range fill_n find_end find_first_of generate_n is_heap is_partitioned "
+        "iter_swap lexicographical_compare make_heap max min minmax move_backward partial_sort_copy "
+        "partition_copy partition_point pop_heap push_heap ranges remove_copy remove_copy_if replace_copy "
+        "replace_copy_if reverse_copy rotate_copy search_n set_symmetric_difference sort_heap "
+        "stable_partition swap_ranges unique_copy"
     ),
+    "any": "any any_cast",
+    "bit": "bit_width countl_zero countr_zero has_single_bit popcount",
     "bitset": "bitset",
     "cassert": "assert",
     "cctype": "isalnum isalpha isdigit islower isspace isupper tolower toupper",
@@ -21,24 +28,39 @@ _HEADERS = {
     "climits": "CHAR_BIT INT_MAX INT_MIN LLONG_MAX LLONG_MIN LONG_MAX LONG_MIN UINT_MAX",
     "complex": "complex",
     "cstdio": "fprintf printf putchar puts snprintf sprintf",
-    "cstdlib": "abs atof atoi labs strtod strtol",
-    "cstring": "memcmp memcpy memset strcmp strcpy strlen strncmp",
+    "cstdlib": "abs atof atoi atol div labs ldiv qsort strtod strtol strtoul",
+    "cstring": (
+        "memcmp memcpy memmove memset strcat strchr strcmp strcpy strlen strncmp strncpy strrchr strstr"
+    ),
     "deque": "deque",
-    "functional": "bind cref function greater greater_equal less less_equal minus multiplies plus ref",
-    "iomanip": "setprecision setw",
+    "forward_list": "forward_list",
+    "functional": (
+        "bind cref divides equal_to function greater greater_equal hash invoke less less_equal logical_and "
+        "logical_not logical_or mem_fn minus modulus multiplies negate not_equal_to not_fn plus ref"
+    ),
+    "iomanip": "quoted setfill setprecision setw",
     "iostream": "cerr clog cout endl",
-    "iterator": "back_inserter front_inserter inserter",
+    "iterator": "advance back_inserter distance front_inserter inserter make_move_iterator",
     "limits": "numeric_limits",
     "list": "list",
     "map": "map multimap",
     "memory": "make_shared make_unique shared_ptr unique_ptr",
-    "numeric": "accumulate adjacent_difference gcd inner_product iota lcm midpoint partial_sum reduce",
+    "numbers": "numbers",
+    "numeric": (
+        "accumulate adjacent_difference exclusive_scan gcd inclusive_scan inner_product iota lcm midpoint "
+        "partial_sum reduce transform_reduce"
+    ),
     "optional": "nullopt optional",
     "queue": "priority_queue queue",
+    "ranges": "views",
     "set": "multiset set",
+    "span": "span",
     "sstream": "istringstream ostringstream stringstream",
     "stack": "stack",
-    "stdexcept": "domain_error invalid_argument logic_error out_of_range range_error runtime_error",
+    "stdexcept": (
+        "domain_error invalid_argument length_error logic_error out_of_range overflow_error range_error "
+        "runtime_error"
+    ),
     "string_view": "string_view",
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_multiset unordered_set",

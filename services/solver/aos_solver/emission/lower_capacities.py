@@ -73,13 +73,17 @@ class Capacities:
         for cpp in snippets:
             code = strip_comments(cpp.code)
             loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(self._in_numbers(code)))
-            aliases = dict(_aliases(cpp))
+            aliases: dict[str, list[tuple[str, ...]]] = {}
+            for name, path in _aliases(cpp):
+                aliases.setdefault(name, []).append(path)
             filled = [argument for call in cpp.calls if self._fills(call) for argument in call.arguments]
             for mention in cpp.mentions:
-                path = (*aliases.get(mention.path[0], mention.path[:1]), *mention.path[1:])
-                self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
-                if any(argument.start <= mention.extent.start < argument.end for argument in filled):
-                    self._grow((path[_last_name(path)], path[_last_name(path) + 1 :].count("[]")), loops)
+                is_filled = any(argument.start <= mention.extent.start < argument.end for argument in filled)
+                for start in aliases.get(mention.path[0], [mention.path[:1]]):
+                    path = (*start, *mention.path[1:])
+                    self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
+                    if is_filled:
+                        self._grow((path[_last_name(path)], path[_last_name(path) + 1 :].count("[]")), loops)
 
     def _in_numbers(self, code: str) -> str:
         """The code with the constants' values in place of their names."""
@@ -129,16 +133,23 @@ def _product(text: str) -> int:
 
 
 def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The references that a snippet declares, and the paths that they stand for."""
+    """The references that a snippet declares, and the paths that they stand for; and the copies by `auto`,
+    which have the capacity of what they are made of."""
     for declaration in cpp.declarations:
-        if not declaration.type.endswith("&"):
+        is_copy = declaration.type == "auto"
+        if not is_copy and not declaration.type.endswith("&"):
             continue
-        loop = _LOOP_COLON.match(cpp.code, declaration.extent.end)
+        initial = declaration.initial
+        loop = _LOOP_COLON.match(cpp.code, declaration.extent.end) if initial is None else None
         for mention in cpp.mentions:
             at = mention.extent.start
-            if declaration.initial is not None and at == declaration.initial.start:
+            if is_copy and mention.method:
+                continue
+            if initial is not None and (
+                initial.start <= at < initial.end if is_copy else at == initial.start
+            ):
                 yield declaration.name, mention.path
-            elif declaration.initial is None and loop is not None and at == loop.end():
+            elif loop is not None and at == loop.end():
                 yield declaration.name, (*mention.path, "[]")
 
 

@@ -1,6 +1,9 @@
 // Vectors of fixed storage, with the part of std::vector's interface that documents use.
 #pragma once
 
+#include <algorithm>
+#include <compare>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -145,6 +148,15 @@ class Vector {
     size_ = static_cast<std::uint32_t>(to - values_);
     return values_ + (first - values_);
   }
+  template <class... Arguments>
+  T* emplace(const T* before, Arguments&&... arguments) {
+    return insert(before, T{std::forward<Arguments>(arguments)...});
+  }
+  void flip()
+    requires std::same_as<T, bool>
+  {
+    for (bool& value : *this) value = !value;
+  }
   void fill(const T& value) { assign(size_, value); }
   void swap(Vector& other) { std::swap(*this, other); }
 
@@ -155,6 +167,11 @@ class Vector {
       if (!(left.begin()[index] == right.begin()[index])) return false;
     }
     return true;
+  }
+  template <class Other>
+    requires std::three_way_comparable<T> && std::same_as<typename Other::value_type, T>
+  friend auto operator<=>(const Vector& left, const Other& right) {
+    return std::lexicographical_compare_three_way(left.begin(), left.end(), right.begin(), right.end());
   }
   friend bool operator==(const Vector& left, const std::vector<T>& right) { return std::vector<T>(left) == right; }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -30,8 +31,12 @@
 
 namespace aos {
 
+// Document code may catch what a std::vector throws.
+struct OutOfRange : ModelFault, std::out_of_range {
+  explicit OutOfRange(const std::string& text) : ModelFault{"AOS215", text}, std::out_of_range{text} {}
+};
 void out_of_range(std::ptrdiff_t index, std::size_t size) {
-  throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
+  throw OutOfRange{"element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
 }
 void over_capacity(std::size_t size, std::size_t max) {
   const std::string holds = "; its state variable holds " + std::to_string(max);

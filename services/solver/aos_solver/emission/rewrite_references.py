@@ -1,0 +1,50 @@
+"""Edits for references and pointers to parts of a state, which are const where the state is.
+
+AOS 1.x gives special states a state that is not const, and documents write `int& level : state.levels`.
+A reference that changes a const state does not compile all the same.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.snippets import Cpp, Declaration, DeclarationKind
+
+__all__ = ["reference_edits"]
+
+_TYPE = re.compile(r"(?:^|[;{}(])\s*([A-Za-z_][\w:]*(?:\s+[A-Za-z_][\w:]*)*)\s*[&*]\s*$")
+_LOOP_COLON = re.compile(r"\s*:\s*")
+_NO_TYPE = re.compile(r"\b(?:auto|const|return|static)\b")
+
+
+def reference_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
+    """Replacements (start, end, text) by offsets.
+
+    - `int& level = state.level` and `for (int& level : state.levels)` become `auto& level`
+    - `int* level = &state.levels[0]` becomes `auto* level`
+    - `for (auto& cup : state.tCupObjects)` becomes `auto&& cup`: the pointers are made on demand
+    """
+    for declaration in cpp.declarations:
+        if declaration.kind is not DeclarationKind.VARIABLE or declaration.type[-1:] not in ("&", "*"):
+            continue
+        path = _path_bound(cpp, declaration)
+        if not path:
+            continue
+        before = cpp.code[: declaration.extent.start].rstrip()
+        if declaration.initial is None and declaration.type == "auto&" and path[-1].endswith("Objects"):
+            yield len(before), len(before), "&"
+        elif (found := _TYPE.search(before)) is not None and not _NO_TYPE.search(found[1]):
+            yield found.start(1), found.end(1), "auto"
+
+
+def _path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
+    """The path of the state that a reference or pointer, or that of a loop, is bound to; empty for others."""
+    initial = declaration.initial
+    loop = _LOOP_COLON.match(cpp.code, declaration.extent.end) if initial is None else None
+    start = initial.start if initial is not None else loop.end() if loop is not None else None
+    if start is not None and initial is not None and declaration.type.endswith("*"):
+        start = start + 1 if cpp.code.startswith("&", start) else None
+    paths = (m.path for m in cpp.mentions if m.extent.start == start and m.path[0] in STATES and not m.method)
+    return next(paths, ())

@@ -1,0 +1,106 @@
+"""C++ that documents have now and then: copies that grow, captures with values, references to a state."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from mappings import mapping_text
+from models import built_text, engine_of
+
+ENVIRONMENT = """project: odd
+horizon: 2
+discount: 0.9
+
+define_type: Colour
+enum_members: Red, Blue
+
+define_type: Box
+variable: int weight 2
+
+state_variable: Colour colour
+code:
+state.colour = Blue;
+
+state_variable: int row []
+code:
+state.row = {3, 1, 2};
+
+state_variable: int other []
+code:
+state.other = {8, 7};
+
+state_variable: vector<vector<int>> grid
+code:
+state.grid = {{1, 2}, {3, 4}};
+
+state_variable: vector<bool> flags
+code:
+state.flags = {true, false, true};
+
+state_variable: Box first
+
+state_variable: Box second
+
+reward_code:
+int sum = 0;
+for (int& value : state.row) sum += value;
+for (auto& box : state.BoxObjects) sum += box->weight;
+Box& box = state.first;
+int* last = &state.row[2];
+if (sum + box.weight + *last != 14) __reward = -1000;
+"""
+CODE = {
+    "copy": ("auto copy = state.row; copy.push_back(1); __reward = copy.size();", 4),
+    "choice": (
+        "auto copy = state.colour == Red ? state.other : state.row; copy.push_back(1);"
+        "__reward = copy.size();",
+        4,
+    ),
+    "rows": ("for (auto line : state.grid) { line.push_back(5); __reward += line[2]; }", 10),
+    "captured": ("auto next = [&, n = amount]() mutable { return n++; }; next(); __reward = next();", 4),
+    "bound": (
+        "auto add = [&row = state__.row](int value) { row.push_back(value); }; add(9);"
+        "__reward = state__.row.back(); state__.row.pop_back();",
+        9,
+    ),
+    "stream": ('std::stringstream text("4 5"); int a, b; text >> a >> b; __reward = a + b;', 9),
+    "flags": (
+        "state__.flags.flip(); __reward = state__.flags[1] - state__.flags[0]; state__.flags = state.flags;",
+        1,
+    ),
+    "order": ("__reward = state.row < state.other && state.row >= vector<int>{1, 2};", 1),
+    "caught": (
+        "try { __reward = state.row.at(amount); } catch (const std::out_of_range&) { __reward = 5; }",
+        5,
+    ),
+    "headers": (
+        "std::any value = 3; std::forward_list<int> list{1, 2}; std::vector<int> sums(3);"
+        "std::inclusive_scan(state.row.begin(), state.row.end(), sums.begin());"
+        "auto large = state.row | std::views::filter([](int n) { return n > 1; });"
+        "__reward = std::any_cast<int>(value) + sums[2] + std::ranges::distance(large) + list.front();",
+        12,
+    ),
+}
+"""Code, and the reward that a compiler of plain C++ gives it; the amount is 3."""
+SKILL = """project: odd
+parameter: int amount
+
+available_parameters_code:
+__possibleParameters.push_back(std::make_tuple(3));
+
+dynamic_model:
+{code}
+__moduleResponse = done;
+"""
+
+
+async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path) -> None:
+    files = {"odd.ef": ENVIRONMENT}
+    for name, (code, _) in CODE.items():
+        files[f"{name}.sd"] = SKILL.format(code=code)
+        files[f"{name}.am"] = mapping_text("done: True", project="odd", skill=name)
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        values = await engine.exact(horizon=1)
+    rewards = {value.action.split("(")[0]: value.q for value in values.values}
+    assert rewards == {name: pytest.approx(reward) for name, (_, reward) in CODE.items()}
