@@ -51,6 +51,7 @@ _COMMANDS = {
 imported: laboratory, editor and gateway are above this package."""
 
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+_UNUSABLE = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR, errno.ELOOP)
 
 _STYLE: dict[str, Any] = {
     "pretty_exceptions_enable": False,
@@ -121,6 +122,9 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
     except AosError as error:
         _end(name, error)
     except OSError as error:
+        if error.errno in _UNUSABLE and error.filename is not None:
+            sys.stderr.write(f"{name}: {error.filename} cannot be used: {error.strerror}\n")
+            sys.exit(ExitCode.NOT_STARTED)
         if error.errno not in _UNWRITABLE:
             raise
         sys.stderr.write(f"{name}: {error.filename or 'the output'} cannot be written: {error.strerror}\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -44,6 +45,26 @@ def finite(value: float | None) -> float | None:
     if value is not None and not math.isfinite(value):
         raise typer.BadParameter(f"{value} is not a finite number")
     return value
+
+
+def writable(path: Path | None) -> Path | None:
+    """Refuses a file that cannot be written: the work before that may take hours."""
+    if path is None:
+        return None
+    if not path.parent.is_dir():
+        raise typer.BadParameter(f"there is no folder {path.parent}")
+    if path.is_dir():
+        raise typer.BadParameter(f"{path} is a folder")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise typer.BadParameter(f"{path} cannot be written")
+    return path
+
+
+def all_writable(paths: list[Path] | None) -> list[Path] | None:
+    """Refuses files of which one cannot be written."""
+    for path in paths or ():
+        writable(path)
+    return paths
 
 
 def _trust(is_trusted: bool) -> bool:

@@ -47,3 +47,29 @@ def test_an_output_that_cannot_be_written_is_told_in_one_line() -> None:
         )
     assert done.returncode == 3
     assert done.stderr == "aos: the output cannot be written: No space left on device\n"
+
+
+def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    command = [AOS, "experiment", "run", "armadillo", "--out", tmp_path / "file" / "out"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
+    assert done.returncode == 3
+    assert done.stderr == f"aos: {tmp_path}/file/out cannot be used: Not a directory\n"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [("calibrate", ".", ".", "--write"), ("test", "missions.yaml", "--junit"), ("solve", ".", "--export")],
+)
+def test_a_file_in_no_folder_is_told_before_the_work_begins(command: tuple[str, ...], tmp_path: Path) -> None:
+    target = tmp_path / "none" / "it.pomdp"
+    done = subprocess.run([AOS, *command, target], capture_output=True, text=True, timeout=COMMAND_S)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"Invalid value for '{command[-1]}': there is no folder {target.parent}" in done.stderr
+
+
+def test_an_experiment_of_no_missions_is_refused() -> None:
+    command = [AOS, "experiment", "run", "armadillo", "--seeds", "0"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
+    assert done.returncode == 2
+    assert "no missions: give --seeds or --system-seeds" in done.stderr

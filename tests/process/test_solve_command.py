@@ -81,8 +81,9 @@ def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path,
     result = run(app, "solve", tiger, "--export", tmp_path / "tiger.txt")
     assert result.exit_code == 2
     assert "needs to end in .pomdp or .pomdpx" in result.output
-    for option in ("--out", "--graph", "--c-header"):
-        result = run(app, "solve", tiger, option, tmp_path / "none" / "tiger.dot")
+    for option in ("--out", "--graph", "--c-header", "--export"):
+        ending = "pomdp" if option == "--export" else "dot"
+        result = run(app, "solve", tiger, option, tmp_path / "none" / f"tiger.{ending}")
         assert result.exit_code == 2
         assert "there is no folder" in result.output
     for option in ("--time", "--precision", "--discount", "--stop-value"):

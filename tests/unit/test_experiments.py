@@ -122,6 +122,12 @@ def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path) -
     assert "| one | system | 2.00 | goal 1 | pick 1 |" in text
 
 
+def test_less_and_greater_in_a_text_are_text_in_the_page(tmp_path: Path) -> None:
+    results = msgspec.structs.replace(results_of(part_of("model")), about="value <b of it> is small")
+    _, whole = write_report(results, {}, tmp_path)
+    assert "value &lt;b of it&gt; is small" in whole.read_text()
+
+
 def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_path: Path) -> None:
     results = results_of(part_of("model"), part_of("system", (SERVED, GAVE_UP)))
     first, again = (draw_plots(results, tmp_path / name) for name in ("first", "again"))

@@ -10,7 +10,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import console, interruption_told, progress
 
@@ -43,7 +43,7 @@ def calibrate(
         list[Path] | None, typer.Option(metavar="BUNDLE", exists=True, help="More documents; repeatable")
     ] = None,
     write: Annotated[
-        Path | None, typer.Option(metavar="PATCH", help="Write the proposed changes here", dir_okay=False)
+        Path | None, typer.Option(metavar="PATCH", help="Write the proposed changes here", callback=writable)
     ] = None,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,

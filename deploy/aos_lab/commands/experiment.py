@@ -71,7 +71,7 @@ def run(
     intervals. A run that was interrupted goes on where it was: missions that
     are recorded are not run again, unless documents or settings have changed.
     """
-    _check_place(on, system_seeds)
+    _check_place(on, seeds, system_seeds)
     _check_installed()
     from aos_lab.experiments.results import Results, surroundings
     from aos_lab.experiments.running import ExperimentRun
@@ -181,8 +181,10 @@ def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: S
     return command + "".join(f" --part {part}" for part in parts)
 
 
-def _check_place(on: str, system_seeds: int) -> None:
+def _check_place(on: str, seeds: int, system_seeds: int) -> None:
     """BadParameter where missions cannot be run."""
+    if not seeds and not system_seeds:
+        raise typer.BadParameter("no missions: give --seeds or --system-seeds", param_hint="--seeds")
     if on == "local":
         return
     if on != "ray" and not on.startswith("ray://"):

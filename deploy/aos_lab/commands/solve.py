@@ -5,11 +5,10 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import math
-import os
 import shutil
 import signal
 import subprocess
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated
@@ -20,7 +19,7 @@ from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import AsJson, TrustDocuments, finite
+from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, writable
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress, waiting
@@ -50,6 +49,13 @@ Discount = Annotated[
 ]
 StopValue = Annotated[
     float | None, typer.Option(callback=finite, help="To end the mission is worth so much, at any time")
+]
+Out = Annotated[
+    Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate", callback=writable)
+]
+Exports = Annotated[
+    list[Path] | None,
+    typer.Option(help="Write the model as .pomdpx or .pomdp; may be repeated", callback=all_writable),
 ]
 
 _TOLD_NAMES = 12
@@ -110,13 +116,14 @@ def solve(
     discount: Discount = None,
     stop_value: StopValue = None,
     states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MAX_STATES,
-    out: Annotated[Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate")] = None,
-    export: Annotated[
-        list[Path] | None, typer.Option(help="Write the model as .pomdpx or .pomdp; may be repeated")
+    out: Out = None,
+    export: Exports = None,
+    graph: Annotated[
+        Path | None, typer.Option(help="Draw the policy: .dot, or .svg by Graphviz", callback=writable)
     ] = None,
-    graph: Annotated[Path | None, typer.Option(help="Draw the policy: .dot, or .svg by Graphviz")] = None,
     header: Annotated[
-        Path | None, typer.Option("--c-header", help="Write the policy as C that needs nothing else")
+        Path | None,
+        typer.Option("--c-header", help="Write the policy as C that needs nothing else", callback=writable),
     ] = None,
     nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200,
     set_values: SetValues = None,
@@ -129,7 +136,6 @@ def solve(
     SARSOP. Ctrl-C ends it early and keeps the best so far. Values are discounted and without a horizon.
     """
     _check_names(export or [], graph)
-    _check_folders({"--out": out, "--graph": graph, "--c-header": header})
     if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
         if set_values:
             raise typer.BadParameter("a problem file has no mission parameters", param_hint="--set")
@@ -174,17 +180,6 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
             code="AOS805",
             hint="Install it (apt install graphviz), or write a .dot file",
         )
-
-
-def _check_folders(files: Mapping[str, Path | None]) -> None:
-    """Refuses files that cannot be written for want of a folder, as the work before may take hours."""
-    for option, path in files.items():
-        if path is not None and not path.parent.is_dir():
-            raise typer.BadParameter(f"there is no folder {path.parent}", param_hint=option)
-        if path is not None and path.is_dir():
-            raise typer.BadParameter(f"{path} is a folder", param_hint=option)
-        if path is not None and not os.access(path if path.exists() else path.parent, os.W_OK):
-            raise typer.BadParameter(f"{path} cannot be written", param_hint=option)
 
 
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:

@@ -13,7 +13,7 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
 from aos_lab.commands.interrupted import interruption_among_missions
@@ -41,7 +41,7 @@ def run_tests(
     jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
     seeds: Annotated[int | None, typer.Option(min=1, help="Missions of each test, not the file's")] = None,
     junit: Annotated[
-        Path | None, typer.Option(metavar="XML", help="Write a JUnit file", dir_okay=False)
+        Path | None, typer.Option(metavar="XML", help="Write a JUnit file", callback=writable)
     ] = None,
     keep: Annotated[
         Path | None,

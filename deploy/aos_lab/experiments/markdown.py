@@ -22,7 +22,7 @@ _STYLE = (
 
 def page(title: str, markdown: str, after: str = "") -> str:
     """One HTML file; `after` is HTML that follows the text."""
-    text = MarkdownIt("commonmark").enable("table").render(markdown)
+    text = MarkdownIt("commonmark", {"html": False}).enable("table").render(markdown)
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}'
         f"</title><style>{_STYLE}</style></head><body>{text}{after}</body></html>\n"
