@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
+from hostile.counters import counting
 from models import built_text, engine_of
 from scripted_missions import Surroundings, hears_left, jammed, observed
 from test_taking_up import rows_of
@@ -316,31 +316,11 @@ async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltMod
         assert [step.decision.chosen_by for step in twin.steps] == [by for _, by in whole.chosen], cut
 
 
-LAMP = {
-    "lamp.ef": """project: lamp
-horizon: 5
-discount: 0.9
-state_variable: bool is_on
-code:
-state.is_on = false;
-reward_code:
-if (state.is_on) { __reward = 10; __isGoalState = true; }
-""",
-    "press.sd": """project: lamp
-dynamic_model:
-state__.is_on = AOS.Bernoulli(0.9);
-__moduleResponse = pressed;
-__reward = -1;
-""",
-    "press.am": mapping_text("pressed", project="lamp", skill="press"),
-}
-
-
 async def test_a_mission_that_could_not_reach_its_goal_without_a_skill_holds_and_does_not_give_up(
     cache_dir: Path,
 ) -> None:
-    built = await built_text(LAMP, cache_dir)
-    around = Steered(lambda request: observed(request, "pressed"))
+    built = await built_text(counting("lamp", "press", steps="1", reward=-1), cache_dir)
+    around = Steered(lambda request: observed(request, "done"))
     around.on_act = lambda request: around.steer("leave_out", name="press") if request.id.step == 1 else None
     around.on_hold = in_turn(lambda: around.steer("take_back", name="press"))
     state = await run(built, around, step_limit=2)

@@ -76,16 +76,26 @@ TEST("No planner takes much more than its budget in simulations, and POMCP takes
   }
 }
 
-TEST("A search by SARSOP that has nothing left to search says where its bounds come from") {
-  const units::Problem problem = units::corridor_with_exits(3, 1);
-  TableModel::take(problem);
+// Searches from the start of a corridor, one after the other.
+struct Corridor {
+  units::Problem problem;
   aos::Sampler random{1};
-  const auto belief = aos::Belief<TableModel>::initial(random);
+  aos::Belief<TableModel> belief;
   aos::Planners<TableModel> planner;
-  const auto search = [&] { return planner.search(PlannerKind::sarsop, belief, {.simulations = 100'000}, horizon, random); };
-  search();
-  EXPECT_EQUAL(search(), 0u);
-  EXPECT(planner.why().find("nothing was searched now") != std::string::npos);
+
+  Corridor(int length, int exits)
+      : problem(units::corridor_with_exits(length, exits)), belief((TableModel::take(problem), aos::Belief<TableModel>::initial(random))) {}
+
+  std::uint64_t search(PlannerKind kind, std::uint64_t count) {
+    return planner.search(kind, belief, {.simulations = count}, horizon, random);
+  }
+};
+
+TEST("A search by SARSOP that has nothing left to search says where its bounds come from") {
+  Corridor corridor{3, 1};
+  corridor.search(PlannerKind::sarsop, 100'000);
+  EXPECT_EQUAL(corridor.search(PlannerKind::sarsop, 100'000), 0u);
+  EXPECT(corridor.planner.why().find("nothing was searched now") != std::string::npos);
 }
 
 TEST("A draw from weights that code computes counts as more than a flag, and more for more weights") {
@@ -104,12 +114,8 @@ TEST("A draw from weights that code computes counts as more than a flag, and mor
 }
 
 TEST("A search by POMCP that ends all at once still comes to an end") {
-  const units::Problem problem = units::corridor_with_exits(1, 1);
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const auto belief = aos::Belief<TableModel>::initial(random);
-  aos::Planners<TableModel> planner;
-  EXPECT_EQUAL(planner.search(PlannerKind::pomcp, belief, {.simulations = 50}, horizon, random), 50u);
+  Corridor corridor{1, 1};
+  EXPECT_EQUAL(corridor.search(PlannerKind::pomcp, 50), 50u);
 }
 
 }  // namespace budgets_tests

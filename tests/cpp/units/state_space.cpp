@@ -190,11 +190,17 @@ TEST("Steps by the table have the odds of the model, and its expected rewards") 
   EXPECT_NEAR(rewards / draws, 0.1 * 2 - 0.6 + 0.3 * 5, 0.02);
 }
 
-TEST("Exact values are those that can be worked out by hand") {
-  const Problem tiger = units::tiger();
-  const Belief belief = initial_belief(tiger);
+// The states of the tiger, listed.
+struct Tiger {
+  Problem problem = units::tiger();
+  Belief belief = initial_belief(problem);
   Space space;
-  EXPECT(space.reach(belief));
+  bool is_listed = space.reach(belief);
+};
+
+TEST("Exact values are those that can be worked out by hand") {
+  auto [problem, belief, space, is_listed] = Tiger{};
+  EXPECT(is_listed);
   const aos::ObservableValues observable{space.rows(), space.numbering(), 3};
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 1000}};
   const auto one = evaluation.action_values(aos::exact_root(space, belief), 1);
@@ -211,10 +217,8 @@ TEST("Exact values are those that can be worked out by hand") {
 }
 
 TEST("A belief that is a little wrong has values that may be wrong by what the largest rewards are worth") {
-  const Problem tiger = units::tiger();
-  const Belief belief = initial_belief(tiger);
-  Space space;
-  EXPECT(space.reach(belief));
+  auto [problem, belief, space, is_listed] = Tiger{};
+  EXPECT(is_listed);
   EXPECT_EQUAL(space.slack(belief, 3), 0);
   const Belief rough = Belief::of({belief.particles(), {}, {}}, 1e-7, false);
   EXPECT(rough.is_exact());
@@ -223,10 +227,8 @@ TEST("A belief that is a little wrong has values that may be wrong by what the l
 }
 
 TEST("Exact values that exceed the budget are refused, and no wrong ones given") {
-  const Problem tiger = units::tiger();
-  const Belief belief = initial_belief(tiger);
-  Space space;
-  EXPECT(space.reach(belief));
+  auto [problem, belief, space, is_listed] = Tiger{};
+  EXPECT(is_listed);
   const aos::ObservableValues observable{space.rows(), space.numbering(), 10};
   aos::ExactEvaluation evaluation{space.rows(), observable, {.beliefs = 3}};
   bool is_refused = false;

@@ -39,26 +39,27 @@ inline std::string values_of(const exam::Problem& problem, int decisions, double
   return json.end_array().end_object().text();
 }
 
+// What the command line says of an exam, or else these numbers.
+template <class Chosen>
+Chosen chosen(const Options& options, double simulations, double truth_seconds, double steps) {
+  Chosen made;
+  made.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
+  made.simulations = static_cast<std::uint64_t>(number_of(options, "simulations", simulations));
+  made.truth_seconds = number_of(options, "truth", truth_seconds);
+  made.steps = static_cast<int>(number_of(options, "steps", steps));
+  return made;
+}
+
 inline std::string report_of(const std::string& what, const exam::Problem& problem, const Options& options) {
   if (what == "values") {
     const auto decisions = static_cast<int>(number_of(options, "decisions", problem.horizon));
     return values_of(problem, decisions, number_of(options, "truth", 1));
   }
   if (what == "intervals") {
-    exam::IntervalOptions intervals;
-    intervals.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
-    intervals.simulations = static_cast<std::uint64_t>(number_of(options, "simulations", 5000));
-    intervals.truth_seconds = number_of(options, "truth", 0.5);
-    intervals.steps = static_cast<int>(number_of(options, "steps", 3));
-    return exam::intervals_of(problem, intervals);
+    return exam::intervals_of(problem, chosen<exam::IntervalOptions>(options, 5000, 0.5, 3));
   }
   if (what == "bounds") {
-    exam::ClaimOptions claims;
-    claims.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
-    claims.simulations = static_cast<std::uint64_t>(number_of(options, "simulations", 2000));
-    claims.truth_seconds = number_of(options, "truth", 1);
-    claims.steps = static_cast<int>(number_of(options, "steps", 4));
-    return exam::Claims{problem, claims}.report();
+    return exam::Claims{problem, chosen<exam::ClaimOptions>(options, 2000, 1, 4)}.report();
   }
   exam::RegretOptions regret;
   regret.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
