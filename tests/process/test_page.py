@@ -107,14 +107,20 @@ def test_slider_and_keys_move_all_views_and_the_address(
     expect(page).to_have_url(re.compile(rf"/missions/{name}$"))
 
 
+def late(browser: Browser, served: Gateway, run: Path, view: str = "") -> Page:
+    """A view of a living mission that has made a step already."""
+    (run.parents[1] / "turns").write_bytes(b".")
+    page = opened(browser, served)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}{view}")
+    expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+    return page
+
+
 def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     browser: Browser, living: tuple[Gateway, Path]
 ) -> None:
     served, run = living
-    (run.parents[1] / "turns").write_bytes(b".")
-    page = opened(browser, served)
-    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}")
-    expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+    page = late(browser, served, run)
     expect(page.locator(".connection")).to_have_text("Live")
     (run.parents[1] / "turns").write_bytes(b".")
     expect(page.locator(".stepper-place")).to_have_text("3 of 3")
@@ -204,11 +210,8 @@ def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_
     browser: Browser, living: tuple[Gateway, Path]
 ) -> None:
     served, run = living
-    (run.parents[1] / "turns").write_bytes(b".")
-    page = opened(browser, served)
     address = f"http://127.0.0.1:{served.port}/#/missions/{run.name}"
-    page.goto(f"{address}/system")
-    expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+    page = late(browser, served, run, "/system")
     better = (run.parents[1] / "tiger/listen.sd").read_text().replace("0.85 : 0.15", "0.95 : 0.05")
     given = {"name": "listen.sd", "mimeType": "text/plain", "buffer": better.encode()}
     page.locator("input[type=file]").set_input_files(given)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from mappings import mapping_text
 from models import built_text, engine_of
 
@@ -121,24 +120,20 @@ __moduleResponseStr = "alarm " + std::to_string(AOSUtils::SampleDiscrete(odds));
 """Machines in a ring fail beside one that is down. Each step has an alarm, as a rule of one that is down."""
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-async def test_a_rare_loss_counts_in_full_though_no_simulation_may_meet_it(
-    seed: int, cache_dir: Path
-) -> None:
-    built = await built_text(RARE_LOSS, cache_dir)
-    async with engine_of(built) as engine:
-        plan = await engine.plan(simulations=2000, seed=seed, planner="auto")
-    assert "carefully=true" in plan.best.action
+async def first_actions(files: dict[str, str], cache_dir: Path, simulations: int) -> list[str]:
+    """The decisions of three seeds at the initial belief."""
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        plans = [await engine.plan(simulations=simulations, seed=seed, planner="auto") for seed in (1, 2, 3)]
+    return [plan.best.action for plan in plans]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
-async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it(
-    seed: int, cache_dir: Path
-) -> None:
-    built = await built_text(BOMBS, cache_dir)
-    async with engine_of(built) as engine:
-        plan = await engine.plan(simulations=20_000, seed=seed, planner="auto")
-    assert plan.best.action == "leave", plan
+async def test_a_rare_loss_counts_in_full_though_no_simulation_may_meet_it(cache_dir: Path) -> None:
+    for action in await first_actions(RARE_LOSS, cache_dir, 2000):
+        assert "carefully=true" in action
+
+
+async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it(cache_dir: Path) -> None:
+    assert await first_actions(BOMBS, cache_dir, 20_000) == ["leave"] * 3
 
 
 async def test_one_draw_of_many_outcomes_leaves_many_effective_states(cache_dir: Path) -> None:
