@@ -202,6 +202,19 @@ class System:
         request = Activate(ActivationId("m", step), skill, parameters or {}, deadline_s, revision=revision)
         return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=HANG_S)
 
+    async def beside_a_motion(self, skill: str) -> tuple[asyncio.Task[Outcome], asyncio.Event]:
+        """Activates a skill while another may still be moving; also gives what lets that stand still."""
+        is_still = asyncio.Event()
+        await self.adapter.serve(
+            "/sense", lambda call: hang(call) if call.id.step == 1 else answering({})(call)
+        )
+        await self.adapter.serve_cancel("/sense", is_still)
+        assert (await self.activate("sense", 1)).status == "timed_out"
+        self.adapter.is_cancelled.clear()
+        waiting = asyncio.create_task(self.activate(skill, 2))
+        await asyncio.wait_for(self.adapter.is_cancelled.wait(), HANG_S)
+        return waiting, is_still
+
     async def logged(self, text: str) -> None:
         """Returns once the service has logged a text."""
         async with asyncio.timeout(HANG_S), self._has_logged:

@@ -9,7 +9,6 @@ import msgspec
 import pytest
 from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang
-from processes import HANG_S
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Outcome, SkillCall, SkillResult, Stray
@@ -89,17 +88,7 @@ async def test_an_adapter_that_leaves_makes_its_skills_unavailable(system: Syste
 
 
 async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -> None:
-    is_still = asyncio.Event()
-
-    async def sense(call: SkillCall) -> dict[str, Any]:
-        return await hang(call) if call.id.step == 1 else {}
-
-    await system.adapter.serve("/sense", sense)
-    await system.adapter.serve_cancel("/sense", is_still)
-    assert (await system.activate("sense", 1)).status == "timed_out"
-    system.adapter.is_cancelled.clear()
-    waiting = asyncio.create_task(system.activate("sense", 2))
-    await asyncio.wait_for(system.adapter.is_cancelled.wait(), HANG_S)
+    waiting, is_still = await system.beside_a_motion("sense")
     assert [call.id.step for call in system.adapter.calls] == [1]
     is_still.set()
     assert (await waiting).status == "observed"

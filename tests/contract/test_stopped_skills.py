@@ -7,7 +7,7 @@ import asyncio
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import HANG_S, System, hang
+from middleware_system import HANG_S, System
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Cancel, Cancelled, Outcome, SkillCall, SkillResult, TopicMessage
@@ -131,13 +131,7 @@ async def test_a_cancellation_that_overtakes_its_call_is_said_again(system: Syst
 
 async def test_a_skill_is_not_called_where_it_would_be_stopped_at_once(system: System) -> None:
     adapter = await driving(system)
-    is_still = asyncio.Event()
-    await system.adapter.serve("/sense", hang)
-    await system.adapter.serve_cancel("/sense", is_still)
-    assert (await system.activate("sense", 1)).status == "timed_out"
-    system.adapter.is_cancelled.clear()
-    running = asyncio.create_task(system.activate("drive", 2))
-    await asyncio.wait_for(system.adapter.is_cancelled.wait(), HANG_S)
+    running, is_still = await system.beside_a_motion("drive")
     adapter.say(0.1)
     await system.logged("m-2 is stopped: drive: stop_when of drive holds")
     is_still.set()
