@@ -122,6 +122,19 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
     assert raised.value.code == "AOS504"
 
 
+async def test_of_whatever_answers_in_place_of_a_master_little_is_told() -> None:
+    async def answer(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        writer.write(b"noise " * 1000 + b"\n")
+        await writer.drain()
+        writer.close()
+
+    async with await asyncio.start_server(answer, "127.0.0.1", 0) as server:
+        host, port = server.sockets[0].getsockname()
+        with pytest.raises(BusError, match=r"no ROS master answers") as raised:
+            await Ros1Node.open(f"http://{host}:{port}", name="aos")
+    assert len(raised.value.message) < 300
+
+
 async def test_without_a_master_or_rospy_it_is_said_what_to_do(master: str) -> None:
     with pytest.raises(
         BusError, match=r"no ROS master answers at http://127\.0\.0\.1:1: .*roscore"

@@ -107,6 +107,11 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
     ]
 
 
+def test_a_removal_that_is_refused_is_told_with_its_project(capsys: pytest.CaptureFixture[str]) -> None:
+    PlainView()(BundleReport("fetch", False, 3))
+    assert capsys.readouterr().out == "a change of fetch refused, nothing has changed\n"
+
+
 def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]) -> None:
     worse = msgspec.structs.replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
     PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))

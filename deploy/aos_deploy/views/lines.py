@@ -196,7 +196,8 @@ def _report_lines(report: BundleReport) -> list[str]:
     lines = [render(diagnostic) for diagnostic in report.diagnostics]
     if not report.is_accepted:
         waits = "; it is tried again when the project changes" if report.is_waiting else ""
-        return [*lines, f"bundle {report.source} refused, nothing has changed{waits}"]
+        subject = f"bundle {report.source}" if report.source else f"a change of {report.project}"
+        return [*lines, f"{subject} refused, nothing has changed{waits}"]
     revision = f"{report.project} revision {report.revision}"
     subject = f"bundle {report.source}: " if report.source else ""
     return [*lines, f"{subject}{revision}, {changes_text(report)}"]

@@ -17,6 +17,7 @@ from aos_skills.ros.definitions import interface_name, missing_interface
 
 __all__ = ["Ros1Process"]
 
+LONGEST_REASON = 200
 START_S = 15.0
 MAX_LINE_BYTES = 2**26
 """A line holds one message; a point cloud is large."""
@@ -160,8 +161,9 @@ def _start_error(python: str, master: str, error: Exception) -> AosError:
             "with another Python, name it under `python:` of the adapter",
         )
     why = error.message if isinstance(error, AosError) else f"{python} was not ready in {START_S:g} s"
+    why = " ".join(why.split())  # Whoever is there may have answered anything.
     return BusError(
-        f"no ROS master answers at {master}: {why}",
+        f"no ROS master answers at {master}: {why[:LONGEST_REASON]}",
         code="AOS605",
         hint="Start one with roscore, or name yours: adapters: {robot: {ros1: http://HOST:11311}}",
     )
