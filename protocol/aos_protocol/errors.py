@@ -22,7 +22,9 @@ A user's mistakes are collected as diagnostics; an AosError may carry them.
 
 from __future__ import annotations
 
-from aos_protocol.diagnostics import Diagnostic
+import sys
+
+from aos_protocol.diagnostics import Diagnostic, render
 
 __all__ = [
     "CODES",
@@ -164,10 +166,14 @@ CODES: dict[str, str] = {
 """Every code with its meaning; docs/errors.md is made from this table."""
 
 
+_MOST_NOTES = 20
+
+
 class AosError(Exception):
     """A fault with a code, what happened, and what to do.
 
     `str(error)` reads `AOS601: what. hint`; diagnostics, when there are any, are for the caller to print.
+    A traceback of Python 3.11 or later has them as notes.
     """
 
     code = "AOS606"
@@ -185,6 +191,9 @@ class AosError(Exception):
         self.message = message
         self.hint = hint
         self.diagnostics = diagnostics
+        if sys.version_info >= (3, 11):
+            for diagnostic in diagnostics[:_MOST_NOTES]:
+                self.add_note(render(diagnostic))
 
     @property
     def status(self) -> str:

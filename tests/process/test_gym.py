@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import traceback
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.utils.env_checker import check_env
 
 from aos_lab.gym import AosEnv, AosVectorEnv
+from aos_protocol.errors import DeployError
 
 KETTLE = {
     "kettle.ef": """project: kettle
@@ -209,3 +211,11 @@ def test_no_worlds_and_no_steps_are_refused(kettle: Path) -> None:
         AosVectorEnv(kettle, num_envs=0)
     with pytest.raises(ValueError, match="max_episode_steps needs to be at least 1"):
         AosEnv(kettle, max_episode_steps=0)
+
+
+def test_a_traceback_tells_every_mistake_of_what_was_set(bundles: Path) -> None:
+    with pytest.raises(DeployError) as told:
+        AosEnv(bundles / "bench" / "tiger", mission_values={"drnik": 1})
+    shown = "".join(traceback.format_exception(told.value))
+    assert "AOS801: what is set for the mission has errors" in shown
+    assert "drnik" in shown

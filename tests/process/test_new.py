@@ -62,7 +62,7 @@ def test_nothing_is_overwritten(aos: typer.Typer) -> None:
     assert Path("fetch/look.sd").read_text() == "mine"
 
 
-@pytest.mark.parametrize("name", ["Fetch", "../fetch", "2do", "a-b"])
+@pytest.mark.parametrize("name", ["Fetch", "../fetch", "2do", "a-b", 65 * "n"])
 def test_a_name_that_documents_cannot_have_is_refused(aos: typer.Typer, name: str) -> None:
     assert "is no name for a project" in str(run(aos, f"new project {name}").exception)
     assert not list(Path().iterdir())

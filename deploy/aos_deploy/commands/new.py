@@ -25,7 +25,7 @@ from aos_protocol.spelling import did_you_mean
 
 __all__ = ["register"]
 
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 
 new_app = typer.Typer(
     no_args_is_help=True,
@@ -181,7 +181,7 @@ def _copy(deploy: Path, target: Path) -> None:
 
 def _check_name(name: str, kind: str) -> None:
     if not _NAME.fullmatch(name):
-        hint = "It starts with a small letter; small letters, digits and _ follow"
+        hint = "It starts with a small letter; small letters, digits and _ follow, 64 in all at most"
         raise DocumentError(f"{name!r} is no name for a {kind}", code="AOS126", hint=hint)
     if kind == "skill" and name in CPP_KEYWORDS:
         raise DocumentError(f"{name} means something else in C++", code="AOS126", hint="Choose another name")
