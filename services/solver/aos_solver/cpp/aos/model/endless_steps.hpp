@@ -6,22 +6,26 @@
 // has taken `long_loop` rounds, and an enumerator then says whether a step from that state may have no end.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <string>
+#include <unordered_set>
 
 #include "aos/base/build_kind.hpp"
 #include "aos/base/enumerator.hpp"
 #include "aos/base/loop_heads.hpp"
+#include "aos/base/mixed.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
 
-inline constexpr std::uint32_t long_loop = 4096;  // rounds
+inline constexpr std::uint32_t long_loop = 512;  // rounds
 inline constexpr int paths_of_long_loop = 512;    // that are walked to see whether it ends
+inline constexpr std::size_t max_known_endless = 10'000;  // states of a skill and a thread
 inline constexpr std::uint64_t lucks_of_long_loop = 8;  // of the continuous draws, with which they are walked
 
 // The steps of this process that did not come to an end, by their loops.
@@ -74,7 +78,7 @@ class UnusedNumbers final : public NumberSink {
 // Runs the phases of a step, which may have no end.
 struct LoopingSteps {
   template <class State>
-  static Step run(State& next, auto& random, double penalty, auto&& phases) {
+  static Step run(State& next, const auto& parameters, auto& random, double penalty, auto&& phases) {
     const State before = next;
     bool meets_precondition = true;
     try {
@@ -83,7 +87,7 @@ struct LoopingSteps {
     } catch (const EndlessPath& endless) {
       return end(next, before, endless.loop, meets_precondition ? 0 : penalty);
     } catch (const LongLoop& found) {
-      if (has_endless_path(before, found.loop, phases)) {
+      if (is_known_endless(before, found.loop, &parameters, phases)) {
         return end(next, before, found.loop, meets_precondition ? 0 : penalty);
       }
     }
@@ -101,6 +105,18 @@ struct LoopingSteps {
     next = before;
     next.aos_ending = Ending::failure;
     return {reward, no_observation};
+  }
+
+  // The same as below. What has been found is kept for each skill, with a place for each grounded action's parameters.
+  template <class State>
+  static bool is_known_endless(const State& before, std::uint32_t loop, const void* parameters, auto&& phases) {
+    thread_local std::unordered_set<std::uint64_t> known;
+    const std::uint64_t key = mixed(mixed(hashed(0, before), loop), reinterpret_cast<std::uintptr_t>(parameters));
+    if (known.contains(key)) return true;
+    if (!has_endless_path(before, loop, phases)) return false;
+    if (known.size() == max_known_endless) known.clear();
+    known.insert(key);
+    return true;
   }
 
   // Whether some draws lead a step from this state into a loop without an end.

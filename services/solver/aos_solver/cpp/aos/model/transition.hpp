@@ -79,7 +79,7 @@ struct SkillDefaults {
 
 // How the phases of a step are run: each comes to an end. For other models see endless_steps.hpp.
 struct EndingSteps {
-  static Step run(auto& next, auto& random, double /*penalty*/, auto&& phases) {
+  static Step run(auto& next, const auto& /*parameters*/, auto& random, double /*penalty*/, auto&& phases) {
     bool meets_precondition = true;
     return phases(next, random, meets_precondition);
   }
@@ -229,7 +229,7 @@ Step run_phases(State& next, const auto& parameters, auto& random, bool& meets_p
 
 template <class Environment, class Skill, class State>
 Step transition(State& next, const auto& parameters, auto& random) {
-  return Environment::Steps::run(next, random, Skill::violation_penalty, [&](State& state, auto& draws, bool& meets_precondition) {
+  return Environment::Steps::run(next, parameters, random, Skill::violation_penalty, [&](State& state, auto& draws, bool& meets_precondition) {
     return run_phases<Environment, Skill>(state, parameters, draws, meets_precondition);
   });
 }
