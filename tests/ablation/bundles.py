@@ -13,6 +13,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from tests.wide.leaving import LEAVING, LEAVING_SIZES
 from tests.wide.lock import lock
 from tests.wide.problems import PROBLEMS, SIZES
 from tests.wide.rescue import rescue
@@ -59,8 +60,8 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | TOGETHER | {"rescue": rescue, "lock": lock}
-    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | {"rescue": 3, "lock": 5}
+    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | {"rescue": rescue, "lock": lock}
+    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | {"rescue": 3, "lock": 5}
     if name not in problems:
         return None
     written = scratch / name

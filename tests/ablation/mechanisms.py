@@ -90,6 +90,7 @@ _WITHOUT_OPTIONS = ("learned_values", "prior", "prior_draw", "asked_leaves")
 _SAVINGS = ("savings", "saving_lookahead")
 
 BUNDLES = (
+    BundleRoute("survey", 1000, 60, ("plain_plans",)),
     BundleRoute("diagnosis200", 2000, 40, ("simple_policies", "repeated_trials", "lower_trials")),
     BundleRoute(
         "lightdark",

@@ -7,6 +7,7 @@ from statistics import fmean
 
 from models import built_text, engine_of
 from wide.delivery import delivery
+from wide.leaving import questions, survey
 from wide.lock import lock
 from wide.problems import open_field, parcels
 from wide.rescue import rescue
@@ -91,3 +92,21 @@ async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
     assert run.actions[-1] == "pull"
     assert run.discounted_return > 5
+
+
+async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path) -> None:
+    """Twelve sites are hardly worth a probe. Without the rule the robot probes and drives for ever."""
+    async with engine_of(await built_text(survey(12), cache_dir)) as engine:
+        limits = MissionLimits(goal_probability=1, step_limit=60)
+        run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
+    assert run.actions[-1] == "leave"
+    assert run.discounted_return > -9
+
+
+async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> None:
+    """A robot that leaves at once returns 0, a rule by hand 6.4."""
+    async with engine_of(await built_text(questions(18), cache_dir)) as engine:
+        limits = MissionLimits(goal_probability=1, step_limit=30)
+        searches = (Search(simulations=1000, seed=seed) for seed in (1, 2))
+        runs = [await simulate_mission(engine, search, limits) for search in searches]
+    assert fmean(run.discounted_return for run in runs) > 2

@@ -21,6 +21,7 @@ import numpy as np
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
 from .inspection import inspection, inspection_rule
+from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
 from .lock import Lock, lock, lock_rule
 from .missions import Played, played
 from .problems import PROBLEMS, SIZES
@@ -40,12 +41,13 @@ _SINGLE = {
     "tabletop": tabletop,
     "lock": lock,
 }
-_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | _SINGLE
+_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
 _SIZES = (
     SIZES
     | APART_SIZES
     | UPKEEP_SIZES
     | TOGETHER_SIZES
+    | LEAVING_SIZES
     | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5}
 )
 _RULES = (
@@ -53,6 +55,7 @@ _RULES = (
     | APART_RULES
     | UPKEEP_RULES
     | TOGETHER_RULES
+    | LEAVING_RULES
     | {
         "inspection": inspection_rule,
         "screws": screws_rule,
@@ -61,7 +64,11 @@ _RULES = (
         "lock": lock_rule,
     }
 )
-_WORLDS = TOGETHER_WORLDS | {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop, "lock": Lock}
+_WORLDS = (
+    TOGETHER_WORLDS
+    | LEAVING_WORLDS
+    | {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop, "lock": Lock}
+)
 
 
 def write(folder: Path, problem: str, size: int) -> Path:

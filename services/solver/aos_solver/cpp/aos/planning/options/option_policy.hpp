@@ -35,6 +35,7 @@
 #include "aos/planning/options/option_tests.hpp"
 #include "aos/planning/options/option_values.hpp"
 #include "aos/planning/options/own_changes.hpp"
+#include "aos/planning/options/plain_plans.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 
 namespace aos {
@@ -93,6 +94,19 @@ class OptionPolicy {
   }
 
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  // What the best candidate is worth if nothing more is observed after it.
+  double least() const { return least_; }
+  // The plain plan that returns most from the states of the decision, and how much an action earns there.
+  PlainPlan plain_plan(int horizon, const BarredActions& barred, Sampler& random) {
+    return PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);
+  }
+  double reward_of(int action, Sampler& random) const { return PlainPlans<Model>::played(action, belief_, of_reward, 1, random).returned; }
+  // Lets a plain plan decide. What was told of all else is `lost` too much.
+  void settle_for(const PlainPlan& plain, double lost) {
+    for (ActionEstimate& estimate : estimates_) estimate.q -= estimate.n > 0 ? lost : 0;
+    estimates_[static_cast<std::size_t>(plain.action)] = {plain.returned, static_cast<std::uint32_t>(belief_.size()), plain.error};
+    reason_ = "that promises of this mission were not kept";
+  }
   // Whether a way to a reward was found, in this mission, from any state.
   bool knows_ways() const { return !library_.options().empty(); }
   // Whether rewards come by themselves, so that a way to one tells nothing.
@@ -118,6 +132,8 @@ class OptionPolicy {
   static constexpr double enough_found = 0.5;  // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
+  static constexpr double of_plain = 0.05;  // of the steps, where promises were not kept
+  static constexpr std::size_t of_reward = 64;  // draws
   static constexpr std::size_t most_after = 4;  // observations that are tried after an option
 
   // What keeps the policy from deciding in this model.
@@ -237,6 +253,7 @@ class OptionPolicy {
       estimate.standard_error = running * error;
     }
     reason_ = best != nullptr ? best->reason : "nothing";
+    least_ = best != nullptr ? running * best->value : 0;
   }
 
   bool is_prepared_ = false;
@@ -259,6 +276,7 @@ class OptionPolicy {
   std::vector<OptionCandidate> candidates_;
   std::vector<ActionEstimate> estimates_;
   const char* reason_ = "";
+  double least_ = 0;
 };
 
 }  // namespace aos

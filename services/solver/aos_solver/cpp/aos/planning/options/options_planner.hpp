@@ -1,6 +1,8 @@
 // Options as a planner: where states cannot be listed and ways to rewards are found (option_policy.hpp).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -10,6 +12,8 @@
 #include "aos/belief/belief.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/options/option_policy.hpp"
+#include "aos/planning/options/plain_plans.hpp"
+#include "aos/planning/options/promises.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
 #include "aos/planning/step_cost.hpp"
@@ -54,13 +58,17 @@ class OptionsPlanner final : public Planner<Model> {
     const double before = policy_.taken();
     const std::uint64_t simulations = policy_.search(question.belief, question.horizon, random, question.barred);
     affordable_.note(policy_.taken() - before, PlanningClock::now() - start);
+    if (switches::plain_plans) weigh_promises(question, Sampler{Sampler{random}.bits()});
     why += "; ways to rewards are found by search, and " + std::string{policy_.reason()} + " decides";
     return simulations;
   }
 
   Estimates estimates(const Belief<Model>& /*belief*/) const override { return policy_.estimates(); }
   Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
+  void advance(int action, Observation /*observation*/) override { promises_.note_taken(action); }
+  void forget() override { promises_.forget(); }
   void start_over() override {
+    promises_ = {};
     policy_.start_over();
     looks_ = Backoff{};
   }
@@ -76,8 +84,28 @@ class OptionsPlanner final : public Planner<Model> {
     return obstacle;
   }
 
+  // A robot that looks for ever for what pays for itself leaves, or waits, once promises have lost what it could still gain.
+  void weigh_promises(const Question<Model>& question, Sampler random) {
+    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
+    const double running = belief.probability_of(Ending::running);
+    if (running <= 0) return;
+    const ForgottenTexts forgotten;
+    const int chosen = this->choice(policy_.estimates(), horizon, barred);
+    const double value = policy_.estimates()[static_cast<std::size_t>(chosen)].q;
+    promises_.keep(value);
+    if (promises_.lost() > 0 && policy_.least() < 0) {
+      PlainPlan plain = policy_.plain_plan(horizon, barred, random);
+      plain.returned *= running;
+      plain.error *= running;
+      const double sure = plain.returned - 2 * plain.error;
+      if (plain.action >= 0 && sure > std::max(policy_.least(), value - promises_.lost())) return policy_.settle_for(plain, promises_.lost());
+    }
+    promises_.tell(chosen, value, running * policy_.reward_of(chosen, random), Model::discount);
+  }
+
   Pomcp<Model>& pomcp_;
   OptionPolicy<Model> policy_;
+  Promises promises_;
   AffordableSteps<Model> affordable_;
   Backoff looks_;
   bool has_looked_ = false;

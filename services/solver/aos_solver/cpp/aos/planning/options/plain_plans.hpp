@@ -1,0 +1,79 @@
+// Plain plans: the same action again and again, as far as the mission goes on. To leave, to land or to wait is one of them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/base/stable_order.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+
+namespace aos {
+
+// What a plain plan returns from the states of a belief, on average, with its standard error.
+struct PlainPlan {
+  int action = -1;  // none
+  double returned = 0;
+  double error = 0;
+};
+
+template <class Model>
+class PlainPlans {
+ public:
+  using State = typename Model::State;
+
+  // The plan that returns most over `horizon` decisions (sequential halving). What the last one returns is found anew, since the
+  // mean of the best of several is too high. It takes at most so many steps to choose.
+  static PlainPlan best(const SampledBelief<Model>& belief, int horizon, const BarredActions& barred, double steps, Sampler& random) {
+    std::vector<int> actions;
+    for (int action = 0; action < Model::action_count(); ++action) {
+      if (!barred.contains(static_cast<std::size_t>(action))) actions.push_back(action);
+    }
+    if (actions.empty()) return {};
+    const double of_round = steps / rounds;
+    std::vector<double> sums(static_cast<std::size_t>(Model::action_count()));
+    for (std::size_t tries = first_tries; actions.size() > 1; tries *= kept_share) {
+      const double affordable = of_round / static_cast<double>(actions.size() * tries);
+      const int length = std::clamp(static_cast<int>(affordable), 1, horizon);
+      for (const int action : actions) sums[static_cast<std::size_t>(action)] = played(action, belief, tries, length, random).returned;
+      sort_stably(actions, [&](int one, int other) { return sums[static_cast<std::size_t>(one)] > sums[static_cast<std::size_t>(other)]; });
+      actions.resize(std::max<std::size_t>(actions.size() / kept_share, 1));
+    }
+    return played(actions.front(), belief, last_tries, horizon, random);
+  }
+
+  // What an action returns that is taken so many times.
+  static PlainPlan played(int action, const SampledBelief<Model>& belief, std::size_t tries, int length, Sampler& random) {
+    double sum = 0;
+    double squares = 0;
+    draw_states(belief.weights(), static_cast<int>(tries), random, [&](std::size_t k) {
+      const double one = returned(belief.states()[k], action, length, random);
+      sum += one;
+      squares += one * one;
+    });
+    const auto count = static_cast<double>(tries);
+    const double mean = sum / count;
+    return {action, mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1))};
+  }
+
+ private:
+  static constexpr std::size_t first_tries = 4;  // of each action; four times as many of each better quarter
+  static constexpr std::size_t kept_share = 4;
+  static constexpr double rounds = 4;
+  static constexpr std::size_t last_tries = 64;
+
+  static double returned(State state, int action, int length, Sampler& random) {
+    double sum = 0;
+    double discount = 1;
+    for (int i = 0; i < length && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
+      sum += discount * Model::step(state, action, random).reward;
+    }
+    return sum;
+  }
+};
+
+}  // namespace aos
