@@ -10,6 +10,7 @@ from typing import Any
 from aos_solver.study.flips import sampled_flip
 from aos_solver.study.valuing import Margin, Value
 
+from .answers import Answers
 from .problem import Problem
 
 __all__ = ["HELD_TARGET", "Intervals"]
@@ -23,17 +24,15 @@ _ROUNDING = 1e-6
 
 
 @dataclasses.dataclass
-class Intervals:
+class Intervals(Answers):
     """Decisions by POMCP: how often value and margin were right, and the sign of a margin that was sure."""
 
     counts: Counter[str] = dataclasses.field(default_factory=Counter)
-    crashes: list[str] = dataclasses.field(default_factory=list)
     widths: list[float] = dataclasses.field(default_factory=list)
 
     def add(self, problem: Problem, answer: dict[str, Any]) -> bool:
         """Takes the driver's report; returns whether a margin that was sure had the wrong sign."""
-        if "cases" not in answer:
-            self.crashes.append(problem.name)
+        if self.has_crashed(problem, answer, "cases"):
             return True
         before = self.counts["wrong signs"]
         for chosen, other, line in answer["cases"]:
@@ -123,7 +122,7 @@ class Intervals:
             *self._widths(),
             f"{found['unknown lines']} lines left out, along which the truth is not known well enough",
         ]
-        return "\n".join([*lines, *([f"crashed: {', '.join(self.crashes)}"] if self.crashes else [])])
+        return "\n".join([*lines, *self.crash_lines()])
 
     def _widths(self) -> list[str]:
         if not self.widths:

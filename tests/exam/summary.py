@@ -7,6 +7,7 @@ from collections import Counter, defaultdict
 from statistics import fmean
 from typing import Any
 
+from .answers import Answers
 from .problem import Problem
 
 __all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets"]
@@ -24,21 +25,19 @@ def _family(problem: Problem) -> str:
 
 
 @dataclasses.dataclass
-class Bounds:
+class Bounds(Answers):
     """Claims, false ones, and the models with any."""
 
     models: int = 0
     claims: int = 0
     false: Counter[str] = dataclasses.field(default_factory=Counter)
     false_models: list[str] = dataclasses.field(default_factory=list)
-    crashes: list[str] = dataclasses.field(default_factory=list)
     planners: Counter[str] = dataclasses.field(default_factory=Counter)
 
     def add(self, problem: Problem, answer: dict[str, Any]) -> bool:
         """Returns whether a claim was false, or the engine failed."""
         self.models += 1
-        if "claims" not in answer:
-            self.crashes.append(problem.name)
+        if self.has_crashed(problem, answer, "claims"):
             return True
         self.claims += answer["claims"]
         self.planners.update(answer["planners"])
@@ -98,7 +97,7 @@ def _number(value: float | None) -> str:
 
 
 @dataclasses.dataclass
-class Regrets:
+class Regrets(Answers):
     """Shares of the range that planners lose, by family and planner."""
 
     regrets: dict[str, dict[str, list[float]]] = dataclasses.field(
@@ -112,12 +111,10 @@ class Regrets:
 
     used: dict[str, Counter[str]] = dataclasses.field(default_factory=lambda: defaultdict(Counter))
     rejected: Counter[str] = dataclasses.field(default_factory=Counter)
-    crashes: list[str] = dataclasses.field(default_factory=list)
 
     def add(self, problem: Problem, answer: dict[str, Any]) -> bool:
         """Returns whether a planner lost much."""
-        if "optimum" not in answer:
-            self.crashes.append(problem.name)
+        if self.has_crashed(problem, answer, "optimum"):
             return True
         if answer["obstacle"]:
             self.rejected[answer["obstacle"]] += 1
@@ -186,7 +183,7 @@ class Regrets:
                 f"    {_times_text(self.times[name])}; began with {began}",
             ]
         lines += [f"  {count} models left out: {why}" for why, count in self.rejected.items()]
-        lines += [f"  crashed: {', '.join(self.crashes)}"] if self.crashes else []
+        lines += self.crash_lines("  ")
         return "\n".join(lines)
 
     def is_passed(self) -> bool:

@@ -9,6 +9,7 @@ from collections import Counter, defaultdict
 from statistics import fmean
 from typing import Any
 
+from .answers import Answers
 from .problem import Problem
 
 __all__ = ["ALLOWED_SHARE", "Told", "Values"]
@@ -77,14 +78,13 @@ def _text(bound: float | None) -> str:
 
 
 @dataclasses.dataclass
-class Values:
+class Values(Answers):
     """Values of first decisions by the planner that was asked for and the family."""
 
     values: dict[str, dict[str, list[Told]]] = dataclasses.field(
         default_factory=lambda: defaultdict(lambda: defaultdict(list))
     )
     left_out: Counter[str] = dataclasses.field(default_factory=Counter)
-    crashes: list[str] = dataclasses.field(default_factory=list)
 
     def add(self, problem: Problem, answer: dict[str, Any]) -> bool:
         """Takes the driver's report of missions; returns whether a value was wrong."""
@@ -127,7 +127,7 @@ class Values:
             lines += [_row(family, found) for family, found in families]
             lines += [_row("all", self.all_of(name)), ""]
         lines += [f"{count} models left out: {why}" for why, count in self.left_out.items()]
-        lines += [f"crashed: {', '.join(self.crashes)}"] if self.crashes else []
+        lines += self.crash_lines()
         return "\n".join(lines)
 
     def is_passed(self) -> bool:

@@ -1,0 +1,28 @@
+"""The answers of the driver that are no answers: problems at which the engine failed."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+from .problem import Problem
+
+__all__ = ["Answers"]
+
+
+@dataclasses.dataclass
+class Answers:
+    """The problems at which the engine failed; the results of an exam add what they count."""
+
+    crashes: list[str] = dataclasses.field(default_factory=list, kw_only=True)
+
+    def has_crashed(self, problem: Problem, answer: dict[str, Any], wanted: str) -> bool:
+        """Returns whether the answer lacks what was wanted, and notes the problem then."""
+        if wanted in answer:
+            return False
+        self.crashes.append(problem.name)
+        return True
+
+    def crash_lines(self, indent: str = "") -> list[str]:
+        """A line with the crashes, for people, where there are any."""
+        return [f"{indent}crashed: {', '.join(self.crashes)}"] if self.crashes else []
