@@ -17,14 +17,14 @@ _SHOWN_SEEDS = 20
 
 
 def write_report(results: Results, plots: Mapping[str, Path], folder: Path) -> tuple[Path, Path]:
-    """`report.md`, with links to the pictures, and `report.html`, which holds them."""
+    """`report.md`, with links to pictures of the world, and `report.html`, with them and the drawings."""
     page, whole = folder / "report.md", folder / "report.html"
-    page.write_text(markdown_report(results, {t: str(p.relative_to(folder)) for t, p in plots.items()}))
+    page.write_text(markdown_report(results))
     pictures = "".join(f"<h3>{html.escape(title)}</h3>{_svg(path)}" for title, path in plots.items())
     for part in results.parts:
         if part.picture:
             pictures += f"<h3>{html.escape(part.name)}</h3>{_embedded(folder / part.picture)}"
-    whole.write_text(page_of(results.title, markdown_report(results, {}), pictures))
+    whole.write_text(page_of(results.title, markdown_report(results, has_pictures=False), pictures))
     return page, whole
 
 
@@ -38,8 +38,8 @@ def _svg(path: Path) -> str:
     return text[text.index("<svg") :]
 
 
-def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
-    """The report; `pictures` are files by their titles."""
+def markdown_report(results: Results, *, has_pictures: bool = True) -> str:
+    """The report, with links to pictures of the world; drawings show what its tables say."""
     around = results.surroundings
     lines = [f"# {results.title}", ""]
     if results.about:
@@ -50,8 +50,7 @@ def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
     if any(part.regret or part.no_optimum for part in results.parts):
         lines += ["## Beside the optimum", "", _REGRET, "", *_regrets(results), ""]
     lines += ["Values in brackets are the ends of 95 % intervals.", ""]
-    lines += [line for title, file in pictures.items() for line in (f"![{title}]({file})", "")]
-    for part in results.parts if pictures else ():
+    for part in results.parts if has_pictures else ():
         if part.picture:
             lines += [f"![{part.name}: the world at the end of a mission]({part.picture})", ""]
     lines += ["## What was run", "", *_parts(results), ""]
