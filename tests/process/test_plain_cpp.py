@@ -104,3 +104,50 @@ async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path) -> None:
         values = await engine.exact(horizon=1)
     rewards = {value.action.split("(")[0]: value.q for value in values.values}
     assert rewards == {name: pytest.approx(reward) for name, (_, reward) in CODE.items()}
+
+
+DOOR = """project: door
+horizon: 1
+discount: 0.9
+
+define_type: Door
+enum_members: open, closed
+
+state_variable: Door door
+code:
+state.door = closed;
+
+state_variable: int pulls [Door]
+default_value: 0
+
+reward_code:
+if (state.pulls[open] == 2) __reward = 100;
+"""
+PULL = """project: door
+
+precondition:
+__meetPrecondition = state.door != open;
+violate_penalty: -5
+
+dynamic_model:
+if (AOS.Bernoulli(0.5)) state__.door = state.door == closed ? open : closed;
+switch (state__.door) {
+    case open: state__.pulls[open] += 2; break;
+    default: __reward = std::count(state.DoorObjects.begin(), state.DoorObjects.end(), closed);
+}
+auto is_open = [](Door door) { return door == open; };
+__moduleResponse = is_open(state__.door) ? open : closed;
+"""
+
+
+async def test_a_name_is_the_enums_value_where_no_response_can_stand(cache_dir: Path) -> None:
+    pull = mapping_text(
+        "open: is_open", "closed: True", project="door", skill="pull", reports={"is_open": "bool"}
+    )
+    files = {"door.ef": DOOR, "pull.sd": PULL, "pull.am": pull}
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        values = await engine.exact()
+        update = await engine.update("pull", "open")
+    assert values.values[0].q == pytest.approx(0.5 * 100 + 0.5 * 1)
+    assert update.probability == pytest.approx(0.5)
+    assert update.summary.marginals[0].values == {"open": pytest.approx(1)}

@@ -68,7 +68,12 @@ def check_responses(
     for rule in mapping.rules:
         if rule.response in scope.enum_values:
             message = f"the response {rule.response} has the name of an enum value"
-            findings.warning("AOS126", message, rule.span, "In the skill's code it is the response")
+            findings.warning(
+                "AOS126",
+                message,
+                rule.span,
+                "Compared with the state or assigned to it, it is the value, else the response",
+            )
         if rule.response not in mentioned and model.dynamic_model and not mapping.response_variable:
             title = (
                 f"model of the monitor {model.name}" if mapping.monitor else f"skill document of {model.name}"

@@ -175,7 +175,7 @@ class _Lowering:
         models = {model.name: model for model in self._project.environment.monitors}
         for mapping in self._project.monitors:
             model = models[mapping.monitor]
-            section = self._code.section(LOOKING, model.code)
+            section = self._code.of(mapping).section(LOOKING, model.code)
             if section is not None:
                 responses = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
                 yield Monitor(model.name, model.span.file, responses, section)
@@ -247,14 +247,16 @@ class _Lowering:
                 counted.append(replace(lowered, goal_condition=code.goal_condition(special.condition)))
             else:
                 counted.append(lowered)
-        models = [skill.model.dynamic_model for skill in self._project.skills]
         return tuple(counted), tuple(
-            replace(skill, goal_conditions=code.goal_conditions(DYNAMIC, model))
-            for skill, model in zip(skills, models, strict=True)
+            replace(
+                lowered,
+                goal_conditions=code.of(skill.mapping).goal_conditions(DYNAMIC, skill.model.dynamic_model),
+            )
+            for lowered, skill in zip(skills, self._project.skills, strict=True)
         )
 
     def _skill(self, skill: Skill) -> LoweredSkill:
-        model, mapping, code = skill.model, skill.mapping, self._code
+        model, mapping, code = skill.model, skill.mapping, self._code.of(skill.mapping)
         variables = self._project.environment.variables
         copies = copies_of(model, self._project.environment)
         parameters = tuple(

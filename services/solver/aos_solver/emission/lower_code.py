@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Self
 
 import msgspec
 
@@ -23,6 +25,7 @@ from aos_language.document_code import snippets_of
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
+    AbstractionMapping,
     Assignment,
     EnumType,
     Iteration,
@@ -190,6 +193,13 @@ class SectionLowering:
         self._findings = findings
         self.outside = Rewriting(object_types, known, values, shared.drawing)
         """The meanings of names in code that stands alone."""
+
+    def of(self, mapping: AbstractionMapping) -> Self:
+        """The lowering of the sections of this mapping's skill or monitor."""
+        names = frozenset(rule.response for rule in mapping.rules) & self.outside.values
+        its = copy.copy(self)
+        its.outside = msgspec.structs.replace(self.outside, responses=names)
+        return its
 
     def goal_conditions(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
         """The section once more, which counts the conditions of rewards and goals; None if they are few."""

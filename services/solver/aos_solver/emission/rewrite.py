@@ -12,6 +12,7 @@ from aos_language.cpp.goal_conditions import Edits
 from aos_language.cpp.loops import DrawingLoop
 from aos_language.cpp.shared import SharedFunction
 from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
+from aos_language.cpp.value_names import values_meant
 from aos_language.observed import reports_in
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_containers import container_edits
@@ -31,7 +32,8 @@ class Rewriting(msgspec.Struct, frozen=True):
 
     `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
     constants that every section sees, `drawing` the shared functions that have a source of draws as their
-    first parameter. `counted` are the edits that count conditions, by the snippet's text.
+    first parameter. `counted` are the edits that count conditions, by the snippet's text. `responses` are
+    those of the skill that have the name of an enum's value.
     """
 
     object_types: frozenset[str]
@@ -39,6 +41,7 @@ class Rewriting(msgspec.Struct, frozen=True):
     values: frozenset[str] = frozenset()
     drawing: frozenset[str] = frozenset()
     counted: Mapping[str, Edits] = {}
+    responses: frozenset[str] = frozenset()
 
 
 class LoopsOfPiece(msgspec.Struct, frozen=True):
@@ -72,6 +75,7 @@ def rewrite(
     - such a draw says so: `AOS.sensing().Bernoulli(p)`, `AOS.averaged().SampleNormal(mean, deviation)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
+    - an enum's value with the name of a response becomes `model::value` where only the value can be meant
     - a call of a shared function that draws, `slips(0.1)`, becomes `slips(AOS, 0.1)`, and its definition, one
       of `functions`, `bool slips(auto& AOS, double p) {`
     - a loop that draws tells of its rounds: see `drawing_loop.hpp`; variables that it may read are set first
@@ -84,6 +88,7 @@ def rewrite(
         edits += _of_reported(draw)
     unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
     unnamed += reference_edits(cpp)
+    edits += [(place.start, "model::") for place in values_meant(cpp, rewriting.responses)]
     for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     edits += _of_definitions(cpp, functions)
