@@ -7,7 +7,7 @@ its line and column. Paths in it are relative to its own folder.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -17,7 +17,7 @@ from aos_deploy.adapters import TAKEN, AdapterPlan, played_by_model, read_adapte
 from aos_deploy.constraints import snippet_of
 from aos_deploy.deploy_folder import deploy_file_at
 from aos_deploy.mission_values import values_of_node
-from aos_deploy.named_paths import absolute, is_file, is_folder, named
+from aos_deploy.named_paths import absolute, is_file, is_folder, is_there, named
 from aos_deploy.own_programs import ProgramPart, check_programs
 from aos_deploy.spans.otlp import is_collector_address
 from aos_deploy.typed import known_names, read_structure
@@ -279,6 +279,9 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
     if policy is not None and not is_file(policy):
         hint, where = "Write it with aos solve", _place(node, "solver", "policy")
         findings.error("AOS101", f"there is no policy file {named(policy)}", where, hint)
+    watch = folder / file.watch if file.watch is not None else None
+    if watch is not None and is_there(watch) and not is_folder(watch):
+        findings.error("AOS106", f"watch: {named(watch)} is no folder", _place(node, "watch"))
     adapters = read_adapters(node, findings, str(world) if world else "")
     check_programs(file.programs, node, findings, (*TAKEN, *file.adapters, *(plan.name for plan in adapters)))
     return Deployment(
@@ -291,7 +294,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         policy=policy,
         constraints=_constraints(path, file, node),
         mission_values=_mission_values(path, node, findings),
-        watch=folder / file.watch if file.watch is not None else None,
+        watch=watch,
         runs=absolute(folder / file.runs),
     )
 
@@ -334,16 +337,23 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
         if not _is_bundle(folder / name):
             findings.error("AOS101", f"there is no bundle folder {named(folder / name)}", where)
     bundles = tuple(absolute(folder / name) for name in file.bundles)
-    is_there = [bundle for bundle in bundles if _is_bundle(bundle)]
-    looked_at = is_there if file.leave_out else []
-    skills = {
-        skill for bundle in looked_at for skill in skills_of_files(read_bundle_files(bundle)[0]).values()
-    }
-    for skill, where in _texts(node, "leave_out"):
+    _check_skills(file, [bundle for bundle in bundles if _is_bundle(bundle)], node, findings)
+    return bundles
+
+
+def _check_skills(file: DeployFile, bundles: Sequence[Path], node: YamlMap, findings: Findings) -> None:
+    """The skills that the file names are those of bundles; a folder that is watched may bring others."""
+    said = list(_texts(node, "leave_out"))
+    settings = node.entries.get("skills")
+    if isinstance(settings, YamlMap) and file.watch is None:
+        said += settings.keys.items()
+    if not said:
+        return
+    skills = {skill for bundle in bundles for skill in skills_of_files(read_bundle_files(bundle)[0]).values()}
+    for skill, where in said:
         if skill not in skills:
             message = f"no bundle has a skill {skill}"
             findings.unknown(skill, skills, message, where, known_names(skills))
-    return bundles
 
 
 def _is_bundle(path: Path) -> bool:

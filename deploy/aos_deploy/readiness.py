@@ -6,7 +6,6 @@ from collections.abc import Collection
 
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.supervisor import Supervisor
-from aos_deploy.typed import known_names
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
 from aos_protocol.spelling import nearest
@@ -23,16 +22,10 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
     """Returns when all skills of the newest revision can be run, with `misspelt_paths` of these.
 
     DeployError AOS807 names the paths that nobody serves, or two adapters serve, after the time that adapters
-    may take to start; AOS801 a skill that only the deploy file knows.
+    may take to start.
     """
     bus, keys = supervisor.bus, supervisor.keys
     project = await bus.ask(keys.project, ProjectQuery(deployment.project), ProjectRevision, timeout_s=_ASK_S)
-    known = {skill.name for skill in project.project.skills}
-    for name in deployment.file.skills:
-        if name not in known:
-            raise DeployError(
-                f"`skills:` in {deployment.path} names {name}, which no bundle has", hint=known_names(known)
-            )
     newest: MappingState | None = None
 
     def has_revision(state: MappingState) -> bool:

@@ -64,6 +64,12 @@ def test_a_bundle_may_be_an_archive(folder: Path) -> None:
     assert sorted(files_of_bundle(archive, ("look",))) == ["drive.am", "drive.sd", "rover.ef"]
 
 
+@pytest.mark.parametrize("text", ["leave_out: [look]\n", "watch: drop\n"])
+def test_settings_of_a_skill_that_comes_later_are_taken(folder: Path, text: str) -> None:
+    name = "look" if "look" in text else "new_skill"
+    assert set(read(folder, HEAD + text + f"skills: {{{name}: {{retries: 2}}}}\n").file.skills) == {name}
+
+
 def test_everything_that_can_be_said_arrives(folder: Path) -> None:
     deployment = read(
         folder,
@@ -230,6 +236,11 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ),
         ("leave_out: look", "4:12 AOS106 leave_out is not a list"),
         ("leave_out: [drive, loook]", "4:20 AOS110 no bundle has a skill loook. Did you mean `look`?"),
+        (
+            "skills: {loook: {timeout_s: 1}}",
+            "4:10 AOS110 no bundle has a skill loook. Did you mean `look`?",
+        ),
+        ("watch: bundle/rover.ef", "4:8 AOS106 watch: "),
         ("leave_out: [zzz]", "4:13 AOS110 no bundle has a skill zzz. Known are drive, look"),
         ("bind: {/drive: 3}", "4:16 AOS106 bind./drive is not an adapter's name, and no mapping"),
         (
