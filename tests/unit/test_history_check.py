@@ -10,6 +10,7 @@ import msgspec
 import pytest
 from decision_records import decision_record
 
+from aos_deploy.history_check import check
 from aos_deploy.history_check.check import violations
 from aos_deploy.history_check.files import violations_of_run
 from aos_deploy.history_check.rules import RULES
@@ -137,6 +138,19 @@ def rows(entries: list[Entry]) -> list[JournalRow]:
 
 def test_a_history_that_can_be_breaks_no_rule() -> None:
     assert History().broken_rules() == set()
+
+
+def test_times_before_the_clock_was_set_back_say_nothing_of_the_mission_s_end() -> None:
+    """Nobody knows either what starts while it holds."""
+    history = History()
+    day_ns = 86_400 * 10**9
+    for entries in (history.journal, history.middleware, history.robot):
+        first = len(entries) // 3
+        entries[:first] = [entry._replace(stamp_ns=entry.stamp_ns + day_ns) for entry in entries[:first]]
+    assert history.broken_rules() == set()
+    files = {"adapter-robot.db": rows(history.robot)}
+    mission = check.History(MISSION, rows(history.journal))
+    assert check.check_histories([mission], rows(history.middleware), files).set_back_ns > day_ns - 1000
 
 
 def test_a_mission_that_was_killed_at_any_row_breaks_no_rule() -> None:

@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.replayed import Replay, replayed
-from aos_deploy.history_check.rules import RULES
+from aos_deploy.history_check.rules import BY_TIME, RULES
 from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
@@ -45,7 +45,8 @@ def check(
     directory = chosen_run(run, runs)
     if directory.is_running:
         raise DeployError(f"{from_here(directory.path)} goes on", hint="Check it when it has ended")
-    found = violations_of_run(directory.path)
+    checked = check_run(directory.path)
+    found = checked.violations
     again = _replayed(directory.path) if replay else Replay(remark="not asked for")
     found += again.violations
     if as_json:
@@ -54,6 +55,7 @@ def check(
                 "run": str(from_here(directory.path)),
                 "rules": RULES,
                 "violations": found,
+                "clock_set_back_s": checked.set_back_ns / 1e9,
                 "replayed": {"beliefs": again.compared, "remark": again.remark},
             }
         )
@@ -61,6 +63,11 @@ def check(
         for violation in found:
             where = f"{violation.file}:{violation.row}" if violation.row else violation.file
             typer.echo(f"{where}: {violation.rule}: {violation.text}")
+        if checked.set_back_ns:
+            typer.echo(
+                f"the clock was set back by {checked.set_back_ns / 1e9:,.2f} s while it ran: "
+                f"{' and '.join(BY_TIME)} are checked of the journal alone"
+            )
         broken = ", ".join(sorted({violation.rule for violation in found}))
         verdict = f"{count(len(found), 'violation')} of {broken}" if found else f"all {len(RULES)} rules hold"
         typer.echo(f"{from_here(directory.path)}: {verdict}; {_text(again)}")

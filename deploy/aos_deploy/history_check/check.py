@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, Protocol
 
 from aos_deploy.history_check.journal_rules import KINDS, Found, JournalRules
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS, LedgerRules, Motions
-from aos_deploy.history_check.rules import Violation
+from aos_deploy.history_check.rules import BY_TIME, Violation
 from aos_deploy.verdict import Verdict
 from aos_protocol.errors import StorageError
 from aos_runtime.journal import JournalError, JournalRow
 
-__all__ = ["History", "violations", "violations_of"]
+__all__ = ["Checked", "History", "check_histories", "violations"]
 
+SET_BACK_NS = 10_000_000
+"""Times of one file that go back by less say nothing of the clock."""
 JOURNAL, MIDDLEWARE = "journal.db", "middleware.db"
 
 
@@ -30,6 +32,37 @@ class History(NamedTuple):
     file: str = JOURNAL
 
 
+class Checked(NamedTuple):
+    """The violations of all rules, in the order of the files and their rows; empty where all of them hold.
+
+    `set_back_ns` is by how much the machine's clock was set back at most while the rows were written. Where
+    it was, times of the ledgers are not held against those of the journals.
+    """
+
+    violations: list[Violation]
+    set_back_ns: int = 0
+
+
+class _Clock:
+    """The times of rows in the order of their files."""
+
+    def __init__(self) -> None:
+        self.set_back_ns = 0
+
+    def followed(self, rows: Iterable[JournalRow]) -> Iterator[JournalRow]:
+        """The rows of one file; what their times go back is noted."""
+        before_ns: int | None = None
+        for row in rows:
+            if before_ns is not None:
+                self.set_back_ns = max(self.set_back_ns, before_ns - row.stamp_ns)
+            before_ns = row.stamp_ns
+            yield row
+
+    @property
+    def was_set_back(self) -> bool:
+        return self.set_back_ns > SET_BACK_NS
+
+
 def violations(
     run: str,
     journal: Iterable[JournalRow],
@@ -37,31 +70,32 @@ def violations(
     adapters: Mapping[str, Iterable[JournalRow]] | None = None,
     summary: Verdict | None = None,
 ) -> list[Violation]:
-    """The violations of a run with one mission, which has its name `run`; see `violations_of`."""
-    return violations_of([History(run, journal, summary)], middleware, adapters)
+    """The violations of a run with one mission, which has its name `run`; see `check_histories`."""
+    return check_histories([History(run, journal, summary)], middleware, adapters).violations
 
 
-def violations_of(
+def check_histories(
     histories: Iterable[History],
     middleware: Iterable[JournalRow] | None = None,
     adapters: Mapping[str, Iterable[JournalRow]] | None = None,
-) -> list[Violation]:
-    """The violations of all rules, in the order of the files and their rows; empty where all of them hold.
+) -> Checked:
+    """Holds every row against every rule.
 
     `middleware` are the rows of its ledger, `adapters` those of each adapter by the name of the file, as far
     as they are on this machine.
     """
     found: list[Violation] = []
+    clock = _Clock()
     histories = list(histories)
     read = []
     for history in histories:
         rules = JournalRules(history.mission)
-        _go_through(history.file, history.journal, KINDS, rules, found)
+        _go_through(history.file, clock.followed(history.journal), KINDS, rules, found)
         read.append(rules)
     journals = {rules.mission: rules for rules in read}
     if middleware is not None:
         ledger = LedgerRules(MIDDLEWARE, journals)
-        _go_through(MIDDLEWARE, middleware, MIDDLEWARE_KINDS, ledger, found)
+        _go_through(MIDDLEWARE, clock.followed(middleware), MIDDLEWARE_KINDS, ledger, found)
         for history, rules in zip(histories, read, strict=True):
             for id, intention in rules.intentions.items():
                 if intention.observed_row and id not in ledger.ended:
@@ -69,11 +103,16 @@ def violations_of(
                     found.append(Violation("outcome", history.file, intention.observed_row, text))
     motions = Motions()
     for file, rows in sorted((adapters or {}).items()):
-        _go_through(file, rows, ADAPTER_KINDS, LedgerRules(file, journals, motions), found)
+        ledger = LedgerRules(file, journals, motions)
+        _go_through(file, clock.followed(rows), ADAPTER_KINDS, ledger, found)
     for history, rules in zip(histories, read, strict=True):
         if history.summary is not None:
             _check_summary(history, history.summary, rules, found)
-    return found
+    if not clock.was_set_back:
+        return Checked(found)
+    of_journals = {history.file for history in histories}
+    kept = [each for each in found if each.rule not in BY_TIME or each.file in of_journals]
+    return Checked(kept, clock.set_back_ns)
 
 
 def _check_summary(history: History, summary: Verdict, rules: JournalRules, found: list[Violation]) -> None:

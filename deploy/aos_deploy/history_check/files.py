@@ -7,21 +7,26 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, History, violations_of
+from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, Checked, History, check_histories
 from aos_deploy.history_check.rules import Violation
 from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.verdict import Verdict
 from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import mission_folders, mission_name, stays
 
-__all__ = ["violations_of_run"]
+__all__ = ["check_run", "violations_of_run"]
 
 
 def violations_of_run(run: Path) -> list[Violation]:
     """Returns the violations in the files of a run that is over; a file that cannot be read is one."""
+    return check_run(run).violations
+
+
+def check_run(run: Path) -> Checked:
+    """Checks the files of a run that is over, as `violations_of_run` does."""
     middleware = _rows(run / MIDDLEWARE) if (run / MIDDLEWARE).exists() else None
     adapters = {path.name: _rows(path) for path in run.glob("adapter-*.db")}
-    return violations_of(_histories(run), middleware, adapters)
+    return check_histories(_histories(run), middleware, adapters)
 
 
 def _histories(run: Path) -> list[History]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-__all__ = ["RULES", "Violation"]
+__all__ = ["BY_TIME", "RULES", "Violation"]
 
 RULES = {
     "rows": "the rows of each file are numbered from 1 without a gap, and each can be read",
@@ -25,6 +25,8 @@ RULES = {
     "verdict": "the summary has the verdict of the journal, as far as that goes",
 }
 """Each rule by its name."""
+BY_TIME = ("hold", "over")
+"""The rules by which times of a ledger are compared with those of a journal."""
 
 
 class Violation(msgspec.Struct, frozen=True):
