@@ -42,13 +42,15 @@ state_variable: Box first
 
 state_variable: Box second
 
+state_variable: Box third
+
 reward_code:
 int sum = 0;
 for (int& value : state.row) sum += value;
 for (auto& box : state.BoxObjects) sum += box->weight;
 Box& box = state.first;
 int* last = &state.row[2];
-if (sum + box.weight + *last != 14) __reward = -1000;
+if (sum + box.weight + *last != 16) __reward = -1000;
 """
 CODE = {
     "copy": ("auto copy = state.row; copy.push_back(1); __reward = copy.size();", 4),
@@ -70,6 +72,7 @@ CODE = {
         1,
     ),
     "order": ("__reward = state.row < state.other && state.row >= vector<int>{1, 2};", 1),
+    "then": ("auto then = state; then.third.weight = 5; __reward = then.third.weight;", 5),
     "caught": (
         "try { __reward = state.row.at(amount); } catch (const std::out_of_range&) { __reward = 5; }",
         5,

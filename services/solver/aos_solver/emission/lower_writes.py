@@ -54,7 +54,10 @@ class Changes:
         """Takes in a snippet that may change these copies of the state."""
         passed_on = list(_passed_to_functions(cpp, self._shared.reading))
         changed_by_lambda = _changed_by_lambdas(cpp, passed_on) | self._changed_by_shared_code(cpp)
+        whole_copies = _whole_copies(cpp)
         for mention in cpp.mentions:
+            if mention.path[0] in whole_copies and mention.access in _CHANGING:
+                self._change(mention)
             if mention.path[0] not in STATES:
                 continue
             if mention.extent.start in changed_by_lambda and mention.path[0] in copies:
@@ -106,6 +109,17 @@ class Changes:
             self.variables |= self._names
         elif mention.path[1] in self._names:
             self.variables.add(mention.path[1])
+
+
+def _whole_copies(cpp: Cpp) -> frozenset[str]:
+    """The variables of the code that start as a copy of a whole state, `auto then = state;`."""
+    whole = {(m.extent.start, m.extent.end) for m in cpp.mentions if len(m.path) == 1 and m.path[0] in STATES}
+    starts = ((declaration, declaration.initial) for declaration in cpp.declarations)
+    return frozenset(
+        declaration.name
+        for declaration, initial in starts
+        if initial is not None and (initial.start, initial.end) in whole
+    )
 
 
 def changes_of(project: Project, *, after_start: bool = False) -> Changes:
