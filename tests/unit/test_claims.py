@@ -13,6 +13,7 @@ from aos_lab.experiments.physics import simulated_speed
 from aos_lab.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
 from aos_lab.trials.files import read_experiment, read_script_file, read_test_file
 from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share
+from aos_lab.trials.junit import verdict_text
 from aos_lab.trials.setting import deployment_of
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
@@ -162,6 +163,13 @@ def test_surely_asks_the_lower_end_of_the_interval() -> None:
     assert judge(Claim(says="", goal=True, share=0.8), ten).is_seen
     assert not judge(Claim(says="", goal=True, share=0.8, surely=True), ten).is_seen
     assert judge(Claim(says="", goal=True, share=0.7, surely=True), ten).is_seen
+
+
+def test_a_claim_that_fails_though_it_held_is_told_with_its_reason() -> None:
+    unsure = judge(Claim(says="", goal=True, share=0.9, surely=True), [DELIVERED])
+    assert verdict_text(unsure).endswith("; wanted 0.90 at the lower end; more missions may tell)")
+    about_none = judge(Claim(says="", goal=True, when=When(some="fly")), [DELIVERED])
+    assert (about_none.is_seen, verdict_text(about_none)) == (False, "no mission was one that it is about")
 
 
 def test_intervals_are_those_of_the_tables() -> None:

@@ -36,10 +36,15 @@ class Tested(msgspec.Struct, frozen=True, kw_only=True):
 
 def verdict_text(verdict: Verdict) -> str:
     """`held in 19 of 20 missions (0.95, between 0.76 and 0.99)`."""
+    if not verdict.missions:
+        return "no mission was one that it is about"
     share = verdict.share
+    # Then the claim wants it `surely`.
+    is_unsure = not verdict.is_seen and share.value >= verdict.wanted
+    where = " at the lower end; more missions may tell" if is_unsure else ""
     return (
-        f"held in {verdict.held} of {verdict.missions} missions "
-        f"({share.value:.2f}, between {share.low:.2f} and {share.high:.2f}; wanted {verdict.wanted:.2f})"
+        f"held in {verdict.held} of {verdict.missions} missions ({share.value:.2f}, "
+        f"between {share.low:.2f} and {share.high:.2f}; wanted {verdict.wanted:.2f}{where})"
     )
 
 
