@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_skills.pybullet.parts.numbers import Deviation, Length, Share
 from aos_skills.pybullet.parts.place import Place
 
 __all__ = ["ArmadilloFile", "Can", "FaultModel", "Table"]
@@ -16,10 +17,10 @@ class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     x: float
     y: float
-    radius: float
-    height: float
-    perceived_scale: float = 1.0
-    misplaced: float = 0.0
+    radius: Length
+    height: Length
+    perceived_scale: Length = 1.0
+    misplaced: Share = 0.0
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -33,11 +34,11 @@ class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Noise as standard deviations in metres, faults as probabilities."""
 
-    pose_noise_m: float = 0.0
-    height_noise_m: float = 0.0
-    arm_stays_out: float = 0.0
-    arm_stays_out_again: float = 0.0
-    silent_fingers: float = 0.0
+    pose_noise_m: Deviation = 0.0
+    height_noise_m: Deviation = 0.0
+    arm_stays_out: Share = 0.0
+    arm_stays_out_again: Share = 0.0
+    silent_fingers: Share = 0.0
 
 
 class ArmadilloFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

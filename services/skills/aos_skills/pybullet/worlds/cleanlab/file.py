@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_skills.pybullet.parts.numbers import Deviation, Share
 from aos_skills.pybullet.parts.place import Place
 
 __all__ = ["CleanLabFile", "FaultModel"]
@@ -14,10 +15,10 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     seen where none is, and a cup that is perceived where there is nothing to grasp.
     """
 
-    pose_noise_m: float = 0.0
-    glare: float = 0.0
-    ghost: float = 0.0
-    misplaced: float = 0.0
+    pose_noise_m: Deviation = 0.0
+    glare: Share = 0.0
+    ghost: Share = 0.0
+    misplaced: Share = 0.0
 
 
 class CleanLabFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

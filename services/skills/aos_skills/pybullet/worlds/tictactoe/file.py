@@ -6,6 +6,7 @@ from typing import Literal
 
 import msgspec
 
+from aos_skills.pybullet.parts.numbers import Deviation, Share
 from aos_skills.pybullet.worlds.tictactoe.rules import Rules
 
 __all__ = ["FaultModel", "TicTacToeFile"]
@@ -16,10 +17,10 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     standard deviations. `dry_centre` is the probability that the pen leaves nothing in the middle cell.
     """
 
-    camera_noise_m: float = 0.0
-    pixel_noise: float = 0.0
-    light: float = 0.0
-    dry_centre: float = 0.0
+    camera_noise_m: Deviation = 0.0
+    pixel_noise: Deviation = 0.0
+    light: Deviation = 0.0
+    dry_centre: Share = 0.0
 
 
 class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_skills.pybullet.parts.numbers import Deviation, Length, Share
 from aos_skills.pybullet.parts.place import Place
 
 __all__ = ["Crate", "FaultModel", "Obstacle", "TurtlebotFile"]
@@ -14,8 +15,8 @@ class Obstacle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     x: float
     y: float
-    half_x: float
-    half_y: float
+    half_x: Length
+    half_y: Length
 
 
 class Crate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -23,8 +24,8 @@ class Crate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     x: float
     y: float
-    probability: float = 1.0
-    half: float = 0.15
+    probability: Share = 1.0
+    half: Length = 0.15
 
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -32,9 +33,9 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     its report says that it did not.
     """
 
-    place_noise_m: float = 0.0
-    yaw_noise_rad: float = 0.0
-    lost_report: float = 0.0
+    place_noise_m: Deviation = 0.0
+    yaw_noise_rad: Deviation = 0.0
+    lost_report: Share = 0.0
 
 
 class TurtlebotFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -44,8 +45,8 @@ class TurtlebotFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     robot: Place
-    half_x: float
-    half_y: float
+    half_x: Length
+    half_y: Length
     places: dict[str, Place]
     obstacles: list[Obstacle] = []
     crates: dict[str, Crate] = {}
