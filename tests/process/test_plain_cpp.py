@@ -77,6 +77,11 @@ CODE = {
         "try { __reward = state.row.at(amount); } catch (const std::out_of_range&) { __reward = 5; }",
         5,
     ),
+    "everything": (
+        "int x = 0; try { while (x == 0) x = AOSUtils::SampleDiscrete(std::vector<double>{0.5, 0.25, 0.25});"
+        "if (x == 2) throw 1; } catch (...) { x = 9; } __reward = x;",
+        5,
+    ),
     "headers": (
         "std::any value = 3; std::forward_list<int> list{1, 2}; std::vector<int> sums(3);"
         "std::inclusive_scan(state.row.begin(), state.row.end(), sums.begin());"

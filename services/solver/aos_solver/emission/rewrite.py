@@ -21,6 +21,7 @@ from aos_solver.emission.rewrite_references import reference_edits
 
 __all__ = ["NO_LOOPS", "EnumValues", "LoopsOfPiece", "Rewriting", "rewrite"]
 
+_CATCH_ALL = re.compile(r"\bcatch\s*\(\s*\.\.\.\s*\)\s*\{")
 _SCOPE = re.compile(r"AOS(?:Utils)?")
 
 EnumValues = tuple[str, ...] | None
@@ -75,6 +76,7 @@ def rewrite(
     - such a draw says so: `AOS.sensing().Bernoulli(p)`, `AOS.averaged().SampleNormal(mean, deviation)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
+    - `catch (...)` lets pass what ends a path of draws
     - an enum's value with the name of a response becomes `model::value` where only the value can be meant
     - a call of a shared function that draws, `slips(0.1)`, becomes `slips(AOS, 0.1)`, and its definition, one
       of `functions`, `bool slips(auto& AOS, double p) {`
@@ -92,6 +94,9 @@ def rewrite(
     for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     edits += _of_definitions(cpp, functions)
+    edits += [
+        (found.end(), " aos::let_paths_end();") for found in _CATCH_ALL.finditer(strip_comments(cpp.code))
+    ]
     edits += rewriting.counted.get(cpp.code, ())
     own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:

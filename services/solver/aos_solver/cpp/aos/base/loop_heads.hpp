@@ -24,6 +24,9 @@ inline thread_local std::uint32_t allowed_rounds = any_rounds;
 // Throws a LongLoop where somebody should look whether the loop has an end.
 void look_whether_it_ends(std::uint32_t loop, std::uint32_t rounds);
 
+// Called where document code catches everything, `catch (...)`. Throws again what ends a path, which the code cannot mean.
+void let_paths_end();
+
 class LoopHeads {
  public:
   // Called where a loop begins. Returns a number for the way there: different ways have different numbers.

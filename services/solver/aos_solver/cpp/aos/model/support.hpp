@@ -78,6 +78,21 @@ std::unordered_map<Observation, std::string>& observed_texts() {
 
 }  // namespace detail
 
+void let_paths_end() {
+  try {
+    throw;
+  } catch (const CutPath&) {
+    throw;
+  } catch (const EndlessPath&) {
+    throw;
+  } catch (const LongLoop&) {
+    throw;
+  } catch (const NotEnumerable&) {
+    throw;
+  } catch (...) {
+  }
+}
+
 void look_whether_it_ends(std::uint32_t loop, std::uint32_t rounds) {
   if (rounds > detail::rounds_before_a_look(loop)) throw LongLoop{loop};
 }
