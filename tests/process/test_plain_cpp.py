@@ -143,8 +143,10 @@ switch (state__.door) {
     case open: state__.pulls[open] += 2; break;
     default: __reward = std::count(state.DoorObjects.begin(), state.DoorObjects.end(), closed);
 }
-auto is_open = [](Door door) { return door == open; };
-__moduleResponse = is_open(state__.door) ? open : closed;
+auto is_open = [](Door door) { Door wanted = open; return door == wanted && wanted == open; };
+int said = closed;
+if (is_open(state__.door)) said = open;
+__moduleResponse = said;
 """
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import tree_sitter
 
 from aos_language.cpp.facts import Cpp, DeclarationKind
@@ -13,19 +15,23 @@ from aos_language.cpp.tree import tree_of
 __all__ = ["values_meant"]
 
 _COMPARING = frozenset({"==", "!=", "<", "<=", ">", ">="})
+_NUMBERS = re.compile(r"\b(?:auto|char|int|long|short|signed|size_t|u?int\d+_t|unsigned)\b")
 _BEFORE = "void f() {"
 _WRAPPING = ("parenthesized_expression", "cast_expression", "initializer_list")
 
 
 def values_meant(cpp: Cpp, names: frozenset[str]) -> tuple[Extent, ...]:
     """The places at which a name of these can only be the enum's value: compared with something of a state,
-    assigned to it, the label of a switch over it, an index, an argument beside it."""
+    assigned to it, the label of a switch over it, an index, an argument beside it, the start of a variable
+    that is no number."""
     if not names or cpp.faults or not cpp.code.isascii() or len(cpp.missing_semicolons) > 1:
         return ()
     if names.isdisjoint(mention.path[0] for mention in cpp.mentions):
         return ()
     names -= {declaration.name for declaration in cpp.declarations}
-    variables = {d.name for d in cpp.declarations if d.kind is DeclarationKind.VARIABLE}
+    variables = {
+        d.name for d in cpp.declarations if d.kind is DeclarationKind.VARIABLE and _NUMBERS.search(d.type)
+    }
     complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
     lines = Lines(cpp.code)
     return tuple(
@@ -51,6 +57,10 @@ def _is_value(node: tree_sitter.Node, variables: set[str]) -> bool:
         return is_compared and _is_of_state(left if inner == right else right, variables)
     if outer.type == "assignment_expression":
         return inner == right and _is_of_state(left, variables)
+    if outer.type in ("init_declarator", "for_range_loop"):
+        declared = (outer.parent or outer) if outer.type == "init_declarator" else outer
+        kind = declared.child_by_field_name("type")
+        return kind is not None and _NUMBERS.search(text_of(kind)) is None
     if outer.type == "case_statement":
         switch = outer.parent.parent if outer.parent is not None else None
         return switch is not None and _is_of_state(switch.child_by_field_name("condition"), variables)
@@ -60,7 +70,8 @@ def _is_value(node: tree_sitter.Node, variables: set[str]) -> bool:
 
 
 def _is_of_state(node: tree_sitter.Node | None, variables: set[str]) -> bool:
-    """Returns whether this is no response: a part of something, or a name that is no variable of the code."""
+    """Returns whether this is no response: a part of something, or a name
+    that is no number of the code."""
     if node is None:
         return False
     names = [text_of(part) for part in below(node) if part.type == "identifier"]
