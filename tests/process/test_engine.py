@@ -13,8 +13,8 @@ from models import built_bundle, built_text, engine_of
 from processes import descendants, until_ended
 
 from aos_protocol.errors import ModelError
-from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
+from aos_solver.child import engine_child
 from aos_solver.child.engine import Engine
 from aos_solver.child.engine_child import EngineChild, EngineStart
 from aos_solver.child.search import Search
@@ -170,15 +170,16 @@ async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_d
 
 
 async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
-    bundles: Path, cache_dir: Path
+    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(engine_child, "FROZEN_S", 0.1)
     async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
         children = descendants(engine.pid)
         for child in children:
             os.kill(child, signal.SIGSTOP)
-        assert await engine._ask("summary", BeliefSummary, deadline_s=2) == before
+        assert await engine.summary() == before
         await until_ended(children)
 
 

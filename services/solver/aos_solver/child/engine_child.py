@@ -41,6 +41,8 @@ A = TypeVar("A")
 
 START_DEADLINE_S = 20.0
 EXIT_DEADLINE_S = 2.0
+FROZEN_S = 5.0
+"""A child is looked at so often while it is asked: one that a signal has frozen is killed."""
 HANG_STATUS = 71
 """A child whose document code ran too long ends with this status; known to watchdog.hpp."""
 REACHING_STATUS = 72
@@ -114,6 +116,8 @@ class EngineChild:
         self._built = built
         self._child = child
         self._blame: SharedMemory | None = blame
+        self._looking: asyncio.TimerHandle
+        self._was_frozen = False
         self._printed = asyncio.create_task(pass_on(child.stderr, sys.stderr.buffer))
 
     @classmethod
@@ -180,18 +184,16 @@ class EngineChild:
 
         `on_progress` is told how far the work is, some times a second while it goes on.
         """
-        child = self._child
+        self._look_later()
         try:
-            line = await child.in_time(self._answer(command, on_progress), deadline_s)
+            line = await self._child.in_time(self._answer(command, on_progress), deadline_s)
         except TimeoutError:
-            if child.is_frozen():
-                await self.close()
-                text = f"the engine was frozen by a signal, and has not answered within {deadline_s:.0f} s"
-                raise KilledError(text, code="AOS213") from None
             text = f"the model did not finish within {deadline_s:.0f} s"
             raise await self._lost(EndlessCodeError, text) from None
         except (ConnectionError, ValueError):
             line = b""
+        finally:
+            self._looking.cancel()
         if not line.endswith(b"\n"):
             raise await self._lost(CodeFaultError, "model code ended the engine")
         return self._decoded(line, kind)
@@ -205,6 +207,17 @@ class EngineChild:
             if on_progress is not None:
                 on_progress(self._decoded(line, _ProgressLine).progress)
         return line
+
+    def _look_later(self) -> None:
+        self._looking = asyncio.get_running_loop().call_later(FROZEN_S, self._end_if_frozen)
+
+    def _end_if_frozen(self) -> None:
+        """Ends a child that may stay frozen for ever: another one has the belief at once."""
+        if self._child.is_frozen():
+            self._was_frozen = True
+            self._child.end_at_once()
+        else:
+            self._look_later()
 
     async def close(self) -> None:
         """Ends the child; closing twice does nothing."""
@@ -245,7 +258,8 @@ class EngineChild:
         status = None if kind is EndlessCodeError else await self._status()
         await self.close()
         if status == -signal.SIGKILL:
-            return KilledError("the engine was killed", code="AOS213")
+            how = "frozen by a signal, and was killed" if self._was_frozen else "killed"
+            return KilledError(f"the engine was {how}", code="AOS213")
         if status is None:
             return self.fault(kind.code, message, piece)
         if status == -signal.SIGVTALRM:
