@@ -31,6 +31,7 @@
 #include "progress.cpp"
 #include "rollout.cpp"
 #include "search_tree.cpp"
+#include "split_draws.cpp"
 #include "state_space.cpp"
 #include "text_order.cpp"
 #include "wide_values.cpp"

@@ -190,7 +190,7 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
 };
 
 // The work of a step along a path, counted in draws beforehand. Copying a large state costs as much as some draws.
-inline std::size_t work_of_step(const Enumerator& path, std::size_t state_bytes) {
+inline std::size_t work_of_step(const auto& path, std::size_t state_bytes) {
   constexpr std::size_t bytes_per_draw = 64;
   return 1 + path.draws() + state_bytes / bytes_per_draw;
 }

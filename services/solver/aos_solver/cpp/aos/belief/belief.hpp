@@ -3,7 +3,7 @@
 // If steps can be enumerated, the update is exact. It takes every outcome of every state and merges equal states, so no
 // sampling depletes the particles. If there are too many states, the heavy ones stay and the light ones are thinned
 // out. If a loop has endless paths, the improbable ones are left out. In both cases the belief bounds its distance from
-// the exact one. If steps cannot be enumerated, the belief is drawn from then on: see particle_filter.hpp.
+// the exact one. If steps cannot be enumerated, the belief is drawn from then on: see drawn_step.hpp.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +21,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
 #include "aos/belief/gathering.hpp"
+#include "aos/belief/drawn_step.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/initial_paths.hpp"
 #include "aos/belief/marginals.hpp"
@@ -70,6 +71,7 @@ class Belief {
   // How the particles of a drawn belief came to be, if that is known.
   const History<Model>& history() const { return history_; }
   const std::vector<Lineage>& lineages() const { return lineages_; }
+  bool has_traces() const { return !lineages_.empty() && lineages_.front().trace != nullptr; }
   // No event's probability is further than this from that of the exact belief. It is 1 if steps were sampled.
   double error_bound() const { return error_bound_; }
   // How many states of equal weight tell as much; for a drawn belief, how many independent samples.
@@ -346,10 +348,8 @@ class Belief {
   }
 
   std::pair<Belief, double> stepped(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
-    ParticleFilter<Model> filter{random};
-    Cloud<Model> cloud = lineages_.empty() ? filter.begun(particles_, !is_drawn())
-                                           : Cloud<Model>{particles_, lineages_, history_};
-    auto updated = filter.after(std::move(cloud), step, numbers);
+    DrawnStep<Model> drawn{max_states(Source::enumeration), random};
+    auto updated = drawn.after({particles_, lineages_, history_}, !is_drawn(), step, numbers);
     if (updated.cloud.particles.empty()) return {Belief{}, 0};
     return {Belief{std::move(updated.cloud)}, updated.probability};
   }

@@ -115,6 +115,14 @@ class History {
   struct Origins {
     std::vector<State> states;
     std::vector<double> cumulative;
+
+    std::vector<Particle<Model>> particles() const {
+      std::vector<Particle<Model>> particles;
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        particles.push_back({states[i], cumulative[i] - (i > 0 ? cumulative[i - 1] : 0)});
+      }
+      return particles;
+    }
   };
   // All that a history knows beside its steps. Without origins it begins with the documents.
   struct Rest {
@@ -178,7 +186,7 @@ class History {
 // their weights, or 0 if the weight is known exactly.
 struct Lineage {
   double squares = 0;
-  TraceLink trace;
+  TraceLink trace;  // null if draws were split (split_filter.hpp)
 
   // The value of `squares` after a draw let the weight grow, where it could have vanished.
   double grown_squares(double weight, double grown) const {
@@ -198,6 +206,7 @@ struct Cloud {
   std::vector<Lineage> lineages;
   History<Model> history;
 
+  bool has_traces() const { return !lineages.empty() && lineages.front().trace != nullptr; }
   double total() const {
     double sum = 0;
     for (const auto& particle : particles) sum += particle.weight;
@@ -243,9 +252,17 @@ class GatheredCloud {
       return;
     }
     lineages_[number].squares += squares;
-    if (random.flag(weight / states_.particles()[number].weight)) lineages_[number].trace = std::move(trace);
+    if (trace != nullptr && random.flag(weight / states_.particles()[number].weight)) lineages_[number].trace = std::move(trace);
   }
   std::size_t size() const { return lineages_.size(); }
+
+  // Leaves at most so many particles.
+  void reduce(std::size_t max_particles, Sampler& random) {
+    Cloud<Model> left = thinned(max_particles, {}, random);
+    states_.clear();
+    for (const auto& [state, weight] : left.particles) states_.add(state, weight);
+    lineages_ = std::move(left.lineages);
+  }
 
   // The particles, of which the lightest are thinned out.
   Cloud<Model> thinned(std::size_t max_particles, History<Model> history, Sampler& random) const {

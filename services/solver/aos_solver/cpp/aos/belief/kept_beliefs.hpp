@@ -89,6 +89,7 @@ class KeptBeliefs {
     double squares;
     std::uint64_t trace;
   };
+  static constexpr std::uint64_t no_trace = ~std::uint64_t{0};
 
   // The two places are far apart, and those of the traces come after them; the file takes memory only for what is written.
   // It is limited to four times this, as engine_child.py knows.
@@ -118,7 +119,7 @@ class KeptBeliefs {
                             .has_all_origins = rest.has_all_origins});
     for (const auto& [state, weight] : particles) put_state(state, weight);
     for (const Lineage& lineage : belief.lineages()) {
-      put_as_bytes(KeptLineage{lineage.squares, lineage.trace->kept.number});
+      put_as_bytes(KeptLineage{lineage.squares, lineage.trace == nullptr ? no_trace : lineage.trace->kept.number});
     }
     put(step_words.data(), step_words.size() * sizeof(Words::value_type));
     if (!rest.origins) return;
@@ -135,7 +136,11 @@ class KeptBeliefs {
     for (std::uint64_t left = file_.is_good() ? head.lineages : 0; left > 0; --left) {
       KeptLineage lineage{};
       get(&lineage, sizeof lineage);
-      if (lineage.trace < traces.size()) cloud.lineages.push_back({lineage.squares, traces[lineage.trace]});
+      if (lineage.trace == no_trace) {
+        cloud.lineages.push_back({lineage.squares, nullptr});
+      } else if (lineage.trace < traces.size()) {
+        cloud.lineages.push_back({lineage.squares, traces[lineage.trace]});
+      }
     }
     cloud.history = next_history(head);
     return Belief<Model>::of(std::move(cloud), head.error_bound, head.is_drawn);

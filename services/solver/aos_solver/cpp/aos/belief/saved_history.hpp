@@ -100,7 +100,7 @@ inline std::pair<HistoryStep, std::string> next_step(WordReader& reader) {
 template <class Model>
 Words saved_history(const Belief<Model>& belief) {
   Words words;
-  if (belief.lineages().empty() || !belief.history().begins_with_the_documents()) return words;
+  if (!belief.has_traces() || !belief.history().begins_with_the_documents()) return words;
   words.push_back(belief.history().steps().size());
   for (const HistoryStep& step : belief.history().steps()) detail::add_step(words, step);
   for (const Lineage& lineage : belief.lineages()) {

@@ -1,0 +1,118 @@
+// Runs model code along a tree of its draws that is cut where it weighs little.
+//
+// A path begins with a weight. As long as it has at least a threshold, each draw splits it: all outcomes are walked, each with
+// its probability. A lighter path goes on with one outcome, drawn at random, and keeps its weight. So heavy paths are
+// enumerated and light ones are sampled, and the weight of any end is right on average.
+//
+// A light path is split as well, into a few, by draws that shape only what is observed, and by the last draws of a step: what is
+// observed often depends on these, and their probabilities are its likelihood then. Which ones are the last is learnt from the
+// light path before, so that it does not depend on what is drawn now.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/directed.hpp"
+#include "aos/base/enumerator.hpp"
+#include "aos/base/random.hpp"
+
+namespace aos {
+
+class SplitDraws final : public DirectedDraws {
+ public:
+  explicit SplitDraws(Sampler& random) : random_(random) {}
+
+  // Begins the tree of a state of this weight.
+  void start(double weight, double threshold) {
+    start_weight_ = weight;
+    threshold_ = threshold;
+    choices_.clear();
+    last_draws_ = next_last_draws_;
+    begin_path();
+  }
+  // Goes to the next path. Returns false after the last one.
+  bool advance() {
+    choices_.resize(depth_);
+    if (!is_certain_) learn_last_draws();
+    while (!choices_.empty() && choices_.back().following < 0) choices_.pop_back();
+    if (choices_.empty()) return false;
+    choices_.back().taken = choices_.back().following;
+    begin_path();
+    return true;
+  }
+
+  // The weight of the path, times that of the numbers that it reports.
+  double weight() const { return weight_ * weight_of_numbers(); }
+  // Whether no draw of the path was left to chance.
+  bool is_certain() const { return is_certain_; }
+  std::size_t draws() const { return depth_; }
+
+  int choose(const double* weights, int count, double total) override {
+    const bool is_sensing = takes_sensing();
+    if (depth_ == choices_.size()) {
+      if (depth_ == max_draws_of_path) throw NotEnumerable{"a step draws too often"};
+      const bool is_heavy = weight_ >= threshold_;
+      const bool is_split = is_heavy || ((is_sensing || depth_ >= last_draws_) && branches_ * count <= max_light_branches);
+      if (is_split) {
+        choices_.push_back({next_outcome(weights, count, -1), none, count, !is_heavy});
+      } else {
+        choices_.push_back({random_.choose(weights, count, total), drawn, count, false});
+      }
+    }
+    Choice& choice = choices_[depth_++];
+    if (choice.following == drawn) {
+      is_certain_ = false;
+      return choice.taken;
+    }
+    choice.following = next_outcome(weights, count, choice.taken);
+    weight_ *= weights[choice.taken] / total;
+    if (choice.is_light) branches_ *= count;
+    return choice.taken;
+  }
+  double uniform() override { throw NotEnumerable{"a draw is continuous"}; }
+
+ private:
+  static constexpr int none = -1;
+  static constexpr int drawn = -2;
+  static constexpr long max_light_branches = 12;
+
+  struct Choice {
+    int taken;
+    int following;  // the outcome to walk next; `none` after the last one, `drawn` where chance took the only one
+    int count;
+    bool is_light;  // a split of a light path
+  };
+
+  void begin_path() {
+    depth_ = 0;
+    weight_ = start_weight_;
+    branches_ = 1;
+    is_certain_ = true;
+    begin_numbers();
+  }
+  // The last draws are as many as have few combinations.
+  void learn_last_draws() {
+    long combinations = 1;
+    next_last_draws_ = choices_.size();
+    while (next_last_draws_ > 0 && (combinations *= choices_[next_last_draws_ - 1].count) <= max_light_branches) --next_last_draws_;
+  }
+  static int next_outcome(const double* weights, int count, int taken) {
+    for (int i = taken + 1; i < count; ++i) {
+      if (weights[i] > 0) return i;
+    }
+    return none;
+  }
+
+  Sampler& random_;
+  double start_weight_ = 1;
+  double threshold_ = 0;
+  std::vector<Choice> choices_;
+  std::size_t depth_ = 0;
+  double weight_ = 1;
+  long branches_ = 1;  // of a light path
+  std::size_t last_draws_ = max_draws_of_path;  // the place of the first of them
+  std::size_t next_last_draws_ = max_draws_of_path;
+  bool is_certain_ = true;
+};
+
+}  // namespace aos
