@@ -162,6 +162,18 @@ async def test_a_killed_worker_is_replaced_for_the_next_activation(evaluator: St
     assert (await mapping.finish({})).response == "done"
 
 
+async def test_a_frozen_worker_is_no_fault_of_the_code_and_is_replaced(evaluator: Start) -> None:
+    mapping = evaluator(RESULT + "value = 1\n", evaluation_s=3.0)
+    await mapping.begin({})
+    assert mapping.pid is not None
+    for process in descendants(mapping.pid):
+        os.kill(process, signal.SIGSTOP)
+    with pytest.raises(MappingFault, match="the worker was frozen by a signal"):
+        await mapping.finish({})
+    await mapping.begin({})
+    await mapping.finish({})
+
+
 async def test_memory_beyond_the_limit_is_an_exception(evaluator: Start) -> None:
     mapping = evaluator(RESULT + "value = 'a' * (1 << 30)\n", address_space_bytes=512 * 1024**2)
     fault = await fault_of(mapping)

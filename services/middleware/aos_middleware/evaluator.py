@@ -197,6 +197,10 @@ class Evaluator:
                 answer = read_answer(await child.stdout.readexactly(size))
             is_answered = True
         except TimeoutError:
+            if child.is_frozen():
+                raise self._fault(
+                    "AOS401", "the worker was frozen by a signal, and is stopped", None
+                ) from None
             raise self._fault("AOS403", "the code did not finish in time and was stopped", None) from None
         except (asyncio.IncompleteReadError, BrokenPipeError, ConnectionResetError):
             limit_s = self._limits.load_s if isinstance(question, Load) else self._limits.evaluation_s
