@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,11 @@ class LeafCells {
  public:
   using State = typename Model::State;
 
-  // Finds the variables by random walks from the belief.
+  // Finds the variables by random walks from the belief. Where one element of a list has moved, all of them can: what lies below
+  // others does not move in a walk.
   void prepare(const Belief<Model>& belief, Sampler& random) {
     find_leaves(belief.particles().front().state);
-    std::vector<std::vector<double>> changes(leaves_.size());
+    std::vector<std::vector<double>> changes(leaves_.size());  // by the first leaf of the list
     std::vector<bool> has_changed(leaves_.size());
     for (int walk = 0; walk < walks; ++walk) {
       State state = belief.sample(random);
@@ -37,15 +39,15 @@ class LeafCells {
         Model::step(state, walk_.next(state, random), random);
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
           if (bits(leaves_[i], state) == bits(leaves_[i], before)) continue;
-          has_changed[i] = true;
-          if (leaves_[i].is_real) changes[i].push_back(std::abs(number(leaves_[i], state) - number(leaves_[i], before)));
+          has_changed[leaves_[i].list] = true;
+          if (leaves_[i].is_real) changes[leaves_[i].list].push_back(std::abs(number(leaves_[i], state) - number(leaves_[i], before)));
         }
       }
     }
     std::vector<Place> moving;
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      if (!has_changed[i]) continue;
-      if (leaves_[i].is_real) leaves_[i].width = width_of(changes[i]);
+      if (!has_changed[leaves_[i].list]) continue;
+      if (leaves_[i].is_real) leaves_[i].width = width_of(changes[leaves_[i].list]);
       moving.push_back(leaves_[i]);
     }
     leaves_ = std::move(moving);
@@ -66,6 +68,7 @@ class LeafCells {
     std::size_t offset;
     std::size_t size;
     bool is_real;
+    std::size_t list;  // the first leaf with the same name but for indices
     double width = 1;
   };
   static constexpr int walks = 100;
@@ -75,12 +78,18 @@ class LeafCells {
 
   void find_leaves(const State& state) {
     leaves_.clear();
-    NamedLeaves named{[&](const std::string&, const Leaf& leaf) {
+    std::map<std::string, std::size_t> lists;
+    NamedLeaves named{[&](const std::string& name, const Leaf& leaf) {
       const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
       if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
-      leaves_.push_back({static_cast<std::size_t>(offset), leaf.size, leaf.kind == Leaf::Kind::real});
+      const std::size_t list = lists.emplace(without_indices(name), leaves_.size()).first->second;
+      leaves_.push_back({static_cast<std::size_t>(offset), leaf.size, leaf.kind == Leaf::Kind::real, list});
     }};
     Model::visit_values(state, named);
+  }
+  static std::string without_indices(std::string name) {
+    for (std::size_t start; (start = name.find('[')) != std::string::npos;) name.erase(start, name.find(']', start) - start + 1);
+    return name;
   }
   static std::uint64_t bits(const Place& leaf, const State& state) {
     std::uint64_t bits = 0;
