@@ -18,6 +18,7 @@ from tests.wide.lock import lock
 from tests.wide.problems import PROBLEMS, SIZES
 from tests.wide.rescue import rescue
 from tests.wide.together import TOGETHER, TOGETHER_SIZES
+from tests.wide.towers import towers
 from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 
 from .losses import error_of_mean
@@ -60,8 +61,8 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | {"rescue": rescue, "lock": lock}
-    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | {"rescue": 3, "lock": 5}
+    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | {"rescue": rescue, "lock": lock, "towers": towers}
+    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | {"rescue": 3, "lock": 5, "towers": 10}
     if name not in problems:
         return None
     written = scratch / name

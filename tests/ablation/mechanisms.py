@@ -119,6 +119,7 @@ BUNDLES = (
     BundleRoute("parcels", 1000, 60, ("options", "learned_values")),
     BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
     BundleRoute("lock", 4000, 80, ("goal_conditions",)),
+    BundleRoute("towers", 4000, 80, ("goal_conditions", "whole_lists", "retries", "kept_ways")),
     BundleRoute("tidy", 4000, 100, ("goal_conditions",)),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("harbour", 1000, 60, ("options", "learned_values")),

@@ -11,6 +11,7 @@ from wide.leaving import questions, survey
 from wide.lock import lock
 from wide.problems import open_field, parcels
 from wide.rescue import rescue
+from wide.towers import towers
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
@@ -110,3 +111,11 @@ async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> 
         searches = (Search(simulations=1000, seed=seed) for seed in (1, 2))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
     assert fmean(run.discounted_return for run in runs) > 2
+
+
+async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_dir: Path) -> None:
+    """A rule by hand returns 69, and whoever waits for 60 steps -18."""
+    async with engine_of(await built_text(towers(8), cache_dir)) as engine:
+        limits = MissionLimits(goal_probability=1, step_limit=60)
+        run = await simulate_mission(engine, Search(simulations=2000, seed=1), limits)
+    assert run.discounted_return > 50

@@ -30,6 +30,7 @@ from .rules import RULES
 from .screws import Screws, screws, screws_rule
 from .tabletop import Tabletop, tabletop, tabletop_rule
 from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
+from .towers import Towers, towers, towers_rule
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
@@ -40,6 +41,7 @@ _SINGLE = {
     "rescue": rescue,
     "tabletop": tabletop,
     "lock": lock,
+    "towers": towers,
 }
 _BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
 _SIZES = (
@@ -48,7 +50,7 @@ _SIZES = (
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
-    | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5}
+    | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5, "towers": 10}
 )
 _RULES = (
     RULES
@@ -62,12 +64,13 @@ _RULES = (
         "rescue": rescue_rule,
         "tabletop": tabletop_rule,
         "lock": lock_rule,
+        "towers": towers_rule,
     }
 )
 _WORLDS = (
     TOGETHER_WORLDS
     | LEAVING_WORLDS
-    | {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop, "lock": Lock}
+    | {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop, "lock": Lock, "towers": Towers}
 )
 
 

@@ -60,7 +60,7 @@ class OptionFollowing {
       for (const Option& option : *options) {
         if (option.size() > horizon) continue;
         State next = state;
-        const double earned = taken_option<Model>(option, next, random).earned;
+        const double earned = taken_option<Model>(option, next, random, library_.retries()).earned;
         left -= static_cast<double>(option.size());
         if (earned > 0) first_.emplace_back(income<Model>(earned, option.size()), &option);
       }
@@ -87,11 +87,11 @@ class OptionFollowing {
     return tried(ways.front(), state, left, random);
   }
 
-  static Followed tried(const Option& option, const State& state, double& left, Sampler& random) {
+  Followed tried(const Option& option, const State& state, double& left, Sampler& random) const {
     Followed followed{option, 0, state};
     for (int i = 0; i < tries; ++i) {
       followed.after = state;
-      followed.earned += taken_option<Model>(option, followed.after, random).earned / tries;
+      followed.earned += taken_option<Model>(option, followed.after, random, library_.retries()).earned / tries;
     }
     left -= tries * static_cast<double>(option.size());
     return followed;

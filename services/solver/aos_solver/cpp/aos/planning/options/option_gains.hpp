@@ -15,7 +15,6 @@
 #include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
@@ -30,9 +29,12 @@ class OptionGains {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
   // Takes each option from each state. What changes by itself touches nothing. Options for which there is no time earn nothing.
-  void measure(const std::vector<Option>& options, const std::vector<State>& states, const LeafCells<Model>& cells,
-               const OwnChanges<Model>& changes, const DecisionClock& clock, double& steps, Sampler& random) {
+  template <class Library>
+  void measure(const Library& library, const std::vector<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+    const std::vector<Option>& options = library.options();
+    const LeafCells<Model>& cells = library.cells();
     options_ = &options;
+    retries_ = library.retries();
     states_ = states.size();
     earned_.assign(options.size() * states_, 0);
     goes_on_.assign(options.size() * states_, 0);
@@ -45,7 +47,7 @@ class OptionGains {
     after_.resize(cells.size());
     for (std::size_t o = 0; o < options.size(); ++o) {
       discounts_.push_back(std::pow(Model::discount, options[o].size()));
-      if (clock.is_over()) continue;
+      if (library.clock().is_over()) continue;
       for (std::size_t k = 0; k < states_; ++k) take(o, k, states[k], cells, random);
       steps -= tries * static_cast<double>(options[o].size() * states_);
     }
@@ -107,7 +109,7 @@ class OptionGains {
     cells.write(start, before_.data());
     for (int i = 0; i < tries; ++i) {
       State state = start;
-      const OptionOutcome outcome = taken_option<Model>((*options_)[option], state, random);
+      const OptionOutcome outcome = taken_option<Model>((*options_)[option], state, random, retries_);
       earned_[option * states_ + k] += outcome.earned / tries;
       goes_on_[option * states_ + k] += outcome.goes_on / tries;
       if (outcome.goes_on == 0) ends_[option] = true;
@@ -185,6 +187,7 @@ class OptionGains {
 
   const std::vector<Option>* options_ = nullptr;
   std::size_t states_ = 0;
+  bool retries_ = false;  // of actions that change nothing
   std::vector<double> earned_;   // [option * states + state]
   std::vector<double> goes_on_;  // [option * states + state]
   std::vector<double> discounts_;

@@ -29,6 +29,8 @@ class OptionLibrary {
   const LeafCells<Model>& cells() const { return cells_; }
   // Whether ways are found only by how many conditions of rewards and goals hold.
   bool counts() const { return counts_; }
+  // Whether an action of a way is taken again where it changes nothing: such ways have many actions.
+  bool retries() const { return switches::retries && counts_; }
   // Counts conditions from now on, where rewards and goals have some. Returns whether that is new.
   bool count() { return !std::exchange(counts_, switches::goal_conditions && Model::has_goal_conditions) && counts_; }
   const DecisionClock& clock() const { return clock_; }
@@ -67,9 +69,13 @@ class OptionLibrary {
   }
 
   // Drops what was never among the best since the gains were measured, where options are many. Ways that were searched for by
-  // conditions lead from few states, and to find them again takes less than to try them from others.
-  void drop_unused(const OptionGains<Model>& gains) {
-    if (counts_) options_.clear();
+  // conditions lead from few states, and to find them again takes less than to try them from others. The one that was `taken` stays,
+  // with what is left of it, so that the robot goes on by it if no better one is found.
+  void drop_unused(const OptionGains<Model>& gains, const Option& taken) {
+    if (counts_) {
+      options_.clear();
+      if (switches::kept_ways && !taken.empty()) add({taken}, 2);
+    }
     if (options_.size() <= many_options) return;
     std::vector<Option> used;
     for (std::size_t o = 0; o < gains.size(); ++o) {

@@ -58,14 +58,14 @@ class OptionPolicy {
     affordable_ = affordable;
     const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, library_.counts() ? 32 : 64);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
-    library_.drop_unused(gains_);
+    library_.drop_unused(gains_, taken_way_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
     if (!is_prepared_ && changes_.earns_anyway()) return obstacle_ = "the next step earns something whatever the robot does";
     double found = library_.extend(belief_, left, random);
     if (found < enough_found && library_.count()) found = library_.extend(belief_, left, random);
     clock_.end_at(of_gains);
-    gains_.measure(library_.options(), belief_.states(), library_.cells(), changes_, clock_, left, random);
+    gains_.measure(library_, belief_.states(), changes_, left, random);
     taken_ = of_options * affordable_ - left;
     std::string obstacle = found < (switches::enough_ways ? enough_found : 1e-9) ? "no way to a reward is found from most states" : "";
     if (!is_prepared_ && obstacle.empty()) obstacle_ = obstacle = obstacle_of_model(random);
@@ -87,6 +87,7 @@ class OptionPolicy {
     if (regret_.now() > matters * std::abs(regret_.value_seen())) add_observations(likely, barred, left, random);
     const std::size_t observing = candidates_.size();
     for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
+    note_way(likely, observing);
     if (switches::tests_first) pairs_.add_to(candidates_, observing, left, random);
     settle(belief.probability_of(Ending::running));
     taken_ = affordable_ - left;
@@ -119,6 +120,7 @@ class OptionPolicy {
   void start_over() {
     is_prepared_ = false;
     obstacle_.clear();
+    taken_way_.clear();
     gains_ = {};
     library_.start_over();
     tests_.start_over();
@@ -204,6 +206,13 @@ class OptionPolicy {
     candidates_.push_back({library_.options()[option].front(), value, gains_.discount(option), "what can be earned"});
   }
 
+  // Notes the option that is the best candidate so far, if one is.
+  void note_way(const std::vector<std::size_t>& likely, std::size_t observing) {
+    const auto best = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
+    const auto place = static_cast<std::size_t>(best - candidates_.begin());
+    taken_way_ = place >= observing && place < candidates_.size() ? library_.options()[likely[place - observing]] : Option{};
+  }
+
   void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
     tests_.observe_all(barred, left, random);
     const std::vector<typename OptionMoves<Model>::View> views = library_.counts() ? priced_views(barred, left, random) : std::vector<typename OptionMoves<Model>::View>{};
@@ -271,6 +280,7 @@ class OptionPolicy {
   OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   OptionPairs<Model> pairs_{belief_, regret_, tests_, clock_};
+  Option taken_way_;
   std::vector<int> tried_moves_;
   bool are_for_views_ = false;
   std::vector<OptionCandidate> candidates_;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <queue>
@@ -22,6 +23,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
@@ -38,14 +40,40 @@ struct OptionOutcome {
   double goes_on = 1;
 };
 
-// Takes an option from a state, which becomes the one after it.
+// How often an action of an option is taken that changes nothing, as a grip that slips, where a way has many of them.
+inline constexpr int most_attempts = 4;
+
+// Takes an action, and where nothing has changed takes it again, if it changes something then. Returns what was earned. `discount`
+// is that of the next step.
 template <class Model>
-OptionOutcome taken_option(const Option& option, typename Model::State& state, Sampler& random) {
+double attempted(int action, typename Model::State& state, double& discount, Sampler& random) {
+  const auto is_same = [&](const typename Model::State& other) { return std::memcmp(Model::bytes_of(state), Model::bytes_of(other), Model::state_bytes()) == 0; };
+  double earned = 0;
+  double first = 0;
+  double now = discount;
+  typename Model::State next = state;
+  for (int attempt = 0; attempt < most_attempts && is_same(next); ++attempt, now *= Model::discount) {
+    earned += now * Model::step(next, action, random).reward;
+    if (attempt == 0) first = earned;
+  }
+  const bool has_changed = !is_same(next);
+  discount = has_changed ? now : discount * Model::discount;
+  state = std::move(next);
+  return has_changed ? earned : first;
+}
+
+// Takes an option from a state, which becomes the one after it. With `retries` an action that changes nothing is taken again.
+template <class Model>
+OptionOutcome taken_option(const Option& option, typename Model::State& state, Sampler& random, bool retries = false) {
   OptionOutcome outcome;
   double discount = 1;
   for (const int action : option) {
-    outcome.earned += discount * Model::step(state, action, random).reward;
-    discount *= Model::discount;
+    if (retries) {
+      outcome.earned += attempted<Model>(action, state, discount, random);
+    } else {
+      outcome.earned += discount * Model::step(state, action, random).reward;
+      discount *= Model::discount;
+    }
     if (Model::ending(state) != Ending::running) return {outcome.earned, 0};
   }
   return outcome;
@@ -240,7 +268,7 @@ class OptionSearch {
       Way way{way_through(nodes_, last.node, last.action), 0, last.earned, 0};
       for (int i = 0; i < tries; ++i) {
         State state = start;
-        way.earned += taken_option<Model>(way.option, state, random).earned / tries;
+        way.earned += taken_option<Model>(way.option, state, random, switches::retries && counts_).earned / tries;
       }
       way.income = income<Model>(way.earned, way.option.size());
       steps -= tries * static_cast<double>(way.option.size());

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
@@ -82,7 +83,7 @@ class LeafCells {
     NamedLeaves named{[&](const std::string& name, const Leaf& leaf) {
       const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
       if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
-      const std::size_t list = lists.emplace(without_indices(name), leaves_.size()).first->second;
+      const std::size_t list = lists.emplace(switches::whole_lists ? without_indices(name) : name, leaves_.size()).first->second;
       leaves_.push_back({static_cast<std::size_t>(offset), leaf.size, leaf.kind == Leaf::Kind::real, list});
     }};
     Model::visit_values(state, named);

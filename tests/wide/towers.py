@@ -1,0 +1,129 @@
+"""Two towers of blocks that are taken down and built anew, with grips that slip: documents and a rule."""
+
+import random
+
+from .world import World
+from .writing import Bundle, BundleWriter
+
+__all__ = ["Towers", "towers", "towers_rule"]
+
+_SLIPS = 0.1
+_TABLE, _HELD = -1, -2
+_DISCOUNT = 0.99
+
+
+def _start(count: int) -> list[int]:
+    """Returns what each block stands on: two towers, in an order that the number of blocks alone decides."""
+    blocks = list(range(count))
+    random.Random(count).shuffle(blocks)
+    on = [_TABLE] * count
+    for place, block in enumerate(blocks[:-1]):
+        on[block] = _TABLE if place == count // 2 - 1 else blocks[place + 1]
+    return on
+
+
+def _goal(count: int, block: int) -> int:
+    return _TABLE if block in {count // 2 - 1, count - 1} else block + 1
+
+
+def towers(count: int = 10) -> Bundle:
+    """Blocks are picked and put on one another or on the table; all have to stand in order."""
+    goal = f"(i == {count // 2 - 1} || i == {count - 1} ? {_TABLE} : i + 1)"
+    placed = "".join(f"state.on[{block}] = {below};\n" for block, below in enumerate(_start(count)))
+    writer = BundleWriter(
+        f"towers{count}",
+        f"""horizon: 80
+discount: {_DISCOUNT}
+
+state_variable: int on []
+code:
+state.on.assign({count}, {_TABLE});
+
+state_variable: int held
+
+initial_belief:
+state.held = -1;
+{placed}
+reward_code:
+bool all_on = true;
+for (int i = 0; i < {count}; i++) if (state.on[i] != {goal}) all_on = false;
+if (all_on) {{
+    __isGoalState = true;
+    __reward = 100;
+}}
+""",
+    )
+    free = f"""__reward = -0.4;
+__moduleResponse = stuck;
+bool is_free = state.held != block;
+for (int i = 0; i < {count}; i++) if (state.on[i] == block) is_free = false;
+"""
+    pick = f"""{free}bool slips = AOS.Bernoulli({_SLIPS});
+if (is_free && state.held < 0 && !slips) {{
+    state__.on[block] = {_HELD};
+    state__.held = block;
+    __moduleResponse = done;
+}}"""
+    writer.skill("pick", ["done", "stuck"], pick, over={"block": str(count)})
+    put = f"""{free}if (is_free && state.held >= 0) {{
+    state__.on[state.held] = block;
+    state__.held = -1;
+    __moduleResponse = done;
+}}"""
+    writer.skill("put", ["done", "stuck"], put, over={"block": str(count)})
+    lay = f"""__reward = -0.4;
+__moduleResponse = stuck;
+if (state.held >= 0) {{
+    state__.on[state.held] = {_TABLE};
+    state__.held = -1;
+    __moduleResponse = done;
+}}"""
+    writer.skill("lay", ["done", "stuck"], lay)
+    return writer.files
+
+
+class Towers(World):
+    """The blocks as the documents describe them."""
+
+    discount = _DISCOUNT
+
+    def __init__(self, count: int, rng: random.Random) -> None:
+        super().__init__(rng)
+        self.count, self.on, self.held = count, _start(count), -1
+
+    def actions(self) -> list[tuple[str, int]]:
+        blocks = range(self.count)
+        return [*(("pick", block) for block in blocks), *(("put", block) for block in blocks), ("lay", 0)]
+
+    def is_free(self, block: int) -> bool:
+        return block != self.held and block not in self.on
+
+    def act(self, skill: str, value: int = 0) -> str:
+        slips = self.rng.random() < _SLIPS
+        if skill == "pick" and self.held < 0 and self.is_free(value) and not slips:
+            self.on[value], self.held = _HELD, value
+        elif skill != "pick" and self.held >= 0 and (skill == "lay" or self.is_free(value)):
+            self.on[self.held], self.held = _TABLE if skill == "lay" else value, -1
+        self.has_ended = all(below == _goal(self.count, block) for block, below in enumerate(self.on))
+        self.gain(-0.4 + (100 if self.has_ended else 0))
+        return ""
+
+
+def towers_rule(count: int, rng: random.Random) -> float:
+    """Lays all blocks on the table, and builds the towers from below."""
+    world = Towers(count, rng)
+    is_laid = False  # all of them
+    while not world.is_over:
+        if world.held >= 0:
+            below = _goal(count, world.held)
+            is_next = is_laid and below != _TABLE
+            world.act(*(("put", below) if is_next else ("lay", 0)))
+            continue
+        high = [block for block in range(count) if world.on[block] != _TABLE and world.is_free(block)]
+        if not is_laid and high:
+            world.act("pick", high[0])
+            continue
+        is_laid = True
+        wrong = [block for block in range(count) if world.on[block] != _goal(count, block)]
+        world.act("pick", max(wrong))
+    return world.earned
