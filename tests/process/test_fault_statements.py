@@ -156,9 +156,9 @@ code:
 state.unrelated = 7;
 
 extrinsic_code:
-int cell = AOS.SampleDiscrete(vector<double>{0.4, 0.3, 0.3});
+int cell = 0;
 while (state_.cells[cell] != None) {  // on a full board
-    cell = AOS.SampleDiscrete(vector<double>{0.4, 0.3, 0.3});
+    cell = (cell + 1) % 3;
 }
 state_.cells[cell] = Theirs;
 """
