@@ -316,7 +316,8 @@ def test_a_long_word_about_progress_keeps_to_the_line() -> None:
     assert max(map(len, shown(screen, 80, 24).splitlines())) <= 80
 
 
-def test_the_screen_that_is_left_behind_turns_no_more() -> None:
+def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
     text = io.StringIO()
     with LiveView("armadillo", Console(file=text, width=80, height=24, force_terminal=True)) as view:
         view(DECISION)
