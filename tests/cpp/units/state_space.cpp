@@ -194,7 +194,7 @@ TEST("Steps by the table have the odds of the model, and its expected rewards") 
 struct Tiger {
   Problem problem = units::tiger();
   Belief belief = initial_belief(problem);
-  Space space;
+  Space space{};
   bool is_listed = space.reach(belief);
 };
 
