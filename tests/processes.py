@@ -16,6 +16,7 @@ __all__ = [
     "has_listener",
     "is_running",
     "kill",
+    "kill_engine",
     "until_ended",
     "until_taking_over",
 ]
@@ -55,6 +56,14 @@ async def until_ended(pids: list[int], timeout_s: float = HANG_S) -> None:
     async with asyncio.timeout(timeout_s):
         for pid in pids:
             await _until_one_ended(pid)
+
+
+async def kill_engine(pid: int | None) -> None:
+    """Kills the guard of an engine that runs, and returns once the engine has ended with it."""
+    assert pid is not None
+    children = descendants(pid)
+    os.kill(pid, signal.SIGKILL)
+    await until_ended(children)
 
 
 async def _until_one_ended(pid: int) -> None:

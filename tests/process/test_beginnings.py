@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from pathlib import Path
 
 import pytest
 from models import built_text, engine_of
-from processes import descendants, until_ended
+from processes import kill_engine
 
 from aos_language.load import load_files
 from aos_protocol.documents import Project
@@ -150,10 +148,7 @@ async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_p
         for _ in range(2):
             answer = await aside.condition(0.01)
             assert (answer.probability, answer.summary) == (0.0, before)
-            assert aside.pid is not None
-            children = descendants(aside.pid)
-            os.kill(aside.pid, signal.SIGKILL)
-            await until_ended(children)
+            await kill_engine(aside.pid)
             assert await aside.summary() == before
     finally:
         await aside.close()

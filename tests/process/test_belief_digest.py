@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from pathlib import Path
 
 import msgspec
 import pytest
 from mappings import mapping_text
 from models import built_text, engine_of
-from processes import descendants, until_ended
+from processes import kill_engine
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.belief_answers import ExportedBelief
@@ -49,10 +47,7 @@ async def take_step(engine: Engine, step: int) -> str:
 
 
 async def kill(engine: Engine) -> None:
-    assert engine.pid is not None
-    children = descendants(engine.pid)
-    os.kill(engine.pid, signal.SIGKILL)
-    await until_ended(children)
+    await kill_engine(engine.pid)
 
 
 @pytest.mark.parametrize("start", [DRAWN_START, LISTED_START], ids=["drawn", "exact"])

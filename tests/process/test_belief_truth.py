@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import random
-import signal
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from mappings import mapping_text
 from models import built_text, engine_of
-from processes import descendants, until_ended
+from processes import kill_engine
 
 from aos_solver.child.engine import Engine
 
@@ -260,10 +258,7 @@ async def test_what_has_not_been_observed_outlives_a_crash_and_a_change_of_engin
     async with engine_of(built) as first, engine_of(built) as second:
         for card in range(CARDS // 2):
             await turn(first, card)
-        assert first.pid is not None
-        children = descendants(first.pid)
-        os.kill(first.pid, signal.SIGKILL)
-        await until_ended(children)
+        await kill_engine(first.pid)
         for card in range(CARDS // 2, 3 * CARDS // 4):
             await turn(first, card)
         await second.import_belief(await first.export_belief())

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
-from processes import descendants, until_ended
+from processes import descendants, kill_engine, until_ended
 
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
@@ -163,9 +163,7 @@ async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_d
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
         for _ in range(3):
-            children = descendants(engine.pid)
-            os.kill(engine.pid, signal.SIGKILL)
-            await until_ended(children)
+            await kill_engine(engine.pid)
             assert await engine.summary() == before
 
 
@@ -200,10 +198,7 @@ async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_w
             return child
 
         monkeypatch.setattr(EngineChild, "start", start_and_kill)
-        assert engine.pid is not None
-        children = descendants(engine.pid)
-        os.kill(engine.pid, signal.SIGKILL)
-        await until_ended(children)
+        await kill_engine(engine.pid)
         assert await engine.summary() == before
         assert len(killed) == 3
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
 from mappings import mapping_text
 from models import built_text, engine_of
-from processes import descendants, until_ended
+from processes import kill_engine
 
 from aos_solver.child.engine import Engine
 from aos_solver.child.engine_child import ANSWER_LIMIT_BYTES
@@ -67,10 +65,7 @@ async def engine(cache_dir: Path) -> AsyncIterator[Engine]:
 async def test_a_killed_engine_comes_back_with_a_large_belief(engine: Engine) -> None:
     before = (await engine.update("read", "yes")).summary
     for _ in range(2):
-        assert engine.pid is not None
-        children = descendants(engine.pid)
-        os.kill(engine.pid, signal.SIGKILL)
-        await until_ended(children)
+        await kill_engine(engine.pid)
         after = await engine.summary()
         assert (after.states, after.error_bound) == (before.states, before.error_bound)
         assert after.entropy == pytest.approx(before.entropy)

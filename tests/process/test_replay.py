@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from pathlib import Path
 
 import msgspec
 import pytest
-from processes import descendants, until_ended
+from processes import kill_engine
 from study.played import Beside, Played, play
 
 from aos_language.load import read_bundle_files
@@ -38,10 +36,7 @@ def files_of(bundle: Path) -> dict[str, bytes]:
 
 async def kill_at_step_2(engine: Engine, step: int) -> None:
     if step == 2:
-        assert engine.pid is not None
-        children = descendants(engine.pid)
-        os.kill(engine.pid, signal.SIGKILL)
-        await until_ended(children)
+        await kill_engine(engine.pid)
 
 
 @pytest.mark.parametrize(

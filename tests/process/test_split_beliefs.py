@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import random
-import signal
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,7 @@ import pytest
 from mappings import mapping_text
 from models import built_text, engine_of
 from numpy.typing import NDArray
-from processes import descendants, until_ended
+from processes import kill_engine
 
 from aos_solver.child.engine import Engine
 
@@ -104,10 +102,7 @@ async def test_such_a_belief_is_the_same_after_a_kill(cache_dir: Path) -> None:
             for _ in range(3):
                 before = (await engine.update(*workshop.inspection())).summary
             if is_killed:
-                assert engine.pid is not None
-                children = descendants(engine.pid)
-                os.kill(engine.pid, signal.SIGKILL)
-                await until_ended(children)
+                await kill_engine(engine.pid)
                 back = await engine.summary()
                 assert (back.digest, back.effective_states) == (before.digest, before.effective_states)
             digests.append((await engine.update(*workshop.inspection())).summary.digest)
