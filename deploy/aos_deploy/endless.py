@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from aos_deploy.printing import count
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Diagnostic
 from aos_solver.building.build import BuiltModel
@@ -26,5 +27,6 @@ async def endless_findings(built: BuiltModel, engine: Engine) -> tuple[Diagnosti
 
 
 def _never_ends(loop: EndlessLoop) -> str:
-    steps = "1 simulated step" if loop.steps == 1 else f"{loop.steps} simulated steps"
-    return f"this loop never ends in {steps}, the first of them with {loop.state}"
+    return (
+        f"this loop never ends in {count(loop.steps, 'simulated step')}, the first of them with {loop.state}"
+    )

@@ -14,7 +14,7 @@ _HEADERS = {
         "partition prev_permutation remove remove_if replace replace_if reverse rotate search "
         "set_difference set_intersection set_union sort stable_sort transform unique upper_bound "
         "copy_backward copy_n equal_range fill_n find_end find_first_of generate_n is_heap is_partitioned "
-        "iter_swap lexicographical_compare make_heap max min minmax move_backward partial_sort_copy "
+        "iter_swap lexicographical_compare make_heap max min move_backward partial_sort_copy "
         "partition_copy partition_point pop_heap push_heap ranges remove_copy remove_copy_if replace_copy "
         "replace_copy_if reverse_copy rotate_copy search_n set_symmetric_difference sort_heap "
         "stable_partition swap_ranges unique_copy"
