@@ -5,46 +5,16 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-import msgspec
 import pytest
+from deploy_files import HEAD, findings, read
 
 from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file, without_a_robot
+from aos_deploy.deploy_file import check_endpoint, read_deploy_file, without_a_robot
 from aos_deploy.needed_here import check_needed_here
 from aos_deploy.own_programs import ReadyPart
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.readiness import misspelt_paths
 from aos_protocol.errors import DeployError
-from aos_runtime.adapters import AdapterSettings, Binding
-
-HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with a bundle of two skills and a world."""
-    (tmp_path / "bundle").mkdir()
-    for name in ("rover.ef", "drive.sd", "drive.am", "look.sd", "look.am"):
-        (tmp_path / "bundle" / name).write_text("")
-    (tmp_path / "room.yaml").write_text("")
-    return tmp_path
-
-
-def read(folder: Path, text: str) -> Deployment:
-    (folder / "rover.yaml").write_text(text)
-    return read_deploy_file(folder / "rover.yaml")
-
-
-def findings(folder: Path, text: str) -> list[str]:
-    """Line, column, code and message of everything wrong with a deploy file."""
-    with pytest.raises(DeployError) as caught:
-        read(folder, text)
-    assert caught.value.code == "AOS801"
-    return [
-        f"{finding.span.line}:{finding.span.column} {finding.code} {finding.message}"
-        + (f". {finding.hint}" if finding.hint else "")
-        for finding in caught.value.diagnostics
-    ]
 
 
 def test_what_is_not_said_has_its_default(folder: Path) -> None:
@@ -344,79 +314,6 @@ def test_only_endpoints_of_this_machine_are_taken() -> None:
             check_endpoint(bad)
 
 
-def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(folder / "cache"))
-    deployment = read(folder, f"{HEAD}watch: drop\nworld: room.yaml\nbind: {{/drive: pybullet}}\n")
-    programs = {program.name: program for program in programs_of_deployment(deployment)}
-
-    assert list(programs) == ["registry", "middleware", "pybullet", "solver"]
-    assert programs["registry"].settings == {"watch": str(folder / "drop")}
-    assert programs["middleware"].settings == {
-        "project": "rover",
-        "activation_timeout_s": 120.0,
-        "played": [],
-        "elsewhere": [],
-    }
-    adapter = msgspec.convert(
-        programs["pybullet"].settings | {"robot": "", "service": "", "endpoint": "", "run_dir": ""},
-        AdapterSettings,
-    )
-    assert adapter.adapter == "aos_skills.pybullet.adapter:PybulletAdapter"
-    assert adapter.options == {"world": str(folder / "room.yaml")}
-    assert adapter.bind == {"/drive": Binding()}
-    solver = programs["solver"].settings
-    assert solver["cache_dir"] == str(folder / "cache")
-    assert "time_s" not in solver
-    assert solver["goal_probability"] == 0.9
-
-
-def test_the_middleware_is_told_which_skills_are_played_by_their_documents(folder: Path) -> None:
-    deployment = read(folder, HEAD + 'bind: {/pick: model, /drive: external, "*": model}\n')
-    programs = {program.name: program for program in programs_of_deployment(deployment)}
-    assert programs["middleware"].settings["played"] == ["/pick", "*"]
-    assert programs["middleware"].settings["elsewhere"] == ["/drive"]
-
-
-def test_a_command_is_started_in_the_folder_of_the_deploy_file_or_of_its_host(folder: Path) -> None:
-    text = """\
-adapters: {near: {command: [./arm]}, far: {command: [./arm], host: robot@arm, folder: /opt/arm}}
-bind: {/pick: near, /place: far}
-"""
-    programs = {program.name: program for program in programs_of_deployment(read(folder, HEAD + text))}
-    assert (programs["near"].folder, programs["near"].host) == (str(folder), "")
-    assert (programs["far"].folder, programs["far"].host) == ("/opt/arm", "robot@arm")
-
-
-def test_adapters_get_their_paths_their_options_and_what_others_serve(folder: Path) -> None:
-    deployment = read(
-        folder,
-        HEAD
-        + """\
-adapters:
-  arm: {command: [./arm, --fast]}
-  base: external
-bind:
-  /pick: {arm: /grasp, fields: {x: goal.x, speed: 2}, result: {success: "result == 'true'"}}
-  drive: base
-  "*": pybullet
-""",
-    )
-    arm, base, world = deployment.adapters
-    assert arm.bind == {
-        "/pick": Binding(
-            target="/grasp",
-            fields={"x": "goal.x", "speed": "2"},
-            result={"success": "result == 'true'"},
-        )
-    }
-    assert (arm.is_command, arm.options) == (True, {"command": ["./arm", "--fast"]})
-    assert (base.name, base.is_process, base.bind) == ("base", False, {"/drive": Binding()})
-    assert (world.name, world.serves_others, world.elsewhere) == ("pybullet", True, ("/pick", "/drive"))
-    programs = {program.name: program for program in programs_of_deployment(deployment)}
-    assert "base" not in programs
-    assert programs["arm"].argv(Path("settings.json"))[-2:] == ["./arm", "--fast"]
-
-
 # --- a folder in place of the file ---------------------------------------------------------------------
 
 
@@ -452,80 +349,3 @@ def test_a_bundle_is_refused_with_the_deploy_file_beside_it(
 def test_a_folder_of_anything_else_is_refused_with_what_to_give(folder: Path) -> None:
     (folder / "empty").mkdir()
     assert "is a folder without a deploy file. Name a deploy file" in refusal(folder / "empty")
-
-
-def lines_of(folder: Path, text: str) -> list[int]:
-    """The lines at which something is wrong."""
-    return [int(found.partition(":")[0]) for found in findings(folder, HEAD + text)]
-
-
-def test_aliases_that_would_grow_without_end_are_refused_at_their_lines(folder: Path) -> None:
-    grown = "".join(f"  x{number}: &x{number} [{f'*x{number - 1},' * 9}]\n" for number in range(1, 60))
-    assert lines_of(folder, f"adapters:\n  x0: &x0 [1]\n{grown}")[0] == 5
-    assert lines_of(folder, "adapters: {x: &x [*x]}\n") == [4, 4]
-
-
-@pytest.mark.parametrize("nested", ["[" * 100_000, "{a: " * 2000, "[" * 40 + "]" * 40])
-def test_what_is_nested_without_end_is_refused_at_its_line(folder: Path, nested: str) -> None:
-    (found,) = findings(folder, f"{HEAD}adapters: {nested}\n")
-    assert found.startswith("4:")
-    assert "AOS104 nested in more than 32" in found
-
-
-@pytest.mark.parametrize("number", ["0x" + "f" * 6000, "9" * 6000, "-0b1" + "0" * 64, str(2**63)])
-def test_a_number_that_no_machine_has_is_refused_at_its_line(folder: Path, number: str) -> None:
-    for text in (f"mission: {{step_limit: {number}}}", f"mission: {{set: {{a: {number}}}}}"):
-        assert "4:" in findings(folder, f"{HEAD}{text}\n")[0][:2]
-
-
-def test_a_time_that_no_clock_has_is_refused(folder: Path) -> None:
-    (found,) = findings(folder, HEAD + "mission: {hold_s: 1e300}\n")
-    assert found == "4:19 AOS106 mission.hold_s is 1e+300; it must be a number of at most 1000000000"
-
-
-@pytest.mark.parametrize("character", ["\\0", "\\e", "\\x7f", "\\x9b", "\\u202e", "\\ud800"])
-@pytest.mark.parametrize(
-    "text", ['world: "a%sb"', 'runs: "a%sb"', '"a%sb": 1', 'programs: {sim: {command: ["a%sb"]}}']
-)
-def test_a_text_with_a_character_that_nothing_is_named_by_is_refused_at_its_line(
-    folder: Path, text: str, character: str
-) -> None:
-    found = findings(folder, HEAD + text % character + "\n")
-    assert any(one.startswith("4:") and "cannot have the character" in one for one in found)
-    assert all(one.isprintable() for one in found)
-
-
-def test_a_raw_control_character_is_refused_at_its_line(folder: Path) -> None:
-    assert findings(folder, HEAD + "runs: a\x1b[2J\n") == [
-        "4:0 AOS104 a text cannot have the character U+001B"
-    ]
-
-
-@pytest.mark.parametrize("name", ["x" * 10_000, "x/" * 3000, "loop", "loop/x"])
-def test_paths_that_no_file_has_are_no_files(folder: Path, name: str) -> None:
-    (folder / "loop").symlink_to("loop")
-    (found,) = findings(folder, HEAD.replace("[bundle]", f"[{name}]"))
-    assert "AOS101 there is no bundle folder" in found
-    assert len(found) < 400
-    assert lines_of(folder, f"world: {name}\nsolver: {{policy: {name}}}\n") == [4, 5]
-
-
-@pytest.mark.parametrize("expression", ["(" * 5000, "a{99999999999}", "["])
-def test_a_line_to_look_for_that_is_no_expression_is_refused(folder: Path, expression: str) -> None:
-    part = f"programs: {{sim: {{command: [a], ready: {{line: '{expression}'}}}}}}\n"
-    assert lines_of(folder, part) == [4]
-
-
-def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path) -> None:
-    (tmp_path / "rover.yaml").symlink_to("/dev/zero")
-    with pytest.raises(DeployError) as caught:
-        read_deploy_file(tmp_path / "rover.yaml")
-    assert "more than 1000000 bytes" in caught.value.diagnostics[0].message
-
-
-@pytest.mark.parametrize("name", ["x" * 10_000, "a\0b", "loop"])
-def test_a_deploy_file_that_cannot_be_is_not_there(tmp_path: Path, name: str) -> None:
-    (tmp_path / "loop").symlink_to("loop")
-    with pytest.raises(DeployError) as caught:
-        read_deploy_file(tmp_path / name)
-    assert len(str(caught.value)) < 1000

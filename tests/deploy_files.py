@@ -1,0 +1,31 @@
+"""Deploy files of a rover, written, read and refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.deploy_file import Deployment, read_deploy_file
+from aos_protocol.errors import DeployError
+
+__all__ = ["HEAD", "findings", "read"]
+
+HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
+
+
+def read(folder: Path, text: str) -> Deployment:
+    (folder / "rover.yaml").write_text(text)
+    return read_deploy_file(folder / "rover.yaml")
+
+
+def findings(folder: Path, text: str) -> list[str]:
+    """Line, column, code and message of everything wrong with a deploy file."""
+    with pytest.raises(DeployError) as caught:
+        read(folder, text)
+    assert caught.value.code == "AOS801"
+    return [
+        f"{finding.span.line}:{finding.span.column} {finding.code} {finding.message}"
+        + (f". {finding.hint}" if finding.hint else "")
+        for finding in caught.value.diagnostics
+    ]

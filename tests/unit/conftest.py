@@ -1,0 +1,17 @@
+"""Folders that unit tests of several files begin with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a bundle of two skills and a world."""
+    (tmp_path / "bundle").mkdir()
+    for name in ("rover.ef", "drive.sd", "drive.am", "look.sd", "look.am"):
+        (tmp_path / "bundle" / name).write_text("")
+    (tmp_path / "room.yaml").write_text("")
+    return tmp_path
