@@ -4,8 +4,6 @@ by hand.
 They keep their places, below `aos_deploy/share`, and `aos_deploy.shipped` finds them there as in a checkout.
 """
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

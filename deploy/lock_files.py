@@ -6,8 +6,6 @@ of wheels that AOS can run with: those for Linux with glibc on x86-64 and arm64,
 times as large.
 """
 
-from __future__ import annotations
-
 import argparse
 import re
 import sys

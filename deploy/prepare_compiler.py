@@ -4,8 +4,6 @@ Prints the compiler's version. Exit code 1 if there is no compiler, 2 if it cann
 the `ziglang` wheel also makes its C++ library, which takes a minute or two.
 """
 
-from __future__ import annotations
-
 import asyncio
 import os
 import subprocess

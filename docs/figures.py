@@ -6,8 +6,6 @@ takes some minutes, `performance` ten and `reliability` one, longer beside other
 changes no page.
 """
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys

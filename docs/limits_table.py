@@ -5,15 +5,11 @@ A line of limits.txt is what is limited, its place, its unit, and what is beyond
 that has moved is an error here, so that the page cannot tell an old one.
 """
 
-from __future__ import annotations
-
 import importlib
 import re
 from pathlib import Path
 
 import msgspec
-
-__all__ = ["limits_table", "value_at"]
 
 LIMITS = Path(__file__).with_name("limits.txt")
 ENGINE = Path(__file__).resolve().parents[1] / "services/solver/aos_solver/cpp/aos"

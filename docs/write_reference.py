@@ -5,8 +5,6 @@ not). In http-api.md, languages.md, limits.md and protocol.md the text between `
 `<!-- end -->` is replaced; the rest is written by hand.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import sys

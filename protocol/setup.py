@@ -6,8 +6,6 @@ last would win, and whichever is removed would take the other's files with it. S
 below `aos_adapter/`, and `aos-adapter.pth` makes them importable where nothing else provides them.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from setuptools import setup

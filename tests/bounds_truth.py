@@ -9,8 +9,6 @@ the best the first decision's plan is sure to give, in parts of what is between 
 where the exact value is known to a thousandth of that.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import subprocess
@@ -20,8 +18,6 @@ from pathlib import Path
 from exam.programs import built_program
 
 from aos_deploy.program import cache_dir
-
-__all__ = ["truth_program"]
 
 _SOURCE = Path(__file__).parent / "cpp" / "point_based" / "point_based_truth.cpp"
 

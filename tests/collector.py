@@ -1,7 +1,5 @@
 """A collector of OpenTelemetry's spans: a real server for OTLP over HTTP, in this process."""
 
-from __future__ import annotations
-
 import gzip
 import threading
 from collections.abc import Iterator
@@ -10,8 +8,6 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
 import pytest
-
-__all__ = ["Collected", "collector"]
 
 
 class Collected:

@@ -1,12 +1,8 @@
 """The builder of records of decisions for tests."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord
-
-__all__ = ["decision_record"]
 
 
 def decision_record(sequence: int, mission: str = "m", skill: str = "look", **others: Any) -> DecisionRecord:

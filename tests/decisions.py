@@ -8,8 +8,6 @@ A line is a decision of a simulated mission, with every number to its last bit, 
 version prints the same lines on every machine.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import sys

@@ -1,15 +1,11 @@
 """Deploy files of a rover, written, read and refused."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
 
 from aos_deploy.deploy_file import Deployment, read_deploy_file
 from aos_protocol.errors import DeployError
-
-__all__ = ["HEAD", "findings", "read"]
 
 HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
 

@@ -1,7 +1,5 @@
 """Uses that follow a model, or another one, for the tests of drift: `python -m tests.drift_truth`."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Mapping
 
@@ -17,8 +15,6 @@ from aos_protocol.messages import (
     PredictedObservation,
 )
 from aos_solver.mission.drift import after_use, begun, drifts
-
-__all__ = ["Odds", "alarm_of", "silent"]
 
 Odds = Mapping[str, float]
 """The probability of each response."""

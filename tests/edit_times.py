@@ -9,8 +9,6 @@ memory. The engine is compiled before, as set-up leaves it. The last column is t
 but for the engine's, which other work on the machine lengthens less.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import itertools

@@ -3,15 +3,11 @@
 python tests/engine_checks.py    compiles it into the cache of the tests: the better part of a minute
 """
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 
 from exam.programs import built_program
 from kept_cache import kept_cache
-
-__all__ = ["UNITS", "engine_checks"]
 
 UNITS = Path(__file__).parent / "cpp" / "units"
 _TABLES = Path(__file__).parent / "exam" / "cpp"

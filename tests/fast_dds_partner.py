@@ -4,8 +4,6 @@ It ends with 0 if each heard the other. It is a process of its own, as an adapte
 done with Cyclone DDS before changes what it finds.
 """
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from collections.abc import AsyncIterator

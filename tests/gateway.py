@@ -1,7 +1,5 @@
 """A gateway as a process, requests to it, and small missions for it to show."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -15,19 +13,6 @@ from typing import Any, NamedTuple
 
 from mappings import mapping_text
 from processes import COMMAND_S, HANG_S
-
-__all__ = [
-    "Answer",
-    "Gateway",
-    "environment",
-    "gateway",
-    "played",
-    "running",
-    "slow_deploy_file",
-    "slow_system",
-    "worn_system",
-    "write_slow_tiger",
-]
 
 BIN = Path(sys.executable).parent
 ROOT = Path(__file__).resolve().parents[1]

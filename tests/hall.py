@@ -1,15 +1,11 @@
 """A hall with a cat: documents that change while a mission runs, in small."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from mappings import mapping_text
 
 from aos_protocol.messages import Marginal
 from aos_solver.mission.past import Evidence, Past
-
-__all__ = ["HALL", "changed", "looked", "marginal", "past_of", "with_bell", "with_peek"]
 
 HALL = {
     "hall.ef": """project: hall

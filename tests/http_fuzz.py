@@ -7,8 +7,6 @@ mission that is over, and then about one that waits for its robot. Requests are 
 the names of the missions. Exit code 1: an answer was another one.
 """
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys
@@ -19,8 +17,6 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 from gateway import Gateway, gateway, played, slow_system  # noqa: E402
-
-__all__ = ["fuzz"]
 
 _CHECKS = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance"
 # Nothing is learned from answers: they name times and processes, and the next requests would depend on them.

@@ -1,15 +1,11 @@
 """AOS installed from its wheel, as a user has it: commands in an environment that knows no checkout."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
 import sys
 import venv
 from pathlib import Path
-
-__all__ = ["SIMULATOR", "Installation", "built_wheel", "install", "link_packages"]
 
 SIMULATOR = ("pybullet", "PIL")
 """The beginnings of what the extra `sim` adds to the packages."""

@@ -1,7 +1,5 @@
 """The values that the JSON reader has read, as Python's own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_language.reading.json_text import (
@@ -12,8 +10,6 @@ from aos_language.reading.json_text import (
     JsonString,
     JsonValue,
 )
-
-__all__ = ["plain"]
 
 
 def plain(value: JsonValue | None) -> Any:

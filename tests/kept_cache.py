@@ -1,14 +1,10 @@
 """The folder in which compiled models are kept from one run of the tests to the next."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 from pathlib import Path
 
 from aos_deploy.program import cache_dir as user_cache_dir
-
-__all__ = ["kept_cache", "link_engines"]
 
 _CACHE = Path(os.environ.get("AOS_TEST_CACHE", Path(__file__).resolve().parents[1] / ".compiled"))
 """The checkout may be another user's."""

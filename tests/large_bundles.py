@@ -4,8 +4,6 @@ python tests/large_bundles.py: how long they take to check, to build and to upda
 compiled before, as set-up does it.
 """
 
-from __future__ import annotations
-
 import asyncio
 import sys
 import time
@@ -16,8 +14,6 @@ from models import built_text, engine_of
 
 from aos_deploy.program import cache_dir
 from aos_language.load import load_files
-
-__all__ = ["long_array", "many_variables"]
 
 _VALUES = {"int": "7", "bool": "true", "double": "0.5", "Level": "High", "string": '"a"', "Cup": "Cup{true}"}
 _TYPES = tuple(_VALUES)

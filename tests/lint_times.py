@@ -6,8 +6,6 @@ Models are compiled anew, and the engine once before, as set-up does it. Each li
 the command with all its processes, the real time, and what was told first.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import os

@@ -7,8 +7,6 @@ the solver does. Another process joins late and reads all. Growth is the peak of
 first question.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import os

@@ -1,7 +1,5 @@
 """The directory of a run with a journal of any length, as a mission of many steps leaves it."""
 
-from __future__ import annotations
-
 import random
 from pathlib import Path
 
@@ -20,8 +18,6 @@ from aos_protocol.messages import (
     PredictedObservation,
 )
 from aos_runtime.journal import Journal
-
-__all__ = ["write_long_run"]
 
 SKILLS = ("look", "go(to=hall)", "go(to=lab)", "pick", "put", "wait")
 PLACES = ("hall", "lab", "yard", "office")

@@ -5,14 +5,10 @@ bodies there are draws whose odds depend on the others, and further loops. The c
 of an absorbing chain over the numbers at its head, by fractions.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable
 from fractions import Fraction
 from random import Random
-
-__all__ = ["loop_program", "solved"]
 
 Numbers = tuple[int, ...]
 Odds = dict[Numbers, Fraction]

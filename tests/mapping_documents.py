@@ -1,7 +1,5 @@
 """Abstraction mappings for tests, written as a user writes them and read by the registry's reader."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from textwrap import dedent
 

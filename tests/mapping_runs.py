@@ -1,15 +1,11 @@
 """One activation of a generated mapping, in this process."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
 from aos_middleware.emit import EmittedMapping
 from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
 from aos_middleware.worker import LoadedMapping
-
-__all__ = ["HEAD", "fields", "loaded", "observed"]
 
 HEAD = """\
 project: garden

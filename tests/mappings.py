@@ -1,10 +1,6 @@
 """The builder of abstraction mappings for tests, in the words that a user writes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-
-__all__ = ["mapping_of_model", "mapping_text"]
 
 
 def mapping_text(

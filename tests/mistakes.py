@@ -5,8 +5,6 @@ python tests/mistakes.py [--json]
 Prints in how many cases file and line are right, in how many the column is too, and every case that is not.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import re
@@ -19,8 +17,6 @@ import msgspec
 
 from aos_language.load import load_files, read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Span
-
-__all__ = ["Mistake", "Verdict", "judged", "mistakes"]
 
 ROOT = Path(__file__).resolve().parents[1]
 MARK = "«"

@@ -1,7 +1,5 @@
 """Compiled models for tests: a bundle or a text becomes an engine, from one cache."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -10,8 +8,6 @@ from aos_language.load import load_bundle, load_files
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, ImpossiblePolicy
-
-__all__ = ["built_bundle", "built_bundles", "built_text", "engine_of"]
 
 
 async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:

@@ -1,7 +1,5 @@
 """The page's sources with their libraries, where node is there to fetch them."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil
@@ -10,8 +8,6 @@ from pathlib import Path
 
 import pytest
 from processes import COMMAND_S
-
-__all__ = ["installed_sources"]
 
 
 def installed_sources(root: Path, cache: Path) -> Path:

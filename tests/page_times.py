@@ -6,8 +6,6 @@ gateway's and the machine's, the rest is the browsers' own. The processor time o
 what a decision costs. Then a mission of 1,000 steps is loaded anew, some times.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -7,8 +7,6 @@ makes, with the belief update for what came back: the model cannot hold that imp
 bundle does not come through.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json
@@ -25,8 +23,6 @@ from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import AosError
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-
-__all__ = ["Played", "bundles_in", "play_bundle"]
 
 
 class Played(msgspec.Struct, kw_only=True):

@@ -1,25 +1,11 @@
 """Looking at other processes: which are there, which have gone, who listens."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal
 import time
 from contextlib import suppress
 from pathlib import Path
-
-__all__ = [
-    "COMMAND_S",
-    "HANG_S",
-    "descendants",
-    "has_listener",
-    "is_running",
-    "kill",
-    "kill_engine",
-    "until_ended",
-    "until_taking_over",
-]
 
 HANG_S = 120.0
 """Tests wait this long for one event, which takes a second on an idle machine: only a hang takes longer."""

@@ -4,14 +4,10 @@ A model has the names of the engine's actions and gives a step as (probability, 
 a next state of None is the end.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Iterator
 from itertools import product
 from math import hypot
 from typing import Any, Protocol, TypeVar
-
-__all__ = ["MODELS", "Belief", "Model", "expected_reward", "initial_belief", "observed"]
 
 S = TypeVar("S", bound=Hashable)
 

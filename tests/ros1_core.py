@@ -1,7 +1,5 @@
 """A real roscore on loopback, for the tests of ROS 1; they skip where Debian's packages are not installed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import socket
@@ -17,8 +15,6 @@ import pytest
 
 from aos_runtime.children import guarded
 from aos_runtime.parent import PARENT_VARIABLE
-
-__all__ = ["PYTHON", "roscore", "skip_without_ros1"]
 
 PYTHON = "/usr/bin/python3"
 START_S = 120.0

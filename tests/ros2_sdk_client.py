@@ -5,8 +5,6 @@
 Prints whether the drive succeeded, and the number of joint angles in the first message.
 """
 
-from __future__ import annotations
-
 import sys
 import threading
 from typing import Any

@@ -6,8 +6,6 @@ Serves /sdk/add_two_ints. What is published on /to_sdk comes back on /from_sdk i
 `call A B` has it call /aos/add_two_ints and publish the sum.
 """
 
-from __future__ import annotations
-
 import sys
 import threading
 from typing import Any

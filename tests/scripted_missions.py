@@ -1,7 +1,5 @@
 """Missions of the loop with a real engine, and a robot that the test scripts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from models import engine_of
@@ -16,11 +14,6 @@ from aos_solver.mission.loop import Mission
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
-
-__all__ = [
-    "Clock", "Robot", "Surroundings", "breaking", "hears_left", "jammed", "observed", "run_mission",
-    "timed_out",
-]  # fmt: skip
 
 Robot = Callable[[Activate], Outcome]
 

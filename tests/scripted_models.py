@@ -1,7 +1,5 @@
 """Emitted models without the engine: a test gives the draws and sees what every step does."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import re
@@ -22,16 +20,6 @@ from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import find_compiler
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
-
-__all__ = [
-    "Played",
-    "ScriptedModel",
-    "bundle_project",
-    "json_text",
-    "lowered",
-    "scripted",
-    "text_project",
-]
 
 _DRIVER = Path(__file__).parent / "cpp" / "scripted"
 _OPTIONS = ("-O0", "-DAOS_QUICK")

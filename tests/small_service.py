@@ -1,7 +1,5 @@
 """A real service, small: `python -m small_service SETTINGS.json`, which behaves as its settings say."""
 
-from __future__ import annotations
-
 import asyncio
 import signal
 import sys

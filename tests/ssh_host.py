@@ -4,8 +4,6 @@ The server listens on loopback and knows one key, made for the test. The program
 PATH tells the real one where all that is.
 """
 
-from __future__ import annotations
-
 import getpass
 import os
 import shutil
@@ -18,9 +16,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from processes import HANG_S
-
-__all__ = ["refusing_ssh", "slow_stand_in", "ssh_server", "stand_in"]
-
 
 # As sshd it ends the command's input when it is ended, and nothing else of it.
 STAND_IN = """#!{python}

@@ -6,8 +6,6 @@ Measures three states of the cache of compiled models: empty; with the engine, a
 model too. Seconds count from the start of the process; `ready` is when all services were.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -6,8 +6,6 @@ decisions were made after a hold was answered. Exit code 1: a decision was made 
 longer than a second.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import random

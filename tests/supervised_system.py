@@ -1,7 +1,5 @@
 """A supervised system of small real processes on a real bus."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -19,8 +17,6 @@ from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
 from aos_runtime.lifecycle import root_cause
 from aos_runtime.service_settings import ServiceSettings
-
-__all__ = ["TESTS", "System", "command", "small"]
 
 TESTS = Path(__file__).parent
 

@@ -3,8 +3,6 @@
 The planner decides as in a mission, with the shipped budget. The other player need not be the documents' one.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import random

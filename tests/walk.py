@@ -7,8 +7,6 @@ A comment before a block says what it is: `run`, `file: PATH`, `run in the backg
 `run when the mission has ended`.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import signal
@@ -18,8 +16,6 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple, Self
-
-__all__ = ["Step", "Walk", "steps_of"]
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "tutorial.md"
 PATIENCE_S = 900.0

@@ -3,8 +3,6 @@
 A filter of system calls answers as such a kernel does, here and in all that the command starts.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import sys

@@ -25,8 +25,6 @@ from aos_lab.trials.setting import deployment_of, world_deployment_of
 from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine
 
-__all__ = ["Wrong", "WrongRobot", "tried_by_model", "tried_in_physics", "wrong_robots"]
-
 
 class WrongRobot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A robot of `wrong_robots.yaml`; see its head."""

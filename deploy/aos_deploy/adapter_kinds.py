@@ -3,8 +3,6 @@
 A package adds a kind by an entry point of the group `aos.adapters`, whose object is an adapter's class.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from importlib.metadata import entry_points
 from importlib.util import find_spec
@@ -13,8 +11,6 @@ import msgspec
 
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import Extra, pip_install
-
-__all__ = ["COMMAND", "EXTERNAL", "MODEL", "PYTHON", "Kind", "adapter_kinds", "check_installed"]
 
 
 class Kind(msgspec.Struct, frozen=True, kw_only=True):

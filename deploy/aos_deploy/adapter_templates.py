@@ -1,7 +1,5 @@
 """An adapter to start from, made for a bundle: a deploy file, and a program that serves its paths."""
 
-from __future__ import annotations
-
 import re
 from importlib.resources import files
 from pprint import pformat
@@ -11,8 +9,6 @@ from typing import Any
 from aos_protocol.codec import PROTOCOL_VERSION
 from aos_protocol.documents import AbstractionMapping, LocalSource, Project
 from aos_skills.ros.documented import documented
-
-__all__ = ["KINDS", "ROS_KINDS", "adapter_files"]
 
 KINDS = ("model", "python", "command", "external", "class", "ros2", "dds", "ros1")
 

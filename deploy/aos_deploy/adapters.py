@@ -1,7 +1,5 @@
 """The deploy file's `adapters:` and `bind:`: which adapters there are, and what each of them serves."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -17,8 +15,6 @@ from aos_protocol.access import ADAPTER, OPERATOR, WATCHER, Party
 from aos_protocol.diagnostics import Span
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
-
-__all__ = ["EVERYTHING_ELSE", "SPANS", "TAKEN", "AdapterPlan", "played_by_model", "read_adapters"]
 
 EVERYTHING_ELSE = "*"
 

@@ -1,7 +1,5 @@
 """The engine of a bundle, for commands that need no robot."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -18,8 +16,6 @@ from aos_protocol.errors import DocumentError, ModelError
 from aos_solver.building.build import BuildKind
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-
-__all__ = ["engine_of_bundle"]
 
 
 @asynccontextmanager

@@ -1,7 +1,5 @@
 """The documents of a deployment's bundles."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,16 +17,6 @@ from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import DeployError, DocumentError
-
-__all__ = [
-    "BundledFiles",
-    "Planned",
-    "files_of_bundle",
-    "files_of_bundles",
-    "planned_of",
-    "project_of",
-    "with_mission",
-]
 
 
 class BundledFiles(msgspec.Struct, frozen=True):

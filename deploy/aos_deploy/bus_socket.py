@@ -1,7 +1,5 @@
 """The place of the bus: a Unix socket that only the user of the run can reach."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import re
@@ -11,8 +9,6 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-
-__all__ = ["SOCKET", "place_of_socket", "remove_left_sockets", "remove_socket"]
 
 SOCKET = "bus"
 """The name of the socket in the run directory."""

@@ -1,7 +1,5 @@
 """The command line: puts the sub-commands together, and turns faults into one message and an exit code."""
 
-from __future__ import annotations
-
 import errno
 import os
 import sys
@@ -16,8 +14,6 @@ from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, Version
 from aos_deploy.terminal import write_what_fits
 from aos_protocol.errors import AosError
-
-__all__ = ["aos_app", "main", "up_main"]
 
 _COMMANDS = {
     "aos_deploy.commands.up": ("up",),

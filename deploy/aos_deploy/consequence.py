@@ -1,7 +1,5 @@
 """The consequence of a program that ends by itself: started again, given up, ignored, or the run ends."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Iterable
 
@@ -14,8 +12,6 @@ from aos_protocol.errors import AosError
 from aos_runtime.children import Child
 from aos_runtime.guard import NOT_STARTED
 from aos_runtime.lifecycle import STORAGE_STATUS
-
-__all__ = ["STARTED_AGAIN", "THE_RUN_ENDS", "RunningProgram", "consequence", "fatal_end"]
 
 STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
 """The consequences of a process that ends by itself."""

@@ -1,7 +1,5 @@
 """The mission's constraints: from the deploy file, or an option, to the project that they are about."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -12,8 +10,6 @@ from aos_language.check.constraints import check_constraints
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint, Project, Snippet
 from aos_protocol.errors import DeployError
-
-__all__ = ["OPTION", "constrained", "constraint_of_option", "snippet_of"]
 
 OPTION = "--never"
 """Constraints are written `PROBABILITY: EXPRESSION` there; it is also the place of what is wrong with one."""

@@ -4,8 +4,6 @@ One YAML file, read and checked as a whole: everything wrong with it is reported
 its line and column. Paths in it are relative to its own folder.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -29,20 +27,6 @@ from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MAX_HORIZON, Constraint, MissionValue
 from aos_protocol.errors import DeployError
-
-__all__ = [
-    "BusPart",
-    "ConstraintPart",
-    "DeployFile",
-    "Deployment",
-    "MissionPart",
-    "SkillPart",
-    "SolverPart",
-    "SpansPart",
-    "check_endpoint",
-    "read_deploy_file",
-    "without_a_robot",
-]
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]

@@ -1,7 +1,5 @@
 """A folder where a deploy file is expected: the one deploy file in it, or what to give in its place."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,8 +8,6 @@ from aos_deploy.named_paths import absolute, is_folder, is_there, named
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
-
-__all__ = ["deploy_file_at", "deploy_files_in"]
 
 _SUFFIXES = (".yaml", ".yml")
 

@@ -1,7 +1,5 @@
 """The sequential tests of skills over the missions of several runs, one fold for each model."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -10,8 +8,6 @@ import msgspec
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_protocol.messages import DecisionRecord, DriftTest, DriftTests
 from aos_solver.mission.drift import DRIFT, after_use
-
-__all__ = ["ModelTests", "drift_of_runs"]
 
 
 class ModelTests(msgspec.Struct):

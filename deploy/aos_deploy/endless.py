@@ -1,15 +1,11 @@
 """Loops of document code that no draw can end: told as warnings, with a state and how often."""
 
-from __future__ import annotations
-
 from aos_deploy.printing import count
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Diagnostic
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EndlessLoop
 from aos_solver.child.engine import Engine
-
-__all__ = ["endless_findings"]
 
 _HINT = (
     "Such a step ends the mission as a failure. Let the loop look first whether it can end, or raise the "

@@ -1,7 +1,5 @@
 """The endpoint of a system: held by one start alone, before any of its processes runs."""
 
-from __future__ import annotations
-
 import random
 import socket
 from collections.abc import Iterator
@@ -9,8 +7,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from aos_protocol.errors import BusError
-
-__all__ = ["hold_endpoint"]
 
 _PORT_RANGE = Path("/proc/sys/net/ipv4/ip_local_port_range")
 _LOWEST_PORT = 20_000

@@ -1,15 +1,11 @@
 """The events that aos-up tells while a mission runs: to the live view, as plain lines, or as JSON."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 import msgspec
 
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
-
-__all__ = ["Event", "Report", "ServiceChanged", "Told", "event_json"]
 
 
 class ServiceChanged(msgspec.Struct, frozen=True):

@@ -1,13 +1,9 @@
 """The exit codes of aos-up and aos: one number that says what happened."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionState
-
-__all__ = ["EXIT_CODES_TEXT", "ExitCode", "exit_code_of_ending", "exit_code_of_error", "exit_code_of_mission"]
 
 
 class ExitCode(IntEnum):

@@ -1,14 +1,10 @@
 """The text of a fault at the terminal."""
 
-from __future__ import annotations
-
 import typer
 
 from aos_protocol.diagnostics import render
 from aos_protocol.errors import AosError
 from aos_protocol.spelling import printable
-
-__all__ = ["print_fault"]
 
 _MOST = 200
 """So many diagnostics are printed: a file of another form has one in each line."""

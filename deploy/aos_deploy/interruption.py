@@ -3,8 +3,6 @@
 It also ends in order where nobody reads any more what it tells, as in `aos-up | head`.
 """
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal
@@ -12,8 +10,6 @@ import sys
 from typing import Protocol
 
 from aos_deploy.events import Event, Report
-
-__all__ = ["Stoppable", "run_until_interrupted", "told_while_read"]
 
 ECHO_S = 0.3
 _STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)

@@ -4,8 +4,6 @@ A run is noted while it lasts, in $AOS_RUNNING_DIR or `running` in the cache dir
 and does not run was killed.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -15,8 +13,6 @@ from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.program import cache_dir
 from aos_deploy.run_directory import LATEST, RunDirectory
 from aos_protocol.errors import BusError, DeployError
-
-__all__ = ["RUNS", "chosen_run", "chosen_runs", "living_run", "living_runs", "noted", "runs_here"]
 
 RUNS = Path("runs")
 """Commands look for run directories here unless told otherwise, or in `runs_here`."""

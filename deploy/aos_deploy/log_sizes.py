@@ -1,12 +1,8 @@
 """The logs of a run, kept from filling the disk by a program that prints without end."""
 
-from __future__ import annotations
-
 import asyncio
 from contextlib import suppress
 from pathlib import Path
-
-__all__ = ["keep_logs_short", "shorten", "shorten_all"]
 
 LOG_BYTES = 256 * 1024**2
 """A log that has become longer is cut."""

@@ -1,7 +1,5 @@
 """One run of a system: services up, documents in, the mission to its end, everything down."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from contextlib import aclosing
@@ -41,8 +39,6 @@ from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 from aos_runtime.steering import start_mission
-
-__all__ = ["MissionRun"]
 
 _END_NOTICE_S = 5.0
 CAUSE_NOTICE_S = 0.5

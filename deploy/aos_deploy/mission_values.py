@@ -1,7 +1,5 @@
 """The values of mission parameters: from the deploy file, or an option, to the project that they are for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -20,8 +18,6 @@ from aos_language.mission_parameters import (
 )
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
-
-__all__ = ["SetValues", "values_of_mapping", "values_of_node", "values_of_options", "with_values"]
 
 SetValues = Annotated[
     list[str] | None,

@@ -8,8 +8,6 @@ the steps of that file once more, and so comes to the same state. With the optio
 In a system that stays each mission has such a file in its folder. Its world is as `played_worlds.py` says.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from pathlib import Path

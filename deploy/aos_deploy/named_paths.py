@@ -1,11 +1,7 @@
 """Paths that files name: what stands there, also of names that no file system takes and links in a circle."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
-
-__all__ = ["absolute", "is_file", "is_folder", "is_there", "named"]
 
 _LONGEST = 200
 

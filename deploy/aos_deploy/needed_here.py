@@ -1,7 +1,5 @@
 """The check that what a deploy file starts is on this machine, before anything is started."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 
@@ -13,8 +11,6 @@ from aos_deploy.program import programs_of_deployment
 from aos_deploy.remote import check_ssh
 from aos_deploy.spans.otlp import check_otel_installed
 from aos_runtime.sandbox.support import require_sandbox, trust_documents
-
-__all__ = ["check_needed_here", "check_sandbox", "needs_of"]
 
 
 def check_sandbox(deployment: Deployment) -> None:

@@ -1,7 +1,5 @@
 """Options that several commands have, and what every program of ours understands: -h, --help, --version."""
 
-from __future__ import annotations
-
 import math
 import os
 from pathlib import Path
@@ -11,19 +9,6 @@ import typer
 
 from aos_protocol import __version__
 from aos_runtime.sandbox.support import trust_documents
-
-__all__ = [
-    "HELP_NAMES",
-    "AsJson",
-    "Connect",
-    "Mission",
-    "Robot",
-    "Run",
-    "Runs",
-    "TrustDocuments",
-    "Version",
-    "finite",
-]
 
 HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 """The context settings of a program."""

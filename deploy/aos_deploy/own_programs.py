@@ -1,7 +1,5 @@
 """The deploy file's `programs:`: what runs beside the adapters, such as a simulator or a launch file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from typing import Annotated, Literal
@@ -13,8 +11,6 @@ from aos_deploy.typed import plain_value
 from aos_deploy.yaml_source import YamlMap
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-
-__all__ = ["ProgramPart", "ReadyPart", "check_programs"]
 
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 Port = Annotated[int, msgspec.Meta(ge=1, le=65535)]

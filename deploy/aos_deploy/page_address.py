@@ -2,8 +2,6 @@
 it.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -18,8 +16,6 @@ import msgspec
 from aos_deploy.program import cache_dir
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
-
-__all__ = ["GatewayNote", "gateway_folder", "page_address"]
 
 _START_S = 20.0
 _LOOK_S = 0.05

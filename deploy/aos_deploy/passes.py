@@ -1,7 +1,5 @@
 """The names and passwords on the bus of a run, made when it starts and for this run alone."""
 
-from __future__ import annotations
-
 import os
 import secrets
 from collections.abc import Iterable
@@ -12,8 +10,6 @@ from aos_deploy.run_directory import RunDirectory
 from aos_protocol.access import OPERATOR, WATCHER, Party
 from aos_protocol.errors import DeployError, StorageError
 from aos_runtime.credentials import Credential, read_password, write_password
-
-__all__ = ["DICTIONARY", "Outsider", "Passes"]
 
 DICTIONARY = "router"
 """The name of the router's file: names and passwords of all, there until the router has read it."""

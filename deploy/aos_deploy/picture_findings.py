@@ -1,7 +1,5 @@
 """The trial of a bundle's `picture.py` by `aos lint`: it draws the state at the beginning of a mission."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from aos_language.reading.picture_file import PICTURE
@@ -9,8 +7,6 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DocumentError
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
-
-__all__ = ["picture_findings"]
 
 
 async def picture_findings(files: Mapping[str, bytes], built: BuiltModel) -> tuple[Diagnostic, ...]:

@@ -1,7 +1,5 @@
 """Options of the commands that plan with a bundle's model, and the model's engine."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -15,19 +13,6 @@ from aos_deploy.mission_values import values_of_options
 from aos_deploy.options import finite
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
-
-__all__ = [
-    "Bundle",
-    "Horizon",
-    "Never",
-    "PlannerName",
-    "PolicyFile",
-    "Seed",
-    "Simulations",
-    "Threads",
-    "Time",
-    "with_engine",
-]
 
 T = TypeVar("T")
 

@@ -1,7 +1,5 @@
 """Faults of skills that a model plays: what a robot can do wrong that documents do not describe."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterable, Mapping
 
@@ -9,8 +7,6 @@ import msgspec
 
 from aos_protocol.errors import DeployError
 from aos_protocol.spelling import did_you_mean
-
-__all__ = ["FAILED_CALL", "LOST_RESULT", "NO_ANSWER", "PlayedFaults"]
 
 FAILED_CALL, LOST_RESULT, NO_ANSWER = "failed_call", "lost_result", "no_answer"
 _KINDS = (FAILED_CALL, LOST_RESULT, NO_ANSWER)

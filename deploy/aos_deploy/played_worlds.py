@@ -4,8 +4,6 @@ A mission that begins with the initial belief has a world of its own, drawn by t
 keeps the belief of the mission before goes on in that mission's world.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -22,8 +20,6 @@ from aos_runtime.mission_folders import mission_folder
 from aos_solver.child.engine import Engine
 from aos_solver.mission.conditions import built_with_conditions
 from aos_solver.mission.succession import KEEP
-
-__all__ = ["PlayedStep", "PlayedWorld", "bring_to", "steps_in", "worlds_of"]
 
 MAX_DRAWS = 10_000
 """A world where what is given holds is drawn anew so often at most."""

@@ -1,7 +1,5 @@
 """The output of commands: findings, JSON, numbers of things."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
@@ -10,8 +8,6 @@ import msgspec
 import typer
 
 from aos_protocol.diagnostics import Diagnostic, render
-
-__all__ = ["count", "from_here", "print_diagnostics", "print_json", "time_text"]
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:

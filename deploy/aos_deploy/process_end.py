@@ -1,8 +1,6 @@
 """The reason why a process of the system ended: the fault it left, what ssh says, or its status and last
 lines."""
 
-from __future__ import annotations
-
 import signal
 
 from aos_deploy.program import Program
@@ -10,8 +8,6 @@ from aos_deploy.remote import why_it_failed
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import AosError, DeployError, StorageError, error_from_code
 from aos_runtime.lifecycle import STORAGE_STATUS
-
-__all__ = ["end_of", "look_at_log", "status_text"]
 
 
 def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool) -> AosError:

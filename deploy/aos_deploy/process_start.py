@@ -1,7 +1,5 @@
 """A program of the system as a process: its settings written, its output in the run's log."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import re
@@ -20,8 +18,6 @@ from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_runtime.credentials import PASSWORD_FILE_VARIABLE, USER_VARIABLE
 from aos_runtime.failpoints import reach
 from aos_runtime.service_settings import ServiceSettings
-
-__all__ = ["ROUTER_MODULE", "check_command", "start_process"]
 
 ROUTER_MODULE = "aos_runtime.router"
 

@@ -1,7 +1,5 @@
 """The services of a system, as aos-up starts them: in which order, with which settings, within what time."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator
@@ -18,8 +16,6 @@ from aos_deploy.passes import Outsider
 from aos_protocol.access import ADAPTER, ROLES, SERVER, WATCHER, Party
 from aos_runtime.children import Limits, guarded
 from aos_runtime.service_settings import ServiceSettings
-
-__all__ = ["Program", "cache_dir", "outsiders_of", "programs_of_deployment", "settings_of", "words_of"]
 
 
 class Program(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,7 +1,5 @@
 """The wait until a program of the user's own is ready, as the deploy file says it is seen."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import re
@@ -13,8 +11,6 @@ from aos_deploy.own_programs import ReadyPart
 from aos_deploy.program import words_of
 from aos_protocol.errors import DeployError
 from aos_runtime.children import Child, guarded
-
-__all__ = ["check_port_is_free", "until_seen_ready"]
 
 _LOOK_EVERY_S = 0.1
 _CONNECT_S = 2.0

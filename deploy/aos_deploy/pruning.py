@@ -1,7 +1,5 @@
 """Old runs removed from their folder: the newest stay, and whatever goes on."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path
@@ -11,8 +9,6 @@ import msgspec
 from aos_deploy.bus_socket import remove_left_sockets
 from aos_deploy.run_directory import LATEST, RunDirectory
 from aos_protocol.errors import StorageError
-
-__all__ = ["Pruned", "Removed", "pruned"]
 
 _NAME = re.compile(r"(\d{8}T\d{6}Z)-.+")
 """The name of a run directory begins with the time of its start."""

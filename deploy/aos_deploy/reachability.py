@@ -1,7 +1,5 @@
 """Goals and preconditions that nothing leads to: told as warnings, by looking at what the actions can do."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_deploy.endless import endless_findings
@@ -13,8 +11,6 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Reach
 from aos_solver.child.engine import Engine
 from aos_solver.child.engine_child import OverdueError
-
-__all__ = ["reachability_findings"]
 
 _NAMED_ACTIONS = 3
 _TIME_S = 1.5

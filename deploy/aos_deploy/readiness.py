@@ -1,7 +1,5 @@
 """The wait before the first decision: every path that a skill calls has somebody who answers it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 from aos_deploy.deploy_file import Deployment
@@ -10,8 +8,6 @@ from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
 from aos_protocol.spelling import nearest
 from aos_runtime.reported_state import state_when
-
-__all__ = ["misspelt_paths", "until_skills_can_run"]
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0

@@ -25,8 +25,6 @@ from aos_protocol.errors import DeployError
 if TYPE_CHECKING:
     from aos_deploy.program import Program  # which imports what knows this module
 
-__all__ = ["HOST", "check_ssh", "dialled", "is_lost", "remote_command", "why_it_failed"]
-
 HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]-]*")
 """A text that ssh takes for a host; it cannot be one that ssh would take for an option."""
 

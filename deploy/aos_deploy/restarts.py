@@ -1,10 +1,6 @@
 """The rule for starting a process again that has ended: the one table for services, adapters and programs."""
 
-from __future__ import annotations
-
 from collections import deque
-
-__all__ = ["STARTS", "STARTS_OF_ADAPTER", "WITHIN_S", "Restarts"]
 
 STARTS = 5
 """A process is started so many times within WITHIN_S at most."""

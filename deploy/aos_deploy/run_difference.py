@@ -1,15 +1,11 @@
 """Two missions beside each other: their settings, and the first step that differs."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.studied_run import StudiedRun
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
-
-__all__ = ["Difference", "difference"]
 
 _OF_THE_PLACE = ("robot", "service", "endpoint", "password_file", "run_dir", "cache_dir", "policy")
 """Settings that say where a run was and not how it decided."""

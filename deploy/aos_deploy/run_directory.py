@@ -36,8 +36,6 @@ from aos_runtime.failpoints import reach
 from aos_runtime.mission_folders import mission_folder
 from aos_runtime.service_settings import fault_path
 
-__all__ = ["LATEST", "ProcessEnd", "RunDirectory", "Summary", "SystemSummary"]
-
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""
 

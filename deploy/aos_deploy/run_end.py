@@ -1,15 +1,11 @@
 """The end of a run: what stopped it goes into the journal, and the verdict comes out of that."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_deploy.verdict import Account, Verdict, message_of_row
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import MissionBegun
 from aos_runtime.journal import Journal
-
-__all__ = ["account_of", "beginning_of", "settled"]
 
 _JOURNAL = "journal.db"
 

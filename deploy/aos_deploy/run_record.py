@@ -13,8 +13,6 @@ from aos_runtime.sandbox.support import sandbox_text
 if TYPE_CHECKING:
     from aos_deploy.deploy_file import Deployment  # Commands that look at runs start quicker without it.
 
-__all__ = ["RunRecord", "record_of"]
-
 
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents, and

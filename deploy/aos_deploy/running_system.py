@@ -16,8 +16,6 @@ from aos_runtime.credentials import credential_of_run
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
-__all__ = ["System", "on_system"]
-
 T = TypeVar("T")
 
 

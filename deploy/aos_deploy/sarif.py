@@ -1,14 +1,10 @@
 """Findings as SARIF 2.1.0, the form that code hosts and editors read (OASIS, 2020)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
 from aos_protocol.diagnostics import Diagnostic, Mend, Severity, Span
 from aos_protocol.errors import CODES
-
-__all__ = ["sarif_log"]
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.REMARK: "note"}

@@ -3,8 +3,6 @@
 Those of the dialects are from `aos_language`, the deploy file's follows from the types that read it.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -13,8 +11,6 @@ import msgspec
 
 from aos_deploy.deploy_file import DeployFile
 from aos_language.schemas.documents import gsdl_schema, plp_schema
-
-__all__ = ["SCHEMAS"]
 
 
 def _deploy_schema() -> dict[str, Any]:

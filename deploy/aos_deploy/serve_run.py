@@ -1,7 +1,5 @@
 """A robot for others: adapters up, served to nodes of ROS, until it is stopped. No mission runs."""
 
-from __future__ import annotations
-
 import asyncio
 
 import msgspec
@@ -22,8 +20,6 @@ from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 from aos_skills.ros.connect import DEFAULT_ROUTER
-
-__all__ = ["ServeEnd", "ServeRun"]
 
 
 class ServeEnd(msgspec.Struct, frozen=True):

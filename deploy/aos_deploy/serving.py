@@ -1,7 +1,5 @@
 """The deploy file's `serve:`: what others see of a robot that AOS simulates or drives, by kind."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_deploy.deploy_file import Deployment
@@ -11,8 +9,6 @@ from aos_protocol.errors import DeployError
 from aos_skills.ros.connect import KINDS
 from aos_skills.ros.definitions import interface_name
 from aos_skills.ros.documented import documented
-
-__all__ = ["serving_program"]
 
 _COMMON = ("interfaces", "types")
 _OPTIONS = {

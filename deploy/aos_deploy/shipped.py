@@ -1,10 +1,6 @@
 """The files that come with AOS beside its code: deploy files, bundles, worlds, benchmarks by hand."""
 
-from __future__ import annotations
-
 from pathlib import Path
-
-__all__ = ["deploy_files", "shipped"]
 
 _INSTALLED = Path(__file__).resolve().parent / "share"
 _CHECKOUT = Path(__file__).resolve().parents[2]

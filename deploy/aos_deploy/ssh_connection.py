@@ -8,8 +8,6 @@ refuses it, no message waits, and a connection that is lost is told earlier. The
 library alone, so that it starts at once.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import select
@@ -17,8 +15,6 @@ import socket
 import sys
 import time
 from typing import Any
-
-__all__ = ["connected"]
 
 _EVERY_S = 0.3
 _ATTEMPT_S = 3.0

@@ -5,8 +5,6 @@ async with started_system("armadillo.yaml", "--stay") as aos:
         print(record.step, record.action)
 """
 
-from __future__ import annotations
-
 import asyncio
 import re
 import signal
@@ -23,8 +21,6 @@ from aos_deploy.run_directory import RunDirectory
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import AosError, error_from_code
 from aos_runtime.client import AosClient
-
-__all__ = ["started_process", "started_system", "until_run"]
 
 _UP = (sys.executable, "-c", "from aos_deploy.cli import up_main; up_main()")
 _LOOK_S = 0.05

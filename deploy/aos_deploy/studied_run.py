@@ -22,8 +22,6 @@ from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import NICENESS, ReplayedMission
 from aos_solver.study.study import Study
 
-__all__ = ["JOURNAL", "StudiedRun"]
-
 JOURNAL = "journal.db"
 
 T = TypeVar("T")

@@ -40,8 +40,6 @@ from aos_runtime.failpoints import reach
 from aos_runtime.lifecycle import ROUTER_S, ServiceSettings
 from aos_runtime.subscription import merged
 
-__all__ = ["ROUTER", "Supervisor", "supervised"]
-
 ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
 
 FROZEN_S = 5.0

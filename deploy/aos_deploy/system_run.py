@@ -1,7 +1,5 @@
 """One run of a system that stays: services up, documents in, then mission after mission, until stopped."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from pathlib import Path
 
@@ -20,8 +18,6 @@ from aos_protocol.messages import MissionEntry, MissionState, StartMission
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import make_folder_of_missions, mission_folder
 from aos_solver.mission.logbook import JOURNAL, entries_of, entry_of
-
-__all__ = ["SystemRun"]
 
 
 class SystemRun(MissionRun):

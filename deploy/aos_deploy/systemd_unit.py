@@ -1,15 +1,11 @@
 """A systemd unit that starts a mission when the machine does, and confines what it need not reach."""
 
-from __future__ import annotations
-
 import getpass
 import sys
 from pathlib import Path
 
 from aos_deploy.deploy_file import Deployment
 from aos_protocol.errors import DeployError
-
-__all__ = ["unit_name", "unit_of"]
 
 _UNIT = """\
 # The mission of {robot}, from the start of the machine on. To take it into use, as root:

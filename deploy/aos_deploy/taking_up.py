@@ -1,7 +1,5 @@
 """A run whose `aos-up` has died, made ready to go on: the same folder, settings and documents."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +16,6 @@ from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import stays
 from aos_solver.mission.logbook import JOURNAL, entries_of
 from aos_solver.mission.memory import MissionMemory, folded
-
-__all__ = ["TakenUp", "take_up", "worlds_text"]
 
 
 class TakenUp(msgspec.Struct, frozen=True):

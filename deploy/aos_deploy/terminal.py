@@ -1,7 +1,5 @@
 """The terminal: a console that does without styles where NO_COLOR is set, and progress of long work."""
 
-from __future__ import annotations
-
 import io
 import os
 import sys
@@ -22,8 +20,6 @@ from rich.progress import (
 )
 
 from aos_deploy.exit_codes import ExitCode
-
-__all__ = ["console", "interruption_told", "progress", "waiting", "write_what_fits"]
 
 LINE_EVERY_S = 20.0
 _PIPED_COLUMNS = 1000

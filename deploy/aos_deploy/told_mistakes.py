@@ -1,14 +1,10 @@
 """Findings about what stands in a deploy file or an option, and their refusal."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 
 from aos_language.findings import Findings
 from aos_protocol.errors import DeployError
-
-__all__ = ["findings_of", "refuse_errors"]
 
 
 def findings_of(sources: Iterable[str | Path]) -> Findings:

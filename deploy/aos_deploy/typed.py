@@ -1,7 +1,5 @@
 """Values of a YAML file into a typed structure: every unknown key, missing key and wrong type in one run."""
 
-from __future__ import annotations
-
 import math
 import types
 import typing
@@ -14,8 +12,6 @@ from msgspec import UNSET
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-
-__all__ = ["known_names", "plain_value", "read_structure"]
 
 S = TypeVar("S", bound=msgspec.Struct)
 

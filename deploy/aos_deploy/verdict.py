@@ -4,8 +4,6 @@ Exit code, summary and last line are made from it. A run that ended otherwise th
 that `aos-up` has seen as the last row of its journal.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import msgspec
@@ -14,8 +12,6 @@ from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionState
 from aos_runtime.journal import JournalRow
-
-__all__ = ["MISSION_KINDS", "Account", "Verdict", "message_of_row"]
 
 MISSION_KINDS: dict[str, type[DecisionRecord] | type[MissionState]] = {
     "decision": DecisionRecord,

@@ -20,8 +20,6 @@ from ruamel.yaml.reader import ReaderError
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 
-__all__ = ["YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
-
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 32
 _LONGEST_NUMBER = 100

@@ -1,7 +1,5 @@
 """A bundle as an editor shows it, checked: the files of a folder, with the unsaved texts in their place."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,8 +10,6 @@ from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity
 from aos_solver.emission.lower import lower
-
-__all__ = ["check_folder", "end_column", "lines_of"]
 
 _TOKEN = re.compile(r"\w+|\S")
 

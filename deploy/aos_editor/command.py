@@ -1,10 +1,6 @@
 """`aos language-server`: what an editor starts to check documents while they are written."""
 
-from __future__ import annotations
-
 import typer
-
-__all__ = ["register"]
 
 
 def register(app: typer.Typer) -> None:

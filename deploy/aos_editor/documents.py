@@ -15,8 +15,6 @@ from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.sdl_text import Body, Part, Section, parse_sdl
 from aos_language.reading.source import Source
 
-__all__ = ["Entry", "Proposal", "meaning_at", "outline", "proposals_at"]
-
 _NAME = re.compile(r"(?:AOS\.|AOSUtils::)?[A-Za-z_]\w*")
 _LINE_START = re.compile(r"[ \t]*\w*\Z")
 _BUILT_IN_START = re.compile(r"(?:AOS\.|AOSUtils::|__)\w*\Z")

@@ -1,7 +1,5 @@
 """The kind of each word of an SDL file, for colours: of the grammar, C++, Python, and the bundle's names."""
 
-from __future__ import annotations
-
 import keyword
 import re
 from collections.abc import Iterable, Iterator
@@ -16,8 +14,6 @@ from aos_language.findings import Findings
 from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.sdl_text import Body, Part, parse_sdl
 from aos_language.reading.source import Source, Text
-
-__all__ = ["TOKEN_KINDS", "Token", "tokens_of"]
 
 _KINDS = {
     SymbolKind.VARIABLE: "variable",

@@ -1,11 +1,7 @@
 """The meaning of each word of SDL and of each built-in of model code, in one sentence: for editors and
 docs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-
-__all__ = ["BUILT_INS", "SECTIONS", "Meaning"]
 
 _BLOCK_PARTS = {
     "assignment": "Opens another assignment of this block, with a name if wanted.",

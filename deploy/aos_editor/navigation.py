@@ -1,7 +1,5 @@
 """Definitions, references, renames, colours and quick fixes, in the editor's terms."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
@@ -12,8 +10,6 @@ from pygls.workspace import PositionCodec, ServerTextPosition
 from aos_editor.highlighting import TOKEN_KINDS, Token
 from aos_editor.symbols import Bundle, Occurrence, files_of
 from aos_protocol.diagnostics import Diagnostic
-
-__all__ = ["Lines", "definition", "encoded", "quick_fixes", "references", "renamed"]
 
 Lines = Callable[[str], Sequence[str]]
 """The lines of a file of the bundle, by its name."""

@@ -1,7 +1,5 @@
 """The language server itself: pygls speaks the protocol, `checking` and `documents` give the answers."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -27,8 +25,6 @@ from aos_editor.navigation import (
 from aos_editor.symbols import Bundle, Occurrence, UnrenamableError, files_of, read_bundle
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity
-
-__all__ = ["language_server"]
 
 DEBOUNCE_S = 0.2
 """A bundle is checked this long after the last key stroke."""

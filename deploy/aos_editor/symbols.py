@@ -1,7 +1,5 @@
 """The names of a bundle that mean the same thing, and their places, in all of its files."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
@@ -30,16 +28,6 @@ from aos_language.reading.document import array_type
 from aos_language.reading.files import read_documents
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, LocalSource
-
-__all__ = [
-    "Bundle",
-    "Occurrence",
-    "Symbol",
-    "SymbolKind",
-    "UnrenamableError",
-    "files_of",
-    "read_bundle",
-]
 
 _NAME = re.compile(r"[A-Za-z_]\w{0,63}")
 

@@ -4,15 +4,11 @@ C++ and Python are coloured by the editor's own grammars. `code:` is Python in t
 else C++.
 """
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
 from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.sdl_text import Body
-
-__all__ = ["textmate_grammar"]
 
 _SECTIONS = [item for grammar in GRAMMARS.values() for item in grammar.items()]
 _WORDS = [*_SECTIONS, *(part for _, section in _SECTIONS for part in section.parts.items())]

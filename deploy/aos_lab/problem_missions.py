@@ -1,7 +1,5 @@
 """Missions of a problem file that follow a policy of `aos solve`, with the exact belief."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from pathlib import Path
@@ -16,8 +14,6 @@ from aos_solver.mission.simulation import SimulatedRun
 from aos_solver.offline.explicit_model import Floats, Integers
 from aos_solver.offline.policy import Policy
 from aos_solver.offline.stopping import over_states, with_stopping
-
-__all__ = ["ProblemPlayer"]
 
 _LEFT_OUT = 1e-4
 """A mission without a step limit ends where a reward would count less than this share of a first one."""

@@ -3,8 +3,6 @@
 python docs/examples/follow_decisions.py [RUN]
 """
 
-from __future__ import annotations
-
 import asyncio
 import sys
 

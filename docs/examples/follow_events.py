@@ -3,8 +3,6 @@
 TOKEN=... python docs/examples/follow_events.py [ADDRESS] [MISSION]
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

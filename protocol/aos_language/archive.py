@@ -1,7 +1,5 @@
 """Bundles in archives: tar, also compressed, and zip, read within limits and without touching the disk."""
 
-from __future__ import annotations
-
 import lzma
 import struct
 import tarfile
@@ -17,8 +15,6 @@ import msgspec
 
 from aos_language.reading.files import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
-
-__all__ = ["ARCHIVE_SUFFIXES", "UNREADABLE_ARCHIVE", "is_archive_name", "read_archive"]
 
 ARCHIVE_SUFFIXES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip")
 MAX_UNPACKED_BYTES = 4 * MAX_BUNDLE_BYTES

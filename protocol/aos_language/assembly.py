@@ -3,8 +3,6 @@
 A skill without a written mapping gets a derived one. A parameter that is an enum gets all of its values.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import msgspec
@@ -23,8 +21,6 @@ from aos_protocol.documents import (
     SkillModel,
 )
 from aos_protocol.spelling import nearest
-
-__all__ = ["Assembly", "assemble"]
 
 
 class Assembly(msgspec.Struct):

@@ -1,7 +1,5 @@
 """Documents from one dialect into another, with proof: what was written is read again and compared."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from enum import StrEnum
 from typing import Any
@@ -15,8 +13,6 @@ from aos_language.writing.json_writer import json_text
 from aos_language.writing.sdl_writer import sdl_text
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import Snippet
-
-__all__ = ["Dialect", "convert", "without_origins"]
 
 _SUFFIXES = {
     DocumentKind.ENVIRONMENT: ".ef",

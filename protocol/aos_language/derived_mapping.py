@@ -4,8 +4,6 @@ The path is the skill's name, its parameters are the fields of the call, and the
 the response. What the model reports as `__observed.NAME` is the result's field NAME.
 """
 
-from __future__ import annotations
-
 import keyword
 from collections.abc import Collection, Iterator
 
@@ -27,8 +25,6 @@ from aos_protocol.documents import (
     SkillModel,
     Snippet,
 )
-
-__all__ = ["RESPONSE_FIELD", "derived_mapping", "sets_response"]
 
 RESPONSE_FIELD = "response"
 

@@ -1,13 +1,9 @@
 """The values of skill parameters that are enums, where no document lists them: all values of the enum."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_language.cpp.keywords import CPP_KEYWORDS
 from aos_protocol.documents import Assignment, Environment, Parameter, SkillModel, Snippet
-
-__all__ = ["with_values_of_enums"]
 
 
 def with_values_of_enums(model: SkillModel, environment: Environment | None) -> SkillModel:

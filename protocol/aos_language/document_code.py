@@ -1,15 +1,11 @@
 """The code of a document's section, snippet by snippet, as it is read."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator
 
 from aos_language.cpp.shared import NO_SHARED_CODE, SharedCode, shared_code
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_protocol.documents import Assignment, Environment, Snippet
-
-__all__ = ["absent_skills", "shared_code_of", "snippets_of"]
 
 _COMPARED = re.compile(r"\s*[!=]=\s*(?:NULL|nullptr)\b")
 _COMPARED_BEFORE = re.compile(r"(?:NULL|nullptr)\s*[!=]=\s*$")

@@ -1,7 +1,5 @@
 """The collector of what is found in documents: every check adds to it, nothing is raised."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -9,8 +7,6 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Mend, Severity, Span, has_errors
 from aos_protocol.spelling import nearest
-
-__all__ = ["Findings"]
 
 MAX_OF_A_SEVERITY = 1000
 """So many errors, warnings and remarks of a run are told: hostile text has one at each character."""

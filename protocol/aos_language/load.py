@@ -3,8 +3,6 @@
 Nothing raises for what a user wrote; the diagnostics hold all of it.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -26,8 +24,6 @@ from aos_language.reading.picture_file import PICTURE
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
-
-__all__ = ["LoadedBundle", "bundle_digest", "load_bundle", "load_files", "read_bundle_files", "with_excerpts"]
 
 
 class LoadedBundle(msgspec.Struct, frozen=True):

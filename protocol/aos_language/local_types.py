@@ -5,13 +5,9 @@ state than the response does: in `state_given_observation` code by name, and by 
 variable has their name and type.
 """
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.documents import AbstractionMapping, Environment, StateVariable
-
-__all__ = ["RESERVED_LOCAL_NAMES", "LocalType", "local_type", "local_type_text", "reported_variables"]
 
 RESERVED_LOCAL_NAMES = frozenset({
     "CONSTANTS", "RESPONSE", "TOPICS", "__input", "__skill_error", "__skill_status", "local_variables",

@@ -1,7 +1,5 @@
 """A push of some files over the files a project has: a document replaces the one of its kind and name."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import msgspec
@@ -12,8 +10,6 @@ from aos_language.reading.files import KnownFiles, is_document_name, read_docume
 from aos_language.reading.version import is_higher
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Project
-
-__all__ = ["MergedFiles", "changed_skills", "merge", "pushed_project"]
 
 
 class MergedFiles(msgspec.Struct, frozen=True):

@@ -5,8 +5,6 @@ of a compound type, `wanted[Soda]` an element of an array over an enum. Each par
 *leaf*. A leaf that nobody sets has what the documents give it by default.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -19,16 +17,6 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import EnumType, Environment, MissionValue, StateVariable
 from aos_protocol.errors import DocumentError
 from aos_protocol.spelling import quoted
-
-__all__ = [
-    "OPTION",
-    "ParameterLeaf",
-    "checked_values",
-    "declared_values",
-    "mission_value_of_option",
-    "parameter_leaves",
-    "usable_values",
-]
 
 OPTION = "--set"
 """Values are written `NAME=VALUE` there; it is also the place of what is wrong with one."""

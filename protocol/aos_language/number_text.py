@@ -1,9 +1,5 @@
 """Numbers as text."""
 
-from __future__ import annotations
-
-__all__ = ["is_number"]
-
 
 def is_number(text: str) -> bool:
     """Returns whether Python reads the text as a number."""

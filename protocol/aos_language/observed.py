@@ -4,8 +4,6 @@ What is assigned is one draw, so that its density is known, and nothing may look
 else that is done with `__observed` is a misuse.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
@@ -21,8 +19,6 @@ from aos_language.cpp.snippets import (
 )
 from aos_language.document_code import snippets_of
 from aos_protocol.documents import SkillModel, Snippet
-
-__all__ = ["OBSERVED", "Misuse", "ReportedNumber", "misuses_of", "reported_numbers", "reports_in"]
 
 OBSERVED = "__observed"
 

@@ -1,7 +1,5 @@
 """A project as text for people: the typed documents, each part with the place it comes from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from aos_protocol.diagnostics import Span
@@ -19,8 +17,6 @@ from aos_protocol.documents import (
     SpecialState,
     StateVariable,
 )
-
-__all__ = ["outline"]
 
 _PLACE_COLUMN = 78
 _PLACE = "\0"

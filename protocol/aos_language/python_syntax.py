@@ -1,11 +1,7 @@
 """Python's own parser, one thread at a time."""
 
-from __future__ import annotations
-
 import ast
 import threading
-
-__all__ = ["module_of", "tree_of"]
 
 _ONE_AT_A_TIME = threading.Lock()
 """CPython 3.11 counts the depth of all threads together: where a finalizer lets another thread parse in the

@@ -1,7 +1,5 @@
 """Templates of emitted text. They are compiled once, and kept beside Python's own compiled modules."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sys

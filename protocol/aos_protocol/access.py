@@ -22,27 +22,6 @@ import msgspec
 
 from aos_protocol.keys import Keys
 
-__all__ = [
-    "ACTS",
-    "ADAPTER",
-    "MIDDLEWARE",
-    "OPERATOR",
-    "REGISTRY",
-    "ROLES",
-    "ROUND_TRIP",
-    "SERVER",
-    "SOLVER",
-    "TABLE",
-    "WATCHER",
-    "Act",
-    "Grant",
-    "Party",
-    "Row",
-    "grants",
-    "includes",
-    "may",
-]
-
 Act = Literal["asks", "answers", "tells", "hears", "announces", "watches"]
 ACTS: tuple[Act, ...] = ("asks", "answers", "tells", "hears", "announces", "watches")
 

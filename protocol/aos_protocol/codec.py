@@ -14,17 +14,6 @@ import msgspec
 from aos_protocol.errors import AosError, BusError, error_from_code
 from aos_protocol.messages import Envelope, Fault, Message
 
-__all__ = [
-    "MAX_BYTES",
-    "PROTOCOL_VERSION",
-    "UNREADABLE",
-    "decode",
-    "decode_fault",
-    "encode",
-    "encode_fault",
-    "open_envelope",
-]
-
 PROTOCOL_VERSION = "1.0"
 MAX_BYTES = 16 * 1024 * 1024
 

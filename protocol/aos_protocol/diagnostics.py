@@ -13,9 +13,6 @@ import msgspec
 from aos_protocol.older_python import StrEnum
 from aos_protocol.spelling import printable
 
-__all__ = ["Diagnostic", "Mend", "Severity", "Span", "has_errors", "render"]
-
-
 _EXCERPT_WIDTH = 100
 
 

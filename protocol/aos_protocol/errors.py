@@ -26,31 +26,6 @@ import sys
 
 from aos_protocol.diagnostics import Diagnostic, render
 
-__all__ = [
-    "CODES",
-    "AosError",
-    "BusError",
-    "CodeFaultError",
-    "DeployError",
-    "DocumentError",
-    "EndlessCodeError",
-    "EngineDefectError",
-    "GatewayError",
-    "IntractableError",
-    "LateAnswerError",
-    "LostAnswerError",
-    "MappingError",
-    "MissionRunsError",
-    "ModelError",
-    "NobodyAnswersError",
-    "PlanningError",
-    "SkillError",
-    "SteeringError",
-    "StorageError",
-    "StudyError",
-    "error_from_code",
-]
-
 CODES: dict[str, str] = {
     "AOS101": "the file cannot be read",
     "AOS102": "unknown key or section",

@@ -39,8 +39,6 @@ from typing import NamedTuple
 
 from aos_protocol.errors import BusError
 
-__all__ = ["Keys", "Serving"]
-
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _VERSION = re.compile(r"[A-Za-z0-9._+-]{1,64}")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-__all__ = ["did_you_mean", "nearest", "printable", "quoted"]
-
 _ALIKE = 0.65
 """The share of two names that has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
 

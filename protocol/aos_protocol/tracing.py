@@ -11,8 +11,6 @@ from typing import Literal
 
 from aos_protocol.messages import ActivationId
 
-__all__ = ["SpanOf", "span_id", "trace_id", "traceparent"]
-
 SpanOf = Literal["mission", "decision", "activation", "update"]
 
 

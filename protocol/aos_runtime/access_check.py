@@ -6,8 +6,6 @@ from __future__ import annotations
 from aos_protocol.access import Act, Party, may
 from aos_protocol.errors import BusError
 
-__all__ = ["Access"]
-
 _WORDS: dict[Act, str] = {
     "asks": "ask",
     "answers": "answer",

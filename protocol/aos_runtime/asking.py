@@ -11,8 +11,6 @@ from aos_runtime.bus import Bus
 from aos_runtime.older_python import timeout
 from aos_runtime.subscription import Subscription
 
-__all__ = ["AWAY_S", "ask_until_answered"]
-
 AWAY_S = 30.0
 """A service may be away for so long before whoever asks it gives up."""
 

@@ -17,8 +17,6 @@ import zenoh
 from aos_protocol.errors import BusError
 from aos_runtime.credentials import Credential
 
-__all__ = ["ADAPTER_LEASE_S", "LEASE_S", "client_config", "opened_session", "router_config"]
-
 LEASE_S = 2.0
 """A process that is silent for this long is taken for gone. One that ends is noticed at once."""
 

@@ -21,8 +21,6 @@ from aos_protocol.errors import DeployError
 from aos_runtime.parent import PARENT_VARIABLE
 from aos_runtime.sandbox.support import require_sandbox, sandbox_support
 
-__all__ = ["PIPE", "Child", "Confinement", "Limits", "guarded"]
-
 PIPE = asyncio.subprocess.PIPE
 
 Stdio = int | IO[Any] | None

@@ -53,8 +53,6 @@ from aos_runtime.older_python import timeout
 from aos_runtime.steering import STEER_TIMEOUT_S, SteeringQuestions, start_mission
 from aos_runtime.subscription import Subscription, merged
 
-__all__ = ["AosClient"]
-
 _HISTORY_TIMEOUT_S = 5.0
 _PAGE_RECORDS = 1000
 _HISTORY_TRIES = 3

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
-__all__ = ["Closing"]
-
 
 class Closing(ABC):
     """Is closed at the end of an `async with` block, however it ends."""

@@ -6,8 +6,6 @@ import sysconfig
 from collections.abc import Iterable
 from traceback import FrameSummary
 
-__all__ = ["place_of"]
-
 _LIBRARIES = (sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), "<")
 
 

@@ -10,17 +10,6 @@ from typing import NamedTuple
 
 from aos_protocol.errors import BusError
 
-__all__ = [
-    "FOLDER",
-    "PASSWORD_FILE_VARIABLE",
-    "USER_VARIABLE",
-    "Credential",
-    "credential_of_environment",
-    "credential_of_run",
-    "read_password",
-    "write_password",
-]
-
 FOLDER = "credentials"
 """The folder in a run directory with one file for each party, named like it."""
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from aos_protocol.messages import DecisionRecord, History
 
-__all__ = ["DecisionFeed"]
-
 
 class DecisionFeed:
     """Puts records into order: each sequence number once, ascending; what follows a gap is held back.

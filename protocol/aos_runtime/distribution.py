@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-__all__ = ["DISTRIBUTION", "Extra", "pip_install"]
-
 DISTRIBUTION = "aos-autonomy"
 
 Extra = Literal["", "sim", "compiler", "gym", "bench", "ros", "dds", "ray", "report", "otel"]

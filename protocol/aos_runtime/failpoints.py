@@ -17,8 +17,6 @@ import errno
 import os
 import signal
 
-__all__ = ["ACTIONS", "FAILPOINTS", "is_armed", "reach"]
-
 ACTIONS = ("kill", "exit", "freeze", "full", "readonly")
 EXIT_STATUS = 70
 

@@ -18,8 +18,6 @@ from aos_protocol.messages import Activate, ActivationId, Cancel, MissionQuery, 
 from aos_runtime.bus import Bus
 from aos_runtime.mission_folders import is_before, number_of
 
-__all__ = ["Fence", "epoch_of_solver", "is_given_up", "meaning"]
-
 _ASK_TIMEOUT_S = 5.0
 _LINK_S = 0.2
 _LINK_TIMES = 10

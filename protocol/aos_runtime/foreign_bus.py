@@ -21,8 +21,6 @@ from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError
 from aos_runtime.bus_config import client_config, opened_session
 from aos_runtime.closing import Closing
 
-__all__ = ["ForeignBus", "Packet", "Undo"]
-
 _RETRY_S = 0.05
 _LATE_S = 0.5
 

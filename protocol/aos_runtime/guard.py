@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 else:
     import _signal as signal  # `signal` makes enums of the numbers, for a third of the guard's start
 
-__all__ = ["NOT_STARTED", "main"]
-
 _STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 NOT_STARTED = 127
 """The status of a guard whose command cannot be started."""

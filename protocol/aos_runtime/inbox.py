@@ -8,8 +8,6 @@ import threading
 from collections import deque
 from collections.abc import Callable
 
-__all__ = ["Inbox"]
-
 _TURN = 20
 """So many messages are taken before the loop looks after the rest."""
 

@@ -27,8 +27,6 @@ from aos_runtime.plain_tables import require_plain_tables
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
-__all__ = ["Journal", "JournalError", "JournalRow"]
-
 T = TypeVar("T")
 
 _SCHEMA_VERSION = 2

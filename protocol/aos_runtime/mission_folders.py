@@ -12,18 +12,6 @@ from pathlib import Path
 
 from aos_protocol.errors import StorageError
 
-__all__ = [
-    "is_before",
-    "make_folder_of_missions",
-    "make_mission_folder",
-    "mission_folder",
-    "mission_folders",
-    "mission_name",
-    "number_in",
-    "number_of",
-    "stays",
-]
-
 _FOLDER = "missions"
 
 

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 else:
     import _signal as signal  # as in guard.py, which has to start quickly
 
-__all__ = ["PARENT_VARIABLE", "adopt_orphans", "die_with_parent", "request_death_signal"]
-
 PARENT_VARIABLE = "AOS_PARENT_PID"
 
 _PR_SET_PDEATHSIG = 1

@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import Any
 
-__all__ = ["plain_from"]
-
 _MAX_DEPTH = 64
 
 

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import sqlite3
 
-__all__ = ["require_plain_tables"]
-
 
 def require_plain_tables(connection: sqlite3.Connection) -> None:
     """Raises sqlite3.DatabaseError where something that can be read is no plain table."""

@@ -10,8 +10,6 @@ from zenoh.handlers import Callback
 from aos_runtime.inbox import Inbox
 from aos_runtime.subscription import Subscription
 
-__all__ = ["Presence"]
-
 Changes = Subscription[tuple[str, bool]]
 
 

@@ -14,8 +14,6 @@ from aos_protocol.codec import decode, decode_fault
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
 
-__all__ = ["RECEIPT", "STRAYS_S", "Question"]
-
 R = TypeVar("R", bound=Message)
 
 RECEIPT = b"taken"

@@ -6,8 +6,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 
-__all__ = ["Recurring"]
-
 _KINDS = 1000
 """So many kinds are told apart; all others count as one."""
 

@@ -12,8 +12,6 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import ProjectQuery, ProjectRevision
 from aos_runtime.bus import Bus
 
-__all__ = ["RegistryWatch"]
-
 log = logging.getLogger(__name__)
 
 ASK_TIMEOUT_S = 5.0

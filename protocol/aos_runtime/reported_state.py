@@ -10,8 +10,6 @@ from aos_protocol.messages import Message
 from aos_runtime.bus import Bus
 from aos_runtime.older_python import timeout
 
-__all__ = ["state_when"]
-
 M = TypeVar("M", bound=Message)
 
 _QUESTION_S = 5.0

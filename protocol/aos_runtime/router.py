@@ -19,8 +19,6 @@ from aos_runtime.lifecycle import ServiceSettings, run_process
 from aos_runtime.router_access import access_control
 from aos_runtime.router_log import refusals_logged
 
-__all__ = ["RouterSettings", "route"]
-
 _log = logging.getLogger("aos.router")
 
 

@@ -7,8 +7,6 @@ from typing import Any
 
 from aos_protocol.access import Act, Party, grants
 
-__all__ = ["access_control"]
-
 _MESSAGES: dict[Act, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "asks": (("query",), ("reply", "declare_queryable")),
     "answers": (("declare_queryable", "reply"), ("query",)),

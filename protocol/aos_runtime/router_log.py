@@ -16,8 +16,6 @@ from contextlib import contextmanager, suppress
 
 from aos_runtime.recurring import Recurring
 
-__all__ = ["RefusalLog", "refusals_logged"]
-
 _TRACE = (
     "error,zenoh::net::routing::interceptor=trace,zenoh::net::routing::interceptor::access_control=trace,"
     "zenoh_transport::unicast::establishment::accept=debug"

@@ -5,8 +5,6 @@ from __future__ import annotations
 from aos_protocol.keys import Keys, Serving
 from aos_runtime.bus import Bus
 
-__all__ = ["served"]
-
 
 async def served(bus: Bus, keys: Keys) -> list[Serving]:
     """Each path with who serves it; one that several serve is there several times."""

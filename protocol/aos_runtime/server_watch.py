@@ -8,8 +8,6 @@ from typing import Any
 import zenoh
 from zenoh.handlers import Callback
 
-__all__ = ["ServerWatch"]
-
 
 class ServerWatch:
     """Knows when all who serve the key have left it, as far as the router tells. Make it after the question.

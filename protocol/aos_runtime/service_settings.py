@@ -9,8 +9,6 @@ import msgspec
 from aos_protocol.access import ROLES, SERVER, Party
 from aos_runtime.credentials import Credential
 
-__all__ = ["ServiceSettings", "fault_path"]
-
 
 class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
     """The settings that every service has; each adds its own. `run_dir` is absolute.

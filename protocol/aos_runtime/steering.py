@@ -14,8 +14,6 @@ from aos_protocol.messages import MissionState, StartMission, Steer, SteeringVer
 from aos_runtime.asking import ask_until_answered
 from aos_runtime.bus import Bus
 
-__all__ = ["STEER_TIMEOUT_S", "SteeringQuestions", "start_mission"]
-
 START_TIMEOUT_S = 600.0
 """A mission starts once its model is compiled, and the engine where set-up has not done that."""
 

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10
 
-__all__ = ["Subscription", "merged", "together"]
-
 T = TypeVar("T")
 
 Undeclare = Callable[[], None]

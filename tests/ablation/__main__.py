@@ -12,8 +12,6 @@ are for tests: they have the switches of `aos/base/switches.hpp`, which are cons
 compiles the engine anew.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json

@@ -1,7 +1,5 @@
 """Missions of bundles with and without a mechanism: their returns, as rows of a table."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import os
@@ -23,8 +21,6 @@ from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 
 from .losses import error_of_mean
 from .mechanisms import BUNDLES, BundleRoute
-
-__all__ = ["bundle_rows"]
 
 _HERE = Path(__file__).parents[2] / "deploy" / "bundles" / "bench"
 

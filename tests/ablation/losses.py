@@ -1,14 +1,10 @@
 """Losses on random models: what a planner's regret grows by without a mechanism, by family."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from statistics import fmean, stdev
 from typing import Any
 
 from .mechanisms import Route
-
-__all__ = ["Losses", "error_of_mean"]
 
 
 class Losses:

@@ -3,11 +3,7 @@
 The names are those of `services/solver/aos_solver/cpp/aos/base/switches.hpp`.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
-
-__all__ = ["BUNDLES", "ROUTES", "BundleRoute", "Route"]
 
 
 class Route(NamedTuple):

@@ -1,7 +1,5 @@
 """Adapters that do everything wrong, a hundred times each: defined outcomes, in time, and memory flat."""
 
-from __future__ import annotations
-
 import asyncio
 import time
 from pathlib import Path

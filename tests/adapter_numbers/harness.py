@@ -1,7 +1,5 @@
 """Router, middleware and adapter as processes for measurements; the caller is registry and solver."""
 
-from __future__ import annotations
-
 import asyncio
 import socket
 import sys
@@ -32,8 +30,6 @@ from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 from aos_runtime.lifecycle import ServiceSettings
 from aos_runtime.reported_state import state_when
-
-__all__ = ["Harness", "harness", "project_of"]
 
 PATIENCE_S = 60.0
 

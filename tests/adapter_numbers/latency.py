@@ -1,7 +1,5 @@
 """The latency from the solver's activation to the skill, and from its result to the observation."""
 
-from __future__ import annotations
-
 import asyncio
 import time
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Two hundred skills declared, fifty topics at 100 Hz: does the middleware keep up, and at what cost?"""
 
-from __future__ import annotations
-
 import asyncio
 import time
 from pathlib import Path

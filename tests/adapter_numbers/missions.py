@@ -1,7 +1,5 @@
 """Every bundle of a folder as whole missions with `aos-up --model`, beside `aos simulate`."""
 
-from __future__ import annotations
-
 import json
 import math
 import statistics

@@ -1,8 +1,6 @@
 """The times until the skills of an adapter that leaves are unavailable, and until they run again when it
 is back."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

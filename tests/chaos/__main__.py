@@ -1,7 +1,5 @@
 """Kills, freezes and fills the disks of missions, holds each against its journal, and prints a table."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 import tempfile

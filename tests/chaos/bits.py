@@ -6,8 +6,6 @@ The bit is one of the journal or of its write-ahead log, in turn as SIGKILL leav
 closed. Who reads the run are `aos check`, `aos runs`, `aos decisions`, and `aos-up --resume` at its start.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import io

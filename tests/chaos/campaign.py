@@ -1,7 +1,5 @@
 """Many runs, some at a time: which there are, how they go, and the table of what became of them."""
 
-from __future__ import annotations
-
 import shutil
 import statistics
 import sys
@@ -19,9 +17,6 @@ from tests.chaos.twins import twins
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
 from aos_runtime.failpoints import FAILPOINTS
-
-__all__ = ["PARTS", "names_of", "report_of", "run_all", "table"]
-
 
 PARTS = {
     "kills": "SIGKILLs, 12 in a mission, of all processes",

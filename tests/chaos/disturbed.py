@@ -1,7 +1,5 @@
 """One mission as a process, killed and frozen at random while it runs, and held against its journal."""
 
-from __future__ import annotations
-
 import queue
 import random
 import signal
@@ -12,8 +10,6 @@ from pathlib import Path
 
 from tests.chaos.judged import Disturbance, Report, judge
 from tests.chaos.up import KINDS, Process, Up, send, write_deploy_file
-
-__all__ = ["cancelled", "disturbed"]
 
 KILLS_OF_A_MISSION = 12
 FREEZES_OF_A_MISSION = 3

@@ -1,7 +1,5 @@
 """One mission that fails at a failpoint: a process dies or freezes there, or its disk refuses a write."""
 
-from __future__ import annotations
-
 import queue
 import random
 import signal
@@ -14,8 +12,6 @@ from tests.chaos.up import Process, Up, send, write_deploy_file
 
 from aos_deploy.run_end import account_of
 from aos_runtime.failpoints import EXIT_STATUS
-
-__all__ = ["WRITES", "failing", "refused"]
 
 _STEPS = 5
 _FROZEN_S = 6.0

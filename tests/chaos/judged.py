@@ -1,7 +1,5 @@
 """The verdict on a mission that was disturbed: journal, exit code, motions, processes that are left."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import time
@@ -14,8 +12,6 @@ from tests.chaos.up import BIN, Process
 
 from aos_deploy.run_end import account_of
 from aos_deploy.verdict import Verdict
-
-__all__ = ["Disturbance", "Report", "judge", "tracebacks"]
 
 _LEFT_S = 15.0
 

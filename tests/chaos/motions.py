@@ -5,8 +5,6 @@
 Two clients ask for each id at the same moment, one of them again after the next id, and after each kill.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import contextlib

@@ -1,7 +1,5 @@
 """A robot for missions that are disturbed: its skills take a while, and count each motion in a file."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import time

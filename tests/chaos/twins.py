@@ -1,7 +1,5 @@
 """Twins of missions: what an engine believes whose process is killed, beside one that nobody disturbs."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging
@@ -18,8 +16,6 @@ from aos_language.load import load_bundle
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-
-__all__ = ["twins"]
 
 STEPS = 40
 _KILLED_WITH = 0.15

@@ -17,8 +17,6 @@ from typing import NamedTuple
 
 from tests.processes import descendants, is_running
 
-__all__ = ["BIN", "KINDS", "Process", "Up", "compile_bundles", "send", "write_deploy_file"]
-
 _ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
 

@@ -1,7 +1,5 @@
 """The host of adapters as a process, and calls of its skills as the middleware makes them."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,8 +12,6 @@ from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillResult
 from aos_runtime.adapters import AdapterSettings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
-
-__all__ = ["AdapterProcess", "started_adapter"]
 
 
 async def started_adapter(keys: Keys, endpoint: str, run_dir: Path, service: str, **settings: Any) -> Child:

@@ -1,7 +1,5 @@
 """A real bus for contract tests, one router process for each test module, and services on it."""
 
-from __future__ import annotations
-
 import os
 import socket
 import subprocess

@@ -1,7 +1,5 @@
 """A middleware process on the real bus, between a scripted registry and a scripted adapter."""
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable

@@ -1,7 +1,5 @@
 """Starting a process, and waiting until it is present on the bus."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -9,8 +7,6 @@ from contextlib import asynccontextmanager
 from processes import HANG_S
 
 from aos_runtime.bus import Bus
-
-__all__ = ["until_present"]
 
 
 @asynccontextmanager

@@ -1,7 +1,5 @@
 """An adapter whose process ends or freezes: its skills are unavailable until somebody serves them."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

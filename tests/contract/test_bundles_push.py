@@ -1,7 +1,5 @@
 """`aos bundle` against a running registry."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import shutil

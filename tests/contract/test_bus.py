@@ -1,7 +1,5 @@
 """The sessions on the bus: how one opens, is present, and leaves."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

@@ -1,7 +1,5 @@
 """A router that knows its parties: who gets in, what passes, and what is told of the rest."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

@@ -1,7 +1,5 @@
 """Questions on the bus, against a real router: answers, and each way they can fail."""
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from collections.abc import AsyncIterator, Awaitable

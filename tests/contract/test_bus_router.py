@@ -1,7 +1,5 @@
 """A question whose router is gone is lost, though the next router is there and its key is served again."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Streams on the bus, against a real router."""
 
-from __future__ import annotations
-
 import asyncio
 
 import msgspec

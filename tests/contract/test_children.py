@@ -1,7 +1,5 @@
 """Child processes: what becomes of their input when they end."""
 
-from __future__ import annotations
-
 import asyncio
 import gc
 import os

@@ -1,7 +1,5 @@
 """An adapter that is a class of a user's own, and what such a class may get wrong."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

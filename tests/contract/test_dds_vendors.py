@@ -1,7 +1,5 @@
 """Topics over DDS with a program of another vendor: Cyclone DDS here, Fast DDS there."""
 
-from __future__ import annotations
-
 import random
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Following decisions: history first, then live, each record once and in order, to the end of the mission."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 

@@ -1,7 +1,5 @@
 """Skills that fail: what the rules make of it, what may move next, and what is not used."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The life of a service process: ready, told to stop, at fault, or left by its parent."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

@@ -1,7 +1,5 @@
 """The middleware as the solver follows it."""
 
-from __future__ import annotations
-
 import asyncio
 
 from processes import HANG_S

@@ -1,7 +1,5 @@
 """The outcomes that the middleware makes of a call and its result: a defined one, whatever goes wrong."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 from typing import Any

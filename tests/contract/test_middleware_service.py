@@ -1,7 +1,5 @@
 """The middleware service on the real bus: its documents, and activations that are repeated or cut off."""
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from collections.abc import Awaitable

@@ -1,7 +1,5 @@
 """Monitors on the real bus: what they have heard comes with the next outcome, and they stop what runs."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import Any
 

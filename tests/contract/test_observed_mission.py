@@ -1,7 +1,5 @@
 """A mission through the real middleware and a real engine: what its runs tell, and low-level values."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import AsyncIterator

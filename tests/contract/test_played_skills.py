@@ -1,7 +1,5 @@
 """Skills that are played by their documents: the answer is the observation, and no fields are needed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 from functools import partial

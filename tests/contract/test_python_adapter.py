@@ -1,7 +1,5 @@
 """Skills that are functions in a file, called over the real bus, and whatever they do wrong."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 from collections.abc import AsyncIterator

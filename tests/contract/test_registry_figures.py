@@ -1,7 +1,5 @@
 """The cost of a push above reading and checking the documents; `pytest -s` prints it."""
 
-from __future__ import annotations
-
 import statistics
 import time
 from pathlib import Path

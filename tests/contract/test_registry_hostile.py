@@ -1,7 +1,5 @@
 """A registry that is sent and given what no bundle should be: it refuses, and goes on."""
 
-from __future__ import annotations
-
 import asyncio
 import gzip
 import io

@@ -1,7 +1,5 @@
 """A registry that is killed while it stores: every accepted push is there whole when it is back."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import random

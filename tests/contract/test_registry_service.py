@@ -1,7 +1,5 @@
 """The registry service on the real bus: pushing, asking, dropping, and what a crash leaves."""
 
-from __future__ import annotations
-
 import asyncio
 import shutil
 import sys

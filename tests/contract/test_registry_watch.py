@@ -1,7 +1,5 @@
 """A service that follows the registry gets its documents, however late the registry answers."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Waiting for a state that is told when it changes and given to whoever asks."""
 
-from __future__ import annotations
-
 import asyncio
 
 import pytest

@@ -1,7 +1,5 @@
 """ROS 1 with a real roscore and a robot that knows nothing of AOS."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path

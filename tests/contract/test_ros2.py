@@ -1,7 +1,5 @@
 """ROS 2 over Zenoh: topics, services and actions, between nodes of ours and with others' implementation."""
 
-from __future__ import annotations
-
 import asyncio
 import importlib.util
 import os

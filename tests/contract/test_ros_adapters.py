@@ -3,8 +3,6 @@
 For ROS 1 the master is a real one, and the node a real rospy process.
 """
 
-from __future__ import annotations
-
 import asyncio
 import importlib.util
 import itertools

@@ -1,7 +1,5 @@
 """The skills service on the real bus, with the simulated robot."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Skills that `stop_when` of their mapping stops, on the real bus."""
 
-from __future__ import annotations
-
 import asyncio
 
 import msgspec

@@ -25,8 +25,6 @@ uses it: it always fails, is always lost, or says what the model excludes. `budg
 simulation costs in each planner, on bundles. Exit code 1: a claim was false, or a target was missed.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import sys

@@ -1,13 +1,9 @@
 """The answers of the driver that are no answers: problems at which the engine failed."""
 
-from __future__ import annotations
-
 import dataclasses
 from typing import Any
 
 from .problem import Problem
-
-__all__ = ["Answers"]
 
 
 @dataclasses.dataclass

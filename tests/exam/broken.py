@@ -21,8 +21,6 @@ from aos_solver.mission.terms import Terms
 
 from .jobs import Job
 
-__all__ = ["LIMITS", "Played", "played_job"]
-
 LIMITS = MissionLimits(goal_probability=0.9, step_limit=60)
 
 

@@ -5,8 +5,6 @@ counts that has used a tenth of its budget or more: one that ends early, since n
 costs next to nothing whatever a simulation costs.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime
 import platform
@@ -23,8 +21,6 @@ from aos_protocol.errors import AosError
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Planner
-
-__all__ = ["Cost", "costs_of", "examine_budgets"]
 
 PLANNERS: tuple[Planner, ...] = ("pomcp", "despot", "sarsop", "auto")
 MOST = 3.0

@@ -1,7 +1,5 @@
 """Bundles whose first decision's value is held against whole missions of the real engine."""
 
-from __future__ import annotations
-
 import random
 from pathlib import Path
 from statistics import fmean, stdev
@@ -13,8 +11,6 @@ from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 from .told import Told
-
-__all__ = ["told_of_bundle"]
 
 NEVER = 2.0
 """A probability that no belief reaches: a mission ends when its world does."""

@@ -1,12 +1,8 @@
 """The numbers that the families draw and reckon with."""
 
-from __future__ import annotations
-
 import random
 
 from .problem import Seen
-
-__all__ = ["moved", "noisy", "odds_of", "some_discount", "some_scale"]
 
 Random = random.Random
 

@@ -1,7 +1,5 @@
 """The commands of the exam: each prints what is false, a summary, and returns an exit code."""
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json
@@ -23,8 +21,6 @@ from .pomdp_file import pomdp_text
 from .problem import Problem
 from .summary import WORST_TARGET, Bounds, Regrets
 from .told import Values
-
-__all__ = ["CACHE", "examine_bundles", "examine_documents", "examine_engine", "examine_solver"]
 
 CACHE = Path.home() / ".cache" / "aos-exam"
 

@@ -1,7 +1,5 @@
 """Bundles of documents through the real compiler and the real engine, against the truth."""
 
-from __future__ import annotations
-
 import dataclasses
 import random
 from collections.abc import Iterator
@@ -21,8 +19,6 @@ from aos_solver.emission.lower_relevance import irrelevant_variables
 from .documents import Documents
 from .driver import Driver
 from .problem import RUNNING, Problem, World, tabulate
-
-__all__ = ["Examined", "examined", "left_out"]
 
 _RESPONSES = {"yes": 0, "no": 1}
 

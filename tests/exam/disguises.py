@@ -2,15 +2,11 @@
 actions in another order, observations that tell nothing.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import random
 from collections.abc import Callable, Sequence
 
 from .problem import Outcome, State, World
-
-__all__ = ["disguised"]
 
 Odds = Sequence[tuple[float, int]]
 """Values with their probabilities."""

@@ -5,8 +5,6 @@ every second bundle two numbers are mission parameters, and the bundle means som
 settings.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import random
 from collections.abc import Sequence
@@ -14,8 +12,6 @@ from itertools import pairwise
 
 from .idioms import IDIOMS, KINDS, Register
 from .problem import GOAL, RUNNING, Outcome, State, World
-
-__all__ = ["SINKS", "Documents", "documents"]
 
 SINKS = ("reward", "extrinsic_reward", "special_state", "goal", "response", "precondition", "draw")
 """The last register is read in one of these places."""

@@ -1,7 +1,5 @@
 """The driver in C++: compiled once for all problems, and asked for one report after the other."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -12,8 +10,6 @@ from typing import Any
 
 from .problem import Problem
 from .programs import built_program
-
-__all__ = ["Driver", "built_driver"]
 
 _CPP = Path(__file__).parent / "cpp"
 

@@ -1,7 +1,5 @@
 """The exam of broken skills: what robots claim that the world denies, and whether others stand in."""
 
-from __future__ import annotations
-
 import argparse
 import dataclasses
 from collections import defaultdict
@@ -13,8 +11,6 @@ from aos_protocol.errors import AosError
 
 from .broken import LIMITS, Played, played_job
 from .jobs import job
-
-__all__ = ["STANDS_IN_TARGET", "Failures", "examine_failures"]
 
 STANDS_IN_TARGET = 0.95
 """The robot has to do this share of the jobs that it can do without its broken skill."""

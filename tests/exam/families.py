@@ -4,8 +4,6 @@ A family draws its own sizes, noise, rewards and discount; `large` asks for what
 many states.
 """
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Sequence
 
@@ -13,8 +11,6 @@ from .hidden import boxes, doors, exits, hallway, machine, machines, pursuit, ro
 from .plain import counter, dense, endings, ties
 from .problem import World
 from .ways import battery, corridor, grid, heaven, invest, keys, late, lock, pushing
-
-__all__ = ["FAMILIES", "NEEDLES", "Family"]
 
 Family = Callable[[random.Random, bool], World]
 

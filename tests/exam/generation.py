@@ -1,7 +1,5 @@
 """Problems by name: a family and a seed."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Sequence
 from contextlib import suppress
@@ -9,8 +7,6 @@ from contextlib import suppress
 from .disguises import disguised
 from .families import FAMILIES
 from .problem import Problem, TooLarge, tabulate
-
-__all__ = ["named_problem", "problems"]
 
 
 def named_problem(name: str, max_states: int) -> Problem:

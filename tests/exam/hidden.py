@@ -1,14 +1,10 @@
 """Worlds of which something is not seen: doors, boxes, rocks, machines that wear, things that run away."""
 
-from __future__ import annotations
-
 import random
 from itertools import product
 
 from .chances import moved, noisy, odds_of, some_discount
 from .problem import FAILURE, GOAL, NOTHING_SEEN, Outcome, Seen, State, World
-
-__all__ = ["boxes", "doors", "exits", "hallway", "machine", "machines", "pursuit", "rocks", "search"]
 
 Random = random.Random
 

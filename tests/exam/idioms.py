@@ -6,12 +6,8 @@ which variables matter has to follow every one.
 A register is a state variable of some type that holds 0 or 1.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable
-
-__all__ = ["IDIOMS", "KINDS", "Idiom", "Register"]
 
 KINDS = ("int", "bool", "enum", "field", "array", "double", "string")
 

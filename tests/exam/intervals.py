@@ -1,7 +1,5 @@
 """Values and margins that a search tells, against the truth: are they within two standard errors of it?"""
 
-from __future__ import annotations
-
 import dataclasses
 import statistics
 from collections import Counter
@@ -12,8 +10,6 @@ from aos_solver.study.valuing import Margin, Value
 
 from .answers import Answers
 from .problem import Problem
-
-__all__ = ["HELD_TARGET", "Intervals"]
 
 HELD_TARGET = 0.93
 """The share of intervals that shall hold the truth."""

@@ -5,14 +5,10 @@ some probability, and that tell whether they did, tell it badly, or tell nothing
 be found first. Sensors tell the stage, or where the thing is.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import random
 from collections.abc import Sequence
 from typing import Literal
-
-__all__ = ["FAULTS", "Fault", "Job", "job"]
 
 Fault = Literal["fails", "is_lost", "talks_nonsense"]
 

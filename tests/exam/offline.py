@@ -1,7 +1,5 @@
 """Problems as `.pomdp` files through the offline solver, whose bounds are held against the truth."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 
@@ -12,8 +10,6 @@ from aos_solver.offline.solving import SolvingLimits, solve
 from .driver import Driver
 from .pomdp_file import pomdp_text
 from .problem import Problem
-
-__all__ = ["false_bounds"]
 
 
 async def false_bounds(problem: Problem, truth: Driver, cache_dir: Path, cpu_s: float) -> tuple[str, ...]:

@@ -1,14 +1,10 @@
 """Worlds as tables, with ties, with endings everywhere, with a clock."""
 
-from __future__ import annotations
-
 import random
 from itertools import product
 
 from .chances import odds_of, some_discount, some_scale
 from .problem import FAILURE, GOAL, NOTHING_SEEN, RUNNING, Outcome, State, World
-
-__all__ = ["counter", "dense", "endings", "ties"]
 
 Random = random.Random
 

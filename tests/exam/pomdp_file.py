@@ -4,11 +4,7 @@ There an observation depends on the state that an action leads to. Where here it
 are written once for each sensing that they are reached by.
 """
 
-from __future__ import annotations
-
 from .problem import RUNNING, Problem
-
-__all__ = ["pomdp_text"]
 
 
 def pomdp_text(problem: Problem) -> str:

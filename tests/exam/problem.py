@@ -6,19 +6,6 @@ import dataclasses
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
-__all__ = [
-    "FAILURE",
-    "GOAL",
-    "NOTHING_SEEN",
-    "RUNNING",
-    "Outcome",
-    "Problem",
-    "State",
-    "TooLarge",
-    "World",
-    "tabulate",
-]
-
 State = tuple[int, ...]
 """The values of a world's variables."""
 

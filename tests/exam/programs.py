@@ -1,7 +1,5 @@
 """Programs in C++ that the tests have of their own, on the engine's headers: compiled once, and kept."""
 
-from __future__ import annotations
-
 import asyncio
 import subprocess
 from collections.abc import Iterable
@@ -11,8 +9,6 @@ from pathlib import Path
 from aos_solver.building.build import NUMBERS, SOURCES, build_engine, number_object
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
-
-__all__ = ["PATIENCE_S", "built_program", "run", "what_decides"]
 
 PATIENCE_S = 800.0
 """Another process that compiles the same is waited for."""

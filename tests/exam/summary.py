@@ -1,7 +1,5 @@
 """The results of an exam: counts of false claims, and regret by family."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections import Counter, defaultdict
 from statistics import fmean
@@ -9,8 +7,6 @@ from typing import Any
 
 from .answers import Answers
 from .problem import Problem
-
-__all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets"]
 
 MEAN_TARGET, WORST_TARGET = 0.01, 0.10
 """A planner may lose this much more of the range than exact look-ahead."""

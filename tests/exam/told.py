@@ -1,8 +1,6 @@
 """The comparison of what decisions tell with what missions return: a value with its error, against the
 mean of missions."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections import Counter, defaultdict
@@ -11,8 +9,6 @@ from typing import Any
 
 from .answers import Answers
 from .problem import Problem
-
-__all__ = ["ALLOWED_SHARE", "Told", "Values"]
 
 ALLOWED_SHARE = 0.05
 """A value may be off by this share of the range from random actions to the optimum, whatever its error."""

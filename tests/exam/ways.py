@@ -1,13 +1,9 @@
 """Worlds where the reward is far: corridors, grids, keys and doors, boxes to push, signs off the way."""
 
-from __future__ import annotations
-
 import random
 
 from .chances import moved, noisy, odds_of, some_discount
 from .problem import FAILURE, GOAL, NOTHING_SEEN, RUNNING, Outcome, Seen, State, World
-
-__all__ = ["battery", "corridor", "grid", "heaven", "invest", "keys", "late", "lock", "pushing"]
 
 Random = random.Random
 

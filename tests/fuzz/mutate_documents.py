@@ -6,8 +6,6 @@ Each mutation changes one document of a bundle: some bytes, or words and lines a
 number and the seed give it again: --first NUMBER --count 1. Exit code 1 if a bundle crashed or was too slow.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import random
@@ -22,8 +20,6 @@ from pathlib import Path
 from aos_language.load import load_files, read_bundle_files
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower
-
-__all__ = ["Findings", "bundles_below", "fuzz"]
 
 ROOT = Path(__file__).resolve().parents[2]
 LIMIT_S = 1.0

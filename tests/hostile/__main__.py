@@ -5,8 +5,6 @@
 With a log the rounds that it has are not played again, so that an interrupted campaign goes on.
 """
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import signal

@@ -6,8 +6,6 @@ linted together: linting runs no mapping. One more mission receives every case a
 another one in each round.
 """
 
-from __future__ import annotations
-
 import os
 import random
 import time
@@ -27,8 +25,6 @@ from tests.hostile.documents import (
 from tests.hostile.said import DID_NOT_END, Command, processor_s
 from tests.hostile.secret import Secret
 from tests.kept_cache import link_engines
-
-__all__ = ["TOLD_S", "WAYS", "Attempt", "Playground", "Wanted"]
 
 WAYS = ("lint", "mission", "push")
 TOLD_S = 15.0

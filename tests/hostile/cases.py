@@ -3,13 +3,9 @@
 `SECRET` stands for a file of mode 600 that belongs to the user, `FOLDER` for its folder.
 """
 
-from __future__ import annotations
-
 import os
 
 from aos_runtime.sandbox.system_calls import numbers_of
-
-__all__ = ["COMPILED", "MAPPINGS", "MODELS"]
 
 _X86_64 = (
     'asm volatile("syscall" : "=a"(REACHED) : "a"(NUMBERL), "D"((long)(A)), "S"((long)(B)), "d"((long)(C))'

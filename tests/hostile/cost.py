@@ -1,7 +1,5 @@
 """The cost of the sandbox: `python -m tests.hostile.cost`, of a child and of a decision."""
 
-from __future__ import annotations
-
 import asyncio
 import resource
 import statistics

@@ -1,9 +1,5 @@
 """The documents of a robot whose one skill counts, for tests that need any mission."""
 
-from __future__ import annotations
-
-__all__ = ["counting"]
-
 _ENVIRONMENT = """project: PROJECT
 horizon: 2
 discount: 0.9

@@ -1,15 +1,11 @@
 """The documents of attempts: a robot whose skills count, and one or many of them hostile."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
 from .cases import MAPPINGS
 from .counters import counting
-
-__all__ = ["DEPLOY_FILE", "HOSTILE", "hostile_skills", "place_of", "write_hostile", "write_system"]
 
 DEPLOY_FILE = "cell.yaml"
 HOSTILE = "reach"

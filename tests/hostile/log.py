@@ -1,7 +1,5 @@
 """The log of a campaign: one line for each attempt, from which an interrupted one goes on."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time
@@ -11,8 +9,6 @@ from pathlib import Path
 
 import msgspec
 from tests.hostile.attempt import Attempt
-
-__all__ = ["Line", "Log", "summary", "who_plays"]
 
 
 class Line(msgspec.Struct, frozen=True, array_like=True):

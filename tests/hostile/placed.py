@@ -7,8 +7,6 @@ It is started by root. The user has a home, a temporary folder and a cache of hi
 root has; where Python stands in a folder that he may not enter, he sees of that folder Python alone.
 """
 
-from __future__ import annotations
-
 import asyncio
 import os
 import pwd
@@ -20,8 +18,6 @@ from pathlib import Path
 
 from aos_deploy.program import cache_dir
 from aos_solver.building.build import ANY_SIZE, STATE_BYTES, build_engine
-
-__all__ = ["PLACES", "is_possible", "placed"]
 
 _USER = "nobody"
 

@@ -4,8 +4,6 @@ It is forked from this program, which has imported what commands import: that sa
 time of a short command. A `fresh` command is a program of its own instead, as a user starts it.
 """
 
-from __future__ import annotations
-
 import atexit
 import os
 import resource
@@ -20,8 +18,6 @@ from pathlib import Path
 from typing import NoReturn
 
 import aos_deploy.cli
-
-__all__ = ["Command", "import_commands", "processor_s"]
 
 DID_NOT_END = "(it did not end when it was told to)"
 _COMMANDS: dict[str, Callable[[], NoReturn]] = {"aos": aos_deploy.cli.main, "aos-up": aos_deploy.cli.up_main}

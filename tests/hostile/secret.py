@@ -1,13 +1,9 @@
 """A secret of mode 600, and the look for it after an attempt."""
 
-from __future__ import annotations
-
 import contextlib
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
-
-__all__ = ["Secret"]
 
 _SHARED_MEMORY = Path("/dev/shm")
 

@@ -6,8 +6,6 @@ systemd is process 1 of namespaces of its own, and reads no units but those that
 this machine changes. It needs root, systemd and its `nsenter` and `unshare`.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -21,8 +19,6 @@ from pathlib import Path
 from tests.kept_cache import link_engines
 
 from aos_deploy.program import cache_dir
-
-__all__ = ["is_possible", "main"]
 
 _SYSTEMD = Path("/lib/systemd/systemd")
 _UNIT = "aos-fetch.service"

@@ -6,8 +6,6 @@
 Exit code 1: a target was missed.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Callable, Mapping

@@ -1,14 +1,10 @@
 """A project that changes all the time: skills, variables, rewards and endings, and mistakes."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable
 
 import msgspec
 from mappings import mapping_text
-
-__all__ = ["KINDS", "Change", "Project"]
 
 PROJECT = "plug"
 

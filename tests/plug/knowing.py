@@ -1,7 +1,5 @@
 """Beliefs that are kept and conditioned on what somebody knows, against enumeration in Python."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable
 from pathlib import Path
@@ -14,8 +12,6 @@ from aos_protocol.messages import StartMission
 from aos_solver.child.engine import Engine
 from aos_solver.mission.beginning import begin_with
 from aos_solver.mission.conditions import built_with_conditions
-
-__all__ = ["largest_difference"]
 
 _BUNDLE = Path(__file__).resolve().parents[2] / "deploy/bundles/errand"
 _ROOMS = ("office", "lab", "kitchen")

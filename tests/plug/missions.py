@@ -4,8 +4,6 @@
 conditioned against enumeration.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import random
@@ -18,8 +16,6 @@ from aos_runtime.mission_folders import mission_folder
 
 from .knowing import largest_difference
 from .staying import Process, Stayed, decisions_of, fresh, stayed
-
-__all__ = ["add_options", "measure"]
 
 BEGINS_S, GROWS_KB, EXACT = 1.0, 1024.0, 1e-12
 SETTLED_AFTER = 20

@@ -5,8 +5,6 @@ variable more, `weather`, starts by the world's state, changes by itself, and no
 observed.
 """
 
-from __future__ import annotations
-
 import random
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,8 +14,6 @@ from exam.families import FAMILIES
 from exam.generation import named_problem
 from exam.problem import NOTHING_SEEN, RUNNING, Problem, TooLarge
 from mappings import mapping_text
-
-__all__ = ["Belief", "Weather", "documents", "initial", "responses_of", "small_problems", "stepped"]
 
 Belief = Mapping[tuple[int, int], float]
 """The probability of each state with each weather."""

@@ -4,8 +4,6 @@ A real system runs: `aos-up` with a robot whose skills publish the battery's lev
 just before they end. The journal is held against what the robot sent, and beliefs against Bayes' rule.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json

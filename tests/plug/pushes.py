@@ -1,7 +1,5 @@
 """Pushes at random moments of real missions: what becomes of the mission, and how soon each is used."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import itertools
@@ -26,8 +24,6 @@ from aos_protocol.messages import (
 from aos_runtime.client import AosClient
 
 from .changes import Change, Project
-
-__all__ = ["Played", "Pushed", "between", "played"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 _BIN = Path(sys.executable).parent

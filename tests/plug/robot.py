@@ -1,7 +1,5 @@
 """A robot that always hears the tiger on the left."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import Any
 

@@ -22,8 +22,6 @@ from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Evidence, Past
 from aos_solver.mission.takeover import RunningModel
 
-__all__ = ["Interleaving", "interleaved"]
-
 SUMMARY = BeliefSummary((), 0.0, 0.0, 0.0, 1, True)
 LAYOUTS = tuple(Layout(dict.fromkeys(names, "bool"), frozenset(names)) for names in ("ab", "abc", "xyz"))
 """The first two have variables in common, the last one has none with them."""

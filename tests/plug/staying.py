@@ -1,7 +1,5 @@
 """Many missions in one system that stays, played by their documents, with pushes and killed engines."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import os
@@ -24,8 +22,6 @@ from aos_protocol.messages import BundleReport, DecisionRecord, MissionEntry, Pu
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder
-
-__all__ = ["Process", "Stayed", "decisions_of", "fresh", "stayed"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 _BIN = Path(sys.executable).parent

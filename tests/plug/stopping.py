@@ -4,8 +4,6 @@ Each run draws when the message comes, and on which topic. The adapter sends it 
 clock measures both. All other topics go on at 100 Hz, from another process.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import json

@@ -5,8 +5,6 @@ interleavings of pushes, decisions, faults, cancels and ends. `pushes` plays rea
 random moments, and compares them with a mission without.
 """
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import logging
@@ -23,15 +21,6 @@ from .changes import KINDS
 from .pushes import Played, Pushed, played
 from .shelf import interleaved
 from .truth import Examined, examined_problems
-
-__all__ = [
-    "add_push_options",
-    "add_shelf_options",
-    "add_truth_options",
-    "measure_pushes",
-    "measure_shelf",
-    "measure_truth",
-]
 
 PUSHES_OF_ONE = 25
 """The pushes of one mission."""

@@ -1,7 +1,5 @@
 """The belief of documents that gain a variable while a mission runs, against the truth."""
 
-from __future__ import annotations
-
 import math
 import random
 from collections import defaultdict
@@ -20,8 +18,6 @@ from aos_solver.mission.past import Evidence, Past, updated
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover
 
 from .models import Belief, Weather, documents, initial, small_problems, stepped
-
-__all__ = ["Examined", "examined", "examined_problems"]
 
 STEPS = 6
 MANY_S = 3600.0

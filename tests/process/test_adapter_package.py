@@ -1,7 +1,5 @@
 """The distribution `aos-adapter` from its wheel, in an environment with what it needs and nothing else."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The tutorial of docs/adapters, followed line by line; and each template of an adapter, run as it is."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -1,7 +1,5 @@
 """The main job: `aos-up` with the real services, watched from outside, ended in every way."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json

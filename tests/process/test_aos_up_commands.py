@@ -1,7 +1,5 @@
 """The small commands beside aos-up, as a user types them."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Noisy rewards: planners and beliefs count them by their mean, worlds draw them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Actions that nobody could carry out now are not decided for, whichever planner decides."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The belief with which a mission begins: kept, some time later, given what is known; against enumeration."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

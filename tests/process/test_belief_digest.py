@@ -1,7 +1,5 @@
 """The digest of a belief: a replay of the outcomes gives it again, whatever became of the engine."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

@@ -1,7 +1,5 @@
 """Beliefs against Bayes' rule by hand: exact where steps can be enumerated, and how far off elsewhere."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Sequence
 from pathlib import Path

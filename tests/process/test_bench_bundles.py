@@ -1,7 +1,5 @@
 """The benchmark bundles say what the literature says: beliefs and rewards along random walks."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import random

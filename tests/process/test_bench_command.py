@@ -1,7 +1,5 @@
 """`aos bench`: the baselines are of the same problems, and its report can be read."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

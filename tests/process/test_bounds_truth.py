@@ -1,7 +1,5 @@
 """The point-based solver's bounds against exact values, on random models."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Whole systems of the tutorial's project whose robots are broken: docs/when-a-skill-fails.md."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

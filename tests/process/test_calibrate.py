@@ -1,7 +1,5 @@
 """Calibration: what recorded missions of known models say about their documents' numbers."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

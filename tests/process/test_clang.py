@@ -3,8 +3,6 @@
 All other tests compile with the first compiler that the machine has, which is g++ nearly everywhere.
 """
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from importlib.util import find_spec

@@ -1,7 +1,5 @@
 """Commands are one line of named fields, which both sides know by the same names."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from asyncio.subprocess import PIPE

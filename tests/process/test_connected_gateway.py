@@ -1,7 +1,5 @@
 """A gateway that knows of a system nothing but its endpoint, as one on another host does through ssh."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Constraints in `aos plan` and `aos simulate`, and policies that keep to them."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

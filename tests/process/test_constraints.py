@@ -3,8 +3,6 @@
 The probabilities of the small models here are known by hand.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

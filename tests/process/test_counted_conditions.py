@@ -1,7 +1,5 @@
 """Code that counts conditions is made of what people write, and no model fails to compile by it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

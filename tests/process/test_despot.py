@@ -1,7 +1,5 @@
 """DESPOT: reproducible, within its budget, as good as the truth on problems whose truth is known."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """A bundle's picture.py: what it draws, and that nothing it does reaches whoever asks."""
 
-from __future__ import annotations
-
 import base64
 import json
 import shutil

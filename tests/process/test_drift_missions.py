@@ -1,7 +1,5 @@
 """Drift in missions with a real engine: alarms in the records, over missions and other documents."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from mappings import mapping_text

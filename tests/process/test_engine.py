@@ -1,7 +1,5 @@
 """The engine child against published values, and what may happen to a process."""
 
-from __future__ import annotations
-
 import os
 import signal
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The reports of an engine that cannot go on: another state, a strange response, an unknown command."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from asyncio.subprocess import PIPE

@@ -1,7 +1,5 @@
 """The engine's headers by themselves: each sentence of tests/cpp/units is a test."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

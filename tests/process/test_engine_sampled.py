@@ -1,7 +1,5 @@
 """Beliefs that cannot be enumerated: held as particles, and right on average."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Continuous draws behind thresholds: states are listed with estimated probabilities; nothing is proven."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

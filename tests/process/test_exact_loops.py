@@ -1,7 +1,5 @@
 """Loops that draw are exact: closed forms, in beliefs, steps, sensors, corrections and `aos plan --exact`."""
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A share of the exam (tests/exam): random models whose truth is known, awkward documents, and that truth."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`aos experiment run`: a report of real missions, which goes on where it was."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

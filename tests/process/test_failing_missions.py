@@ -1,7 +1,5 @@
 """The claims of a mission where skills fail, and with what it goes on: docs/when-a-skill-fails.md."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Missions that fail at a failpoint are completed: a share of `make chaos`."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

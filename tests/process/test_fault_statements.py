@@ -1,7 +1,5 @@
 """A fault of model code in a section of many statements is told at the statement that failed."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Messages that somebody makes up in mid-mission change nothing, and a log tells of each."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hostile.bus.cell import STEPS, cell

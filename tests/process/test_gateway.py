@@ -1,7 +1,5 @@
 """The gateway over HTTP: a mission that is over, one that runs, and what is refused."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

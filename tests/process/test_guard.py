@@ -1,7 +1,5 @@
 """The guard around commands: their ending is passed on, and nothing of them stays behind."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """Bundles as Gymnasium environments."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import traceback

@@ -1,7 +1,5 @@
 """Hot plug: skills that land in mid-mission are in use from the next decision on."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The gateway's answers to requests that schemathesis makes up; `python -m tests.http_fuzz` asks more."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from gateway import gateway, played

@@ -1,7 +1,5 @@
 """The beliefs of an engine where skills ended unobserved: one cause for each row, and the cautious belief."""
 
-from __future__ import annotations
-
 import os
 import signal
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A mission that decides for what changes nothing and tells nothing: it says so, or gives up."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from models import built_text

@@ -1,7 +1,5 @@
 """Ctrl-C in commands that work for long: what they say, and that they end at once."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """The journal of a process that is killed while it writes."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The language server, started and spoken to as an editor does."""
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from collections.abc import AsyncIterator, Sequence

@@ -1,7 +1,5 @@
 """Beliefs of many states: kept when an engine dies, carried over, corrected, and told in brief."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A thousand state variables and an array of ten thousand elements are models like any other."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Problems with too many states to list: what POMCP knows of their states before the first decision."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

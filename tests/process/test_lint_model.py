@@ -1,7 +1,5 @@
 """The words of `aos lint` and `aos plan` on a model that compiles: faults, and what no action leads to."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections import Counter

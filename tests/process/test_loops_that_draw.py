@@ -1,7 +1,5 @@
 """Loops that draw until a condition holds: in either order, nested, endless. Draws from many weights."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Mapping code in its worker process: what it cannot do to the service, and what is said about it."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

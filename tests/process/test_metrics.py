@@ -1,7 +1,5 @@
 """The gateway's metrics of a mission that runs, for Prometheus."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

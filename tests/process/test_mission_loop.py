@@ -1,7 +1,5 @@
 """The mission loop with a real engine, and a robot that the test scripts."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Mission parameters at work: one compiled model, whose engines are started with values."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """`aos test`: real missions of users' tests, with what a continuous integration reads."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Missions that follow one another in a system that stays: started, stopped, kept apart, taken up."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """Models that become ready while the mission takes one: which it gets, with which belief, who closes what."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

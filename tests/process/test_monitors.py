@@ -1,7 +1,5 @@
 """Monitors in beliefs: what they say is weighed by Bayes' rule, and the journal gives it again."""
 
-from __future__ import annotations
-
 import random
 from collections import defaultdict
 from collections.abc import AsyncIterator, Mapping

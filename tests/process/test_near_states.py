@@ -1,7 +1,5 @@
 """Models with endlessly many states, of which a decision reaches few, such as counts without an end."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """`aos new`: what it writes lints clean, plans and plays."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The notebook, which is the code of docs/python.md, runs as it is."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Observations that are numbers: beliefs against posteriors worked out by hand."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping

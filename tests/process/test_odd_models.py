@@ -1,7 +1,5 @@
 """Models at the edges of what documents can say: each is planned, or refused with the reason."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Decisions where states cannot be listed: ways to rewards against what could be found out first."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from statistics import fmean
 

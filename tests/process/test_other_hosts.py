@@ -1,7 +1,5 @@
 """Adapters on another host, through an SSH server of this machine or a stand-in for one."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Programs that are no adapters: ready before the adapters, watched, gone with all that they started."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

@@ -1,7 +1,5 @@
 """The page in a browser: missions that are over and that run, all views, narrow screens, lost connections."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """The output of commands where nobody looks at a terminal: their results, and nothing beside them."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

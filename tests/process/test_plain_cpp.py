@@ -1,7 +1,5 @@
 """C++ that documents have now and then: copies that grow, captures with values, references to a state."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

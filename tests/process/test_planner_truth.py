@@ -1,7 +1,5 @@
 """The search against known values: the tiger's optimum, and small random POMDPs solved independently."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A share of `make plug`: what documents that change in mid-mission cost, and what is believed then."""
 
-from __future__ import annotations
-
 import logging
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """SARSOP at every decision: true bounds, repeatable, kept over a mission; refused where there are none."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The two builds of a model, quick and thorough."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

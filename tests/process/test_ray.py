@@ -3,8 +3,6 @@
 Ray is in no lock: `pip install 'ray[client]'` into the environment makes these tests run.
 """
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from importlib.util import find_spec

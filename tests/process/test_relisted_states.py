@@ -1,7 +1,5 @@
 """States that are listed anew: what was worked out of an earlier listing is of other states."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

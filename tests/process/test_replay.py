@@ -1,7 +1,5 @@
 """A mission that is replayed decides the same, bit for bit, and a replay says where it does not."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

@@ -1,7 +1,5 @@
 """`aos check` replays the outcomes of a run, and holds each journalled belief against that."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

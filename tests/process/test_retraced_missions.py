@@ -1,7 +1,5 @@
 """A mission whose documents changed is taken up through its models as they were."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

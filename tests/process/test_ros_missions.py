@@ -1,7 +1,5 @@
 """Whole missions by foreign names: an original bundle on our robot, and over ROS 1 and ROS 2."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

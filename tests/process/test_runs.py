@@ -1,7 +1,5 @@
 """Runs of aos-up beside one another: who gets the port, what `latest` is, and who finds a living mission."""
 
-from __future__ import annotations
-
 import json
 import os
 import queue

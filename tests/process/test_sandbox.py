@@ -1,7 +1,5 @@
 """The sandbox with real commands: documents' code that reaches out, and a kernel without Landlock."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

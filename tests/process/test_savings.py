@@ -1,7 +1,5 @@
 """Decisions where nothing is rewarded and what is neglected costs: what saves most against a rest."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from statistics import fmean
 

@@ -1,7 +1,5 @@
 """A model whose code is shared is the model whose code is written out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from models import built_text, engine_of

@@ -1,7 +1,5 @@
 """A simulated mission tells how its world has ended, and what the belief held for it."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

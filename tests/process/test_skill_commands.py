@@ -1,7 +1,5 @@
 """`aos skill` and `aos resume` beside a mission that holds, and adapters that die in the middle of one."""
 
-from __future__ import annotations
-
 import json
 import re
 import signal

@@ -1,7 +1,5 @@
 """Solving before the mission: bounds that are true, policies that keep them, and C that follows policies."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """`aos solve` as a person calls it, and what the other commands and the deploy file do with its policy."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Limits of solving hold in the middle of a trial, which takes long in a large model."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Spans of a mission by the real `aos-up`, in a real collector."""
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
 

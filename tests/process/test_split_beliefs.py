@@ -1,7 +1,5 @@
 """Beliefs whose steps have too many outcomes to list: close to the exact ones, and the same after a kill."""
 
-from __future__ import annotations
-
 import random
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Deadlines of child processes on a machine that is busy with other work."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import AsyncIterator

@@ -1,8 +1,6 @@
 """The evidence of real runs about the state beyond the response, and the text of a state, in a running
 engine."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Mapping
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Missions that somebody steers, with a real engine: what they do at once, and after a kill."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from pathlib import Path

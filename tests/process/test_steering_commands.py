@@ -1,7 +1,5 @@
 """The commands with which an operator steers a system that runs, and one whose solver is killed meanwhile."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import time

@@ -1,7 +1,5 @@
 """A model with few states is stepped by a table, with the odds of its documents; any other by their code."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

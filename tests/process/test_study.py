@@ -1,7 +1,5 @@
 """Explanations of decisions, and decisions under other circumstances, held against planning."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The supervisor with small real services on a real bus: order, ends, and what stays behind."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import re

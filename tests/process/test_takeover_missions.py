@@ -1,7 +1,5 @@
 """Missions in which another model takes over, or that other documents take up."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

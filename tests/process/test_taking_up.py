@@ -1,7 +1,5 @@
 """A mission is the fold of its journal: cut off at any row, it goes on as if nothing had been."""
 
-from __future__ import annotations
-
 import msgspec
 import pytest
 from models import engine_of

@@ -1,7 +1,5 @@
 """docs/tutorial.md does what it says. `python -m tests.walk` does it with an installed wheel."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

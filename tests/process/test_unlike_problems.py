@@ -1,7 +1,5 @@
 """Problems with too many states to list, each with one trait that sampling gets wrong easily."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from mappings import mapping_text

@@ -1,7 +1,5 @@
 """Models whose states can be listed although there are too many observations to list."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

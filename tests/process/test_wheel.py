@@ -1,7 +1,5 @@
 """AOS from its wheel in an empty folder: the examples, the benchmarks and the main job are all there."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`aos why`, `whatif`, `replay`, `diff`: a mission that runs and its directory give the same answers."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,8 +1,6 @@
 """The decisions by the documents of the simulated worlds: the claims of the paper, and what brute force
 says."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import random

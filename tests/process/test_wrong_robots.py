@@ -1,7 +1,5 @@
 """Each claim of a shipped experiment fails on a robot that does otherwise."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Questions about decisions: do they disturb, how long do they take, is what they say true?"""
 
-from __future__ import annotations
-
 import asyncio
 import dataclasses
 import math
@@ -21,8 +19,6 @@ from aos_solver.study.valuing import Margin, Value
 
 from .played import Beside, Played, play
 from .replays import files_of
-
-__all__ = ["measure_flips", "measure_intervals", "measure_undisturbed"]
 
 _BUNDLES = ("armadillo-rough", "armadillo-finer", "armadillo-rough-enhanced", "armadillo-finer-enhanced")
 

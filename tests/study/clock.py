@@ -1,7 +1,5 @@
 """The time that `why` takes for decisions of all planners, beside twice their budget."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 from typing import Any
@@ -11,8 +9,6 @@ from aos_solver.study.study import Study
 
 from .played import play
 from .replays import files_of
-
-__all__ = ["measure"]
 
 _BUDGET_S = 0.2
 _LATE_S = 1.0

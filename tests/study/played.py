@@ -29,8 +29,6 @@ from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import ReplayedMission
 
-__all__ = ["Beside", "Files", "Played", "play"]
-
 Files = Mapping[str, bytes]
 
 Steering = Callable[[Mission], None]

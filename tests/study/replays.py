@@ -1,7 +1,5 @@
 """Missions of many kinds, each replayed: are all values, counts and beliefs the same?"""
 
-from __future__ import annotations
-
 import os
 import signal
 from collections import Counter
@@ -14,8 +12,6 @@ from aos_solver.study.comparing import compared
 
 from ..processes import descendants, until_ended
 from .played import Beside, Files, Played, play
-
-__all__ = ["BUNDLES", "files_of", "measure"]
 
 BUNDLES = Path(__file__).resolve().parents[2] / "deploy" / "bundles"
 

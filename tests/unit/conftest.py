@@ -1,7 +1,5 @@
 """Folders that unit tests of several files begin with."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

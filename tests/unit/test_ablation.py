@@ -1,7 +1,5 @@
 """Ablations switch off mechanisms that the engine has, and every one of them."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The table of who may do what on the bus: what it grants, and what it says of mistakes."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The output of aos-up: plain lines, JSON lines, and the live screen, from the same events."""
 
-from __future__ import annotations
-
 import io
 import json
 

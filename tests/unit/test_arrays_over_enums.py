@@ -1,7 +1,5 @@
 """Arrays over an enum: `state.at[Soda]`, in documents, in emitted models and in what people see."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

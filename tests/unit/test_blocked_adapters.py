@@ -1,7 +1,5 @@
 """An adapter whose call holds up its event loop ends, and one that only takes long goes on."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

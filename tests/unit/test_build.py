@@ -1,7 +1,5 @@
 """Building emitted models: the cache, mistakes at their places, limits."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

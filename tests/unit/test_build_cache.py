@@ -1,7 +1,5 @@
 """Several processes with one cache: one makes an entry, and the others wait for it, but not for ever."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import subprocess

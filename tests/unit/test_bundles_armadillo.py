@@ -1,7 +1,5 @@
 """Our armadillo bundles are the original ones under other names."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`aos lint` and `aos inspect` as a person calls them."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Several bundles of a deploy file, which make one project together."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

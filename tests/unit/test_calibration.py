@@ -1,7 +1,5 @@
 """The proposals of calibration: only what records contradict, never what the documents exclude."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

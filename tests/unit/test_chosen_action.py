@@ -1,7 +1,5 @@
 """Extrinsic changes know which skill was chosen, also where skills have the same parameters or none."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Claims that something never happens, about skills and states that no document has, are mistakes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Claims about missions, what they mean, and how sure a share is."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The simulated laboratory: cups are seen in pictures, grasped, and dropped into bins."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The helps of commands are whole on a terminal of 80 columns, and each has an example."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from contextlib import redirect_stdout

@@ -1,7 +1,5 @@
 """Finding a compiler and calling it."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Constraints in deploy files: every mistake is told before anything starts, at its place."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -3,8 +3,6 @@
 tests/constructs.md lists the constructs, with the tests that show each of them at work.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Documents in the other dialect say the same: there, and back again."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The loops that draw, and the variables that live across their rounds."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.cpp.loops import DrawingLoop, Scope, loops_of

@@ -1,7 +1,5 @@
 """Marks at the statements of C++ code."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.cpp.statements import Marks, Statement, marked

@@ -1,7 +1,5 @@
 """Variables of C++ that are read before they have a value: which are told, and which code is left alone."""
 
-from __future__ import annotations
-
 import pytest
 from test_lint_words import SKILL, finding_texts
 

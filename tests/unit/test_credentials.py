@@ -1,7 +1,5 @@
 """Names and passwords of a run, the place of its bus, and the systemd unit that starts one."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import shutil

@@ -1,7 +1,5 @@
 """Decision records: whoever reads one that no longer holds is told by which it is superseded."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`aos decisions` of a run that is over."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

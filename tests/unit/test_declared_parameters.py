@@ -1,7 +1,5 @@
 """Mission parameters in the documents of all dialects, and the values that somebody sets."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The deploy file: what it means, and that everything wrong with it is found at once and at its place."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The programs that a deploy file starts: which, with what settings, in which folder."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

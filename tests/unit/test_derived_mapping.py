@@ -1,7 +1,5 @@
 """A skill without an abstraction mapping has one: its path, its fields, and `response` of the result."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

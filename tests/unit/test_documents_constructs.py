@@ -1,7 +1,5 @@
 """Every construct of the JSON and SDL dialects in the typed model."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The original bundles: all of them load, and what is strange in them is said at the right place."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

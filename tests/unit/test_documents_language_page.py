@@ -1,7 +1,5 @@
 """The examples of the language page are documents that load."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

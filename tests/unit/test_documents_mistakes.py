@@ -1,7 +1,5 @@
 """Seeded mistakes are told at their places, and the bundles they are seeded in are models that run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """A small share of the mutations of tests/fuzz/mutate_documents.py, which runs 50,000."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The contents that are read out of C++ snippets."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st

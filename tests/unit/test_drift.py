@@ -1,7 +1,5 @@
 """Model against reality: what the sequential tests find, how fast, and their silence for a right model."""
 
-from __future__ import annotations
-
 import math
 
 import msgspec

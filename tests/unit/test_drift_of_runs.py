@@ -1,7 +1,5 @@
 """Skills' tests that go on from one run to the next."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The knowledge of the language server about words and outlines, without an editor."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

@@ -1,7 +1,5 @@
 """The original AOS bundles as emitted models."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

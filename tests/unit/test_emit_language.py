@@ -1,7 +1,5 @@
 """Every construct of the documents in emitted models: types, containers, loops, draws, built-ins."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

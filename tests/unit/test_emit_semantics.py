@@ -1,7 +1,5 @@
 """The effects of an emitted model's step: copies of the state, phases, rewards, endings."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The emitted C++ as a person reads it: the width of its lines, names of its own, what it explains."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The endings of a mission: by what special states say of it, in all dialects, and by what a belief holds."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

@@ -1,7 +1,5 @@
 """Every code of the table of errors is provoked, here or by a test that names it."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The report of an experiment on its missions: figures, the optimum beside them, tables and drawings."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

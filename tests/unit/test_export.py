@@ -1,7 +1,5 @@
 """Records of runs to take home: MCAP files, tables and files of whole runs, each read back."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import json

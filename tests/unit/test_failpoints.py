@@ -1,7 +1,5 @@
 """Failpoints: a process fails at the place that the environment names, once, and else nowhere."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

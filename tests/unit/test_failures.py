@@ -1,8 +1,6 @@
 """The failures of a skill: what counts as one, when the skill is set aside, and what the mission does
 then."""
 
-from __future__ import annotations
-
 from math import log
 from typing import Any
 

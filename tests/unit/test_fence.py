@@ -1,7 +1,5 @@
 """Only the mission's newest solver is obeyed, and an id stands for one motion."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec

@@ -1,7 +1,5 @@
 """Fields under other names, as `bind:` gives them for foreign paths."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_protocol.errors import SkillError

@@ -1,7 +1,5 @@
 """Access to the gateway: by which name, from which page, with which token."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The event stream of a mission that is over, in a gateway that others ask at the same time."""
 
-from __future__ import annotations
-
 import asyncio
 from contextlib import aclosing
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Metrics in Prometheus' text format, and what a decision record adds to them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from decision_records import decision_record

@@ -1,7 +1,5 @@
 """The names of runs in the gateway, and questions to a run that ends."""
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from collections.abc import AsyncIterator

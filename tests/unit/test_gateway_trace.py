@@ -1,7 +1,5 @@
 """The rows of steps that views over time are made of."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from decision_records import decision_record

@@ -1,7 +1,5 @@
 """The conditions of rewards and goals that code counts, as far as its text tells."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.cpp.goal_conditions import counted_conditions

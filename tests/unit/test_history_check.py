@@ -1,7 +1,5 @@
 """The check of a run's history: each rule is broken in a history that otherwise holds, and is caught."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple

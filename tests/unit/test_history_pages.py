@@ -1,7 +1,5 @@
 """Histories in pages, out of a journal: every record once, in order, whatever stands between them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

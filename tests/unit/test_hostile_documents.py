@@ -1,7 +1,5 @@
 """Documents and uploads that a stranger makes to be read for ever: refused, with few words."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Files of runs that a stranger made: refused, or what is wrong in them is told."""
 
-from __future__ import annotations
-
 import json
 import zipfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Limits of the house that a test can hold everybody to: functions, their parameters, what git tracks."""
 
-from __future__ import annotations
-
 import ast
 import subprocess
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The way of messages to the event loop: in order, and with time for the rest between them."""
 
-from __future__ import annotations
-
 import asyncio
 from functools import partial
 

@@ -1,7 +1,5 @@
 """The journal: what was appended stays, in order, and nothing but appending is possible."""
 
-from __future__ import annotations
-
 import random
 import sqlite3
 from contextlib import closing

@@ -1,7 +1,5 @@
 """The JSON reader: values, and the place of everything."""
 
-from __future__ import annotations
-
 import json
 import string
 

@@ -1,7 +1,5 @@
 """Signals that come when the mission is over, and two that are one."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

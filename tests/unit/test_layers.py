@@ -1,7 +1,5 @@
 """import-linter holds the sources to the layers and doors of docs/architecture.md, and would notice."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

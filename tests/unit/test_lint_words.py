@@ -1,7 +1,5 @@
 """The answers of the checks to mistakes that a newcomer makes; each is said once."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """The run that a command means."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Logs of programs that print without end."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_deploy.log_sizes import shorten

@@ -1,7 +1,5 @@
 """A run whose journal has lost its last rows, as a write-ahead log that was cut off: it is not taken up."""
 
-from __future__ import annotations
-
 import random
 from pathlib import Path
 

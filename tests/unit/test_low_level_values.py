@@ -1,7 +1,5 @@
 """Low-level values: where they begin, who gives new ones, who finds them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

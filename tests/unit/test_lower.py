@@ -1,7 +1,5 @@
 """The decisions of lowering, and what it refuses."""
 
-from __future__ import annotations
-
 import msgspec
 import pytest
 from mappings import mapping_of_model, mapping_text

@@ -1,7 +1,5 @@
 """The draws that count by their mean, as far as the text of the code tells."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

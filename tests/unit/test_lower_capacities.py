@@ -1,7 +1,5 @@
 """The capacity that the vectors of a state get."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.cpp.snippets import read_cpp

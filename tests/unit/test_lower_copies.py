@@ -1,7 +1,5 @@
 """The copies of the state that a step keeps: those that are read after a newer one is written."""
 
-from __future__ import annotations
-
 import pytest
 from mappings import mapping_of_model
 from scripted_models import text_project

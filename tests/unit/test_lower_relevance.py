@@ -1,7 +1,5 @@
 """The state variables that matter to nobody, as far as the text of the code tells."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

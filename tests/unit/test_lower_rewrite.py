@@ -1,7 +1,5 @@
 """The edits that turn document code into C++, and the way back through them."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.cpp.snippets import read_cpp

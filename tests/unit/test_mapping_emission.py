@@ -1,7 +1,5 @@
 """The module that is generated from a mapping, and what is said about one that is not Python."""
 
-from __future__ import annotations
-
 import ast
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Faults of mapping code: what is said, and at which place of the document."""
 
-from __future__ import annotations
-
 from mapping_documents import emitted
 from mapping_runs import HEAD, fields, loaded
 

@@ -1,7 +1,5 @@
 """The names in the Python of mappings: what nothing gives is told, what Python allows is not."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.load import load_files

@@ -3,8 +3,6 @@
 The module runs in this process; tests/process runs it where it belongs.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Robot data as objects with attributes, and back."""
 
-from __future__ import annotations
-
 from enum import Enum
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Monitors in documents: what is wrong with either half, told at its line, and both dialects."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

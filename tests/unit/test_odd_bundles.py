@@ -1,7 +1,5 @@
 """Two bundles full of odd but legal spellings: they load, compile, and mean what they say."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

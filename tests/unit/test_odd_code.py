@@ -1,7 +1,5 @@
 """Model code as a C++ programmer writes it: it compiles, and does what it says."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from mappings import mapping_text

@@ -1,7 +1,5 @@
 """Deploy files that nobody writes on purpose: without end, with numbers and characters that nothing has."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

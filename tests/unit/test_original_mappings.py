@@ -1,7 +1,5 @@
 """Original mappings, construct by construct: as docs/coming-from-aos-1.md tells them."""
 
-from __future__ import annotations
-
 import copy
 import json
 from typing import Any

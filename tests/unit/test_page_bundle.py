@@ -1,7 +1,5 @@
 """The page that comes with AOS is what its sources make, and small."""
 
-from __future__ import annotations
-
 import asyncio
 import gzip
 import os

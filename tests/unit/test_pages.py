@@ -1,7 +1,5 @@
 """Pages lead to what is there, and pages of reference have no dates."""
 
-from __future__ import annotations
-
 import importlib
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """Pages name commands, options, modules and targets of make that there are."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The project's papers say what is there: commands, tables, locked dependencies."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 import subprocess

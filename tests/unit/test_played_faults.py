@@ -1,7 +1,5 @@
 """Faults of skills that a model plays: which can be asked for, and when they come."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Tests `.pomdp` files of other programs: without a model, with a byte order mark, and of MDPs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

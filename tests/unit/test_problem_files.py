@@ -1,7 +1,5 @@
 """Problem files of other planners: read, refused at the right place, and written so that they read back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Old runs are removed, the newest stay, and so does whatever goes on."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_deploy.pruning import pruned

@@ -1,7 +1,5 @@
 """A robot's functions that would end its process, and classes that cannot be made."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast

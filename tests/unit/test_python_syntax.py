@@ -1,7 +1,5 @@
 """Python is parsed by one thread at a time: CPython's parser mixes threads up."""
 
-from __future__ import annotations
-
 import gc
 import threading
 import time

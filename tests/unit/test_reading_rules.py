@@ -3,8 +3,6 @@
 One rule a line, over the two bundles `rooms` in tests/data, which have no findings.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """A decision explained in lines: what they say, and that they are eight at most."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_deploy.views.reasons import why_lines

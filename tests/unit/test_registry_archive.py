@@ -1,7 +1,5 @@
 """Bundles in archives: taken whole, or refused with the entry's name."""
 
-from __future__ import annotations
-
 import io
 import shutil
 import tarfile

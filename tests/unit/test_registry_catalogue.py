@@ -1,7 +1,5 @@
 """Merging pushes, and the catalogue that keeps revisions."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The cost of a push: each file is read once, and what is cheap to refuse is refused first."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 

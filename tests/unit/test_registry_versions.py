@@ -1,7 +1,5 @@
 """Versions that documents declare, and what a push over a declared one needs."""
 
-from __future__ import annotations
-
 import sqlite3
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Programs on other hosts: what ssh is told, and what is said when it fails."""
 
-from __future__ import annotations
-
 import shlex
 import socket
 from pathlib import Path

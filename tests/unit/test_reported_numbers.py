@@ -1,7 +1,5 @@
 """Numbers beside a response in the documents: how they are read, emitted, and taken from local variables."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

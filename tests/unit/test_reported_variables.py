@@ -1,7 +1,5 @@
 """The words of documents on what a real run tells: local variables in model code, low-level assignments."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.load import LoadedBundle, load_files

@@ -1,7 +1,5 @@
 """The rule for starting a process again."""
 
-from __future__ import annotations
-
 from aos_deploy.restarts import STARTS, STARTS_OF_ADAPTER, WITHIN_S, Restarts
 
 

@@ -1,7 +1,5 @@
 """rmw_zenoh's keys, tokens and attachments: the examples of its design document, and round trips."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_skills.ros.node import Qos

@@ -1,7 +1,5 @@
 """Interfaces of ROS: the user's files, hashes as ROS 2 has them, values as CDR."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The interval in which a choice changes, as far as margins with errors tell, and the error of a value."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_solver.study.flips import places_beside, sampled_flip

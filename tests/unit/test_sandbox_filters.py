@@ -1,7 +1,5 @@
 """The filters of system calls, run as the kernel runs them, for both kinds of machine."""
 
-from __future__ import annotations
-
 import errno
 import os
 import re

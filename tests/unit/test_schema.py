@@ -1,7 +1,5 @@
 """The JSON Schemas are of one mind with the readers."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The words that SDL has here and AOS 2.0 has not: read where they are right, refused in place where not."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_language.findings import Findings

@@ -1,7 +1,5 @@
 """SDL text cut into sections."""
 
-from __future__ import annotations
-
 from aos_language.findings import Findings
 from aos_language.reading.sdl_sections import GRAMMARS, places_of_words
 from aos_language.reading.sdl_text import Section, parse_sdl

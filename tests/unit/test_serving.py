@@ -1,8 +1,6 @@
 """The paths that are served to ROS: the types from the deploy file and from documents, and what is said of
 mistakes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

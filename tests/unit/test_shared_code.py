@@ -1,7 +1,5 @@
 """Constants and functions that all model code of a project shares."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Python that all mappings of a project share."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """A topic on which nothing ever comes is told, once."""
 
-from __future__ import annotations
-
 import logging
 
 import pytest

@@ -1,7 +1,5 @@
 """Repeats and crashes: there is at most one motion for each activation."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

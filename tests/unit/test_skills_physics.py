@@ -1,7 +1,5 @@
 """The simulated Armadillo: what its skills do, in real physics."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

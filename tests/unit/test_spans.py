@@ -1,7 +1,5 @@
 """Missions as OpenTelemetry's spans: what is sent to a collector, and what keeps its place."""
 
-from __future__ import annotations
-
 import json
 import socket
 from pathlib import Path

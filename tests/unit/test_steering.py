@@ -1,7 +1,5 @@
 """Steering as a fold: what each verb does, and what a script leads to."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`stop_when` of a mapping: what is wrong with it, and when it holds."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

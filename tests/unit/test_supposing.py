@@ -1,7 +1,5 @@
 """Suppositions as text: what they change, and what is said of those that change nothing."""
 
-from __future__ import annotations
-
 import pytest
 
 from aos_protocol.errors import StudyError

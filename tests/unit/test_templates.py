@@ -1,7 +1,5 @@
 """Templates that were compiled are kept beside Python's compiled modules, and used while they are current."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

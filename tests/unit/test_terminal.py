@@ -1,7 +1,5 @@
 """Progress of long work where standard error is no terminal."""
 
-from __future__ import annotations
-
 import io
 
 import pytest

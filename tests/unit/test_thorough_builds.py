@@ -1,7 +1,5 @@
 """Builds that nobody waits for end with their compiler, however often they are asked to."""
 
-from __future__ import annotations
-
 import asyncio
 import gc
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The simulated Panda that plays tic-tac-toe: ink where the pen touches, a board read from a picture."""
 
-from __future__ import annotations
-
 import os
 import pty
 import random

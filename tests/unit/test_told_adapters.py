@@ -1,7 +1,5 @@
 """The settings that an adapter makes of the words of its command, and the class that these name."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The simulated TurtleBot3: wheels on the floor, a lidar, and ways around what it meets."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The table of the actions' values."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

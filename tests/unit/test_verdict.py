@@ -1,7 +1,5 @@
 """The verdict on a run: a function of its journal, which needs no space on the disk."""
 
-from __future__ import annotations
-
 import sqlite3
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The world file: read whole, or refused with its name and the place."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

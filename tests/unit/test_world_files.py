@@ -1,7 +1,5 @@
 """World files of the simulated rooms, and what is wrong in them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -5,8 +5,6 @@ from collections.abc import Callable
 from .delivery import delivery
 from .writing import Bundle, BundleWriter
 
-__all__ = ["APART", "APART_SIZES", "arms", "courier", "drone", "plant"]
-
 
 def plant(count: int = 16) -> Bundle:
     """Machines that may be worn or broken: listen (noisy), open, oil, replace; then start the plant, once."""

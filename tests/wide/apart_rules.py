@@ -8,8 +8,6 @@ import numpy as np
 from .delivery import delivery_rule
 from .world import MOST_STEPS
 
-__all__ = ["APART_RULES", "arms", "courier", "drone", "plant"]
-
 
 def plant(count: int, rng: random.Random) -> float:
     """Listen to a machine until one fault has 0.75 of the belief, mend it by that, and start at the end."""

@@ -4,8 +4,6 @@ import random
 
 from .writing import Bundle, BundleWriter
 
-__all__ = ["cleaning", "cleaning_rule"]
-
 _BATTERY, _CHARGE = 24, 8
 _BIN = 4
 _BUSY, _QUIET = 0.12, 0.04  # how often a room becomes dirtier

@@ -6,8 +6,6 @@ import numpy as np
 
 from .writing import Bundle, BundleWriter
 
-__all__ = ["delivery", "delivery_rule"]
-
 _ROOMS = 8  # the parcels wait in room 0; rooms 4 to 7 are upstairs
 _BATTERY = 14
 _BREAKS, _MENDED = 0.05, 0.3

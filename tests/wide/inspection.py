@@ -5,8 +5,6 @@ import random
 
 from .writing import Bundle, BundleWriter
 
-__all__ = ["inspection", "inspection_rule"]
-
 _PRIOR = 0.15
 _STATION_M = 4.0
 

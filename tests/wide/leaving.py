@@ -11,8 +11,6 @@ import numpy as np
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["LEAVING", "LEAVING_RULES", "LEAVING_SIZES", "LEAVING_WORLDS"]
-
 _DISCOUNT = 0.98
 
 # --- a rover at sites that are hardly worth a probe ------------------------------------------------------

@@ -7,8 +7,6 @@ import numpy as np
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["Lock", "lock", "lock_rule"]
-
 _DIGITS = 6
 _TRUE = 0.8
 _DISCOUNT = 0.98

@@ -14,8 +14,6 @@ from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
-__all__ = ["Played", "played"]
-
 
 @dataclasses.dataclass(frozen=True)
 class Decision:

@@ -8,8 +8,6 @@ import numpy as np
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["Rescue", "rescue", "rescue_rule"]
-
 _WIDE = 4  # rooms in a row; the dock is room 0
 _JAMS, _FORCED = 0.25, 0.6
 _BATTERY = 24

@@ -7,8 +7,6 @@ import numpy as np
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["Screws", "screws", "screws_rule"]
-
 _HEADS = (0.5, 0.3, 0.2)  # of a screw
 _CHANGES, _TRUE = 0.9, 0.8
 _DRIVES, _WORN_DRIVES, _STRIPS, _WEARS = 0.8, 0.3, 0.3, 0.05

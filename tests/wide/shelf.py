@@ -4,8 +4,6 @@ import random
 
 from .writing import Bundle, BundleWriter
 
-__all__ = ["shelf", "shelf_rule"]
-
 _ODDS = (0.5, 0.3, 0.2)
 _LOOK = 0.85
 

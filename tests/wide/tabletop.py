@@ -7,8 +7,6 @@ import numpy as np
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["Tabletop", "tabletop", "tabletop_rule"]
-
 _SIDE_M, _CELLS = 1.2, 5  # the gripper goes to the middle of one of 5 x 5 cells
 _CELL_M = _SIDE_M / _CELLS
 _REACH_M, _NUDGE_M = 0.15, 0.3

@@ -11,8 +11,6 @@ import numpy as np
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["TOGETHER", "TOGETHER_RULES", "TOGETHER_SIZES", "TOGETHER_WORLDS"]
-
 _SPOTS = 12
 _SEES = 0.9
 _COLOURS = 4

@@ -5,8 +5,6 @@ import random
 from .world import World
 from .writing import Bundle, BundleWriter
 
-__all__ = ["Towers", "towers", "towers_rule"]
-
 _SLIPS = 0.1
 _TABLE, _HELD = -1, -2
 _DISCOUNT = 0.99

@@ -6,8 +6,6 @@ from collections.abc import Callable
 from .cleaning import cleaning, cleaning_rule
 from .writing import Bundle, BundleWriter
 
-__all__ = ["UPKEEP", "UPKEEP_RULES", "UPKEEP_SIZES", "greenhouse", "greenhouse_rule"]
-
 _TANK = 6  # fillings that the robot carries
 
 

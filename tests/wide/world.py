@@ -3,8 +3,6 @@
 import random
 from abc import ABC, abstractmethod
 
-__all__ = ["MOST_STEPS", "World"]
-
 MOST_STEPS = 120  # in a mission
 
 

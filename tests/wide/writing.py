@@ -1,7 +1,5 @@
 """Documents and mappings of a bundle, from its skills."""
 
-__all__ = ["Bundle", "BundleWriter"]
-
 Bundle = dict[str, str]  # file name to text
 
 

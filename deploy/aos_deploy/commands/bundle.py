@@ -32,8 +32,6 @@ from aos_protocol.messages import (
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
-__all__ = ["register"]
-
 ANSWER_TIMEOUT_S = 5.0
 PUSH_TIMEOUT_S = 200.0
 """The registry lets the solver compile a new model before it accepts it."""

@@ -1,7 +1,5 @@
 """`aos check`: the history of a run against the rules that every history holds to."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 from typing import Annotated
@@ -17,8 +15,6 @@ from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.terminal import waiting
 from aos_protocol.errors import DeployError
-
-__all__ = ["register"]
 
 
 def register(app: typer.Typer) -> None:

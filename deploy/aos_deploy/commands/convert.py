@@ -1,7 +1,5 @@
 """`aos convert`: a bundle's documents in the other dialect."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 
@@ -13,8 +11,6 @@ from aos_deploy.printing import count, print_diagnostics
 from aos_language.convert import Dialect, convert
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DocumentError
-
-__all__ = ["register"]
 
 
 def register(app: typer.Typer) -> None:

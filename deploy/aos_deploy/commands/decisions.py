@@ -21,8 +21,6 @@ from aos_runtime.mission_folders import mission_folder, mission_folders
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
-__all__ = ["register"]
-
 Show = Callable[[DecisionRecord | MissionState], None]
 
 

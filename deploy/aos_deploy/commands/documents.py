@@ -1,7 +1,5 @@
 """`aos lint` and `aos inspect`: documents checked and looked at, without a running system."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
@@ -23,8 +21,6 @@ from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError, DocumentError
-
-__all__ = ["Folder", "FolderOrDeployFile", "refusal", "register"]
 
 
 class Format(StrEnum):

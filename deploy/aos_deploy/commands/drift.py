@@ -15,8 +15,6 @@ from aos_deploy.printing import count, print_json
 if TYPE_CHECKING:
     from aos_deploy.drift_of_runs import ModelTests
 
-__all__ = ["register"]
-
 
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`."""

@@ -1,7 +1,5 @@
 """`aos export`: the records of runs to take home."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,8 +10,6 @@ from aos_deploy.living_runs import chosen_runs
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_protocol.errors import DeployError
-
-__all__ = ["register"]
 
 Format = Literal["mcap", "csv", "parquet", "bundle"]
 

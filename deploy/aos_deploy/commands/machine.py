@@ -1,7 +1,5 @@
 """`aos doctor`: what this machine has, and what it lacks."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import os
 import platform
@@ -23,8 +21,6 @@ from aos_protocol.errors import AosError
 from aos_runtime.distribution import pip_install
 from aos_runtime.sandbox.support import sandbox_support
 from aos_runtime.sandbox.trial import what_a_confined_program_can
-
-__all__ = ["Finding", "examine_machine", "examine_needs", "register"]
 
 _PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "tree-sitter", "rich")
 _SIMULATOR = "pybullet"

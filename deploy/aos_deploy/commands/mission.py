@@ -20,8 +20,6 @@ from aos_protocol.messages import MissionEntry, MissionState
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
-__all__ = ["register"]
-
 mission_app = typer.Typer(
     no_args_is_help=True,
     help="Start, stop, list and steer missions. Further missions need `aos-up --stay`.",

@@ -1,7 +1,5 @@
 """`aos new`: documents to start from, that lint clean and can be planned with at once, and examples."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
@@ -22,8 +20,6 @@ from aos_language.load import load_bundle, read_bundle_files
 from aos_language.merge import pushed_project
 from aos_protocol.errors import DocumentError
 from aos_protocol.spelling import did_you_mean
-
-__all__ = ["register"]
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 

@@ -1,7 +1,5 @@
 """`aos plan` and `aos rate`: a bundle's model without a robot."""
 
-from __future__ import annotations
-
 import statistics
 from collections.abc import Iterable
 from pathlib import Path
@@ -40,8 +38,6 @@ from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.study.supposing import believe_all
-
-__all__ = ["register"]
 
 RATE_REPETITIONS = 10
 

@@ -1,7 +1,5 @@
 """`aos replay` and `aos diff`: a mission computed once more, and two missions beside each other."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
@@ -19,8 +17,6 @@ from aos_deploy.studied_run import StudiedRun
 from aos_deploy.terminal import waiting
 from aos_protocol.messages import ModelAdopted
 from aos_solver.study.comparing import Comparison, compared
-
-__all__ = ["Replayed", "register", "replayed_run"]
 
 
 def register(app: typer.Typer) -> None:

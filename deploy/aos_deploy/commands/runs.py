@@ -18,9 +18,6 @@ from aos_deploy.run_record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
 from aos_runtime.mission_folders import mission_folder, mission_folders
 
-__all__ = ["register"]
-
-
 runs_app = typer.Typer()
 
 

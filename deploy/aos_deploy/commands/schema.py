@@ -1,7 +1,5 @@
 """`aos schema`: JSON Schemas for editors."""
 
-from __future__ import annotations
-
 import json
 from enum import StrEnum
 from typing import Annotated
@@ -9,8 +7,6 @@ from typing import Annotated
 import typer
 
 from aos_deploy.schemas import SCHEMAS
-
-__all__ = ["register"]
 
 
 class Name(StrEnum):

@@ -1,7 +1,5 @@
 """`aos skill` and `aos resume`: what can be called, calling it by hand, stopping it, and going on."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import time
@@ -32,8 +30,6 @@ from aos_protocol.spelling import did_you_mean, quoted
 from aos_runtime.client import AosClient
 from aos_runtime.served import served
 from aos_runtime.subscription import Subscription
-
-__all__ = ["register"]
 
 _ASK_S = 5.0
 

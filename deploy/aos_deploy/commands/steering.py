@@ -17,8 +17,6 @@ from aos_protocol.messages import MissionState
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
-__all__ = ["actions_of_script", "register"]
-
 Name = Annotated[str, typer.Argument(metavar="NAME", help="A skill, or a grounded action such as 'go(to=a)'")]
 
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from aos_deploy.deploy_file import Deployment
     from aos_protocol.errors import AosError
 
-__all__ = ["register", "up"]
-
 _EPILOG = (
     "Example: aos-up deploy/armadillo.yaml --seed 7. Another terminal can follow with `aos decisions`. "
     + EXIT_CODES_TEXT

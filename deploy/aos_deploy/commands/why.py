@@ -1,7 +1,5 @@
 """`aos why` and `aos whatif`: questions about a decision that was made."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Annotated, TypeVar
@@ -18,8 +16,6 @@ from aos_deploy.views.reasons import what_if_lines, why_lines
 from aos_protocol.access import WATCHER
 from aos_protocol.messages import WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.client import AosClient
-
-__all__ = ["register"]
 
 T = TypeVar("T", Why, WhatIf)
 

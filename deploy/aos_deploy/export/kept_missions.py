@@ -1,7 +1,5 @@
 """The missions of a run as they are kept: each row of their journals, with its message."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,8 +17,6 @@ from aos_protocol.messages import (
 )
 from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import mission_folders, mission_name
-
-__all__ = ["KINDS", "KeptMission", "kept_missions"]
 
 KINDS: dict[str, type[Any]] = {
     "begun": MissionBegun,

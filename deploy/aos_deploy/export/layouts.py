@@ -1,7 +1,5 @@
 """Layouts for viewers of an MCAP file: Foxglove and Lichtblick as JSON, PlotJuggler as XML."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -9,8 +7,6 @@ from xml.etree import ElementTree as ET
 from aos_deploy.export.mcap_file import PICTURE
 from aos_deploy.export.plotted import BELIEF, VALUES, plain_name
 from aos_protocol.messages import DecisionRecord
-
-__all__ = ["Curves", "curves_of", "foxglove_layout", "plotjuggler_layout"]
 
 _COLOURS = ("#1f77b4", "#d62728", "#2ca02c", "#ff7f0e", "#9467bd", "#17becf", "#8c564b", "#e377c2")
 _MOST_CURVES = 24

@@ -6,8 +6,6 @@
 /aos/picture       the world's picture after each step, where the adapter has kept one
 """
 
-from __future__ import annotations
-
 import base64
 import json
 from collections.abc import Iterator
@@ -23,8 +21,6 @@ from aos_deploy.export.plotted import BELIEF, VALUES, belief_of, merged_schema, 
 from aos_protocol import __version__
 from aos_protocol.messages import DecisionRecord
 from aos_runtime.journal import JournalRow
-
-__all__ = ["PICTURE", "write_mcap"]
 
 PICTURE = "/aos/picture"
 

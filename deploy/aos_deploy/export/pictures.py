@@ -1,15 +1,11 @@
 """The pictures that a world's adapter has kept of a run, one after each step, with the times of the steps."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
 from aos_deploy.export.kept_missions import KeptMission
-
-__all__ = ["Picture", "pictures_of"]
 
 _NAME = re.compile(r"step-(\d+)\.png")
 

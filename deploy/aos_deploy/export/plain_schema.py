@@ -1,12 +1,8 @@
 """JSON schemas of messages as viewers of MCAP files understand them: whole in themselves, of single types."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec
-
-__all__ = ["plain_schema", "without_nulls"]
 
 
 def plain_schema(kind: type[Any]) -> dict[str, Any]:

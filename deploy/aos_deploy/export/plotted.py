@@ -1,15 +1,11 @@
 """The numbers of decision records in a form that viewers can plot: maps in place of lists, of plain names."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable
 from typing import Any
 
 from aos_protocol.messages import QUANTILES, DecisionRecord
-
-__all__ = ["BELIEF", "VALUES", "belief_of", "merged_schema", "plain_name", "values_of"]
 
 BELIEF, VALUES = "/aos/plot/belief", "/aos/plot/values"
 

@@ -4,8 +4,6 @@ What commands read of a run is in it: journals, ledgers, catalogue, settings, lo
 somebody into a system is not: sockets, credentials and what holds a password, hidden files.
 """
 
-from __future__ import annotations
-
 import hashlib
 import shutil
 import sqlite3
@@ -20,8 +18,6 @@ from aos_deploy.program import cache_dir
 from aos_language.archive import UNREADABLE_ARCHIVE
 from aos_protocol.errors import DeployError
 from aos_runtime.credentials import FOLDER, read_password
-
-__all__ = ["SUFFIX", "opened_bundle", "write_bundle"]
 
 SUFFIX = ".aosrun"
 """The end of the name of such a file."""

@@ -1,7 +1,5 @@
 """Tables as files: CSV, or Parquet. The only import of pyarrow."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
@@ -10,8 +8,6 @@ from typing import Any
 
 from aos_deploy.export.tables import TABLES, Row
 from aos_protocol.errors import DeployError
-
-__all__ = ["write_csv", "write_parquet"]
 
 _BATCH_ROWS = 10_000
 

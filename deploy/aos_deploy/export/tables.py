@@ -1,7 +1,5 @@
 """Runs as tables: a row for each mission, step, value of an action, prediction, probability of a belief."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -9,8 +7,6 @@ from typing import Any, NamedTuple
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_protocol.messages import QUANTILES, BeliefSummary, DecisionRecord
-
-__all__ = ["TABLES", "Row", "rows_of_runs"]
 
 _KEY = {"run": str, "mission": str, "step": int}
 

@@ -1,7 +1,5 @@
 """The whole check: every row of a run against every rule."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, Protocol
 
@@ -11,8 +9,6 @@ from aos_deploy.history_check.rules import BY_TIME, Violation
 from aos_deploy.verdict import Verdict
 from aos_protocol.errors import StorageError
 from aos_runtime.journal import JournalError, JournalRow
-
-__all__ = ["Checked", "History", "check_histories", "violations"]
 
 SET_BACK_NS = 10_000_000
 """Times of one file that go back by less say nothing of the clock."""

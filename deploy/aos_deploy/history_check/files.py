@@ -1,7 +1,5 @@
 """The files of a run for the check of its history."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,8 +11,6 @@ from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.verdict import Verdict
 from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import mission_folders, mission_name, stays
-
-__all__ = ["check_run", "violations_of_run"]
 
 
 def violations_of_run(run: Path) -> list[Violation]:

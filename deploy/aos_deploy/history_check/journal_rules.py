@@ -1,7 +1,5 @@
 """The rules for a mission's journal: one pass over its rows."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -25,8 +23,6 @@ from aos_protocol.messages import (
 from aos_runtime.fence import meaning
 from aos_runtime.journal import JournalRow
 from aos_solver.mission.steering import REFUSED, STEERED
-
-__all__ = ["KINDS", "Found", "Intention", "JournalRules", "digest"]
 
 KINDS: dict[str, type[Any]] = {
     "begun": MissionBegun,

@@ -1,7 +1,5 @@
 """The rules for the ledgers of middleware and adapters, against the journal's intentions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,8 +7,6 @@ from aos_deploy.history_check.journal_rules import Found, JournalRules, digest
 from aos_protocol.messages import Activate, ActivationId, Fault, Message, Outcome, SkillCall, SkillResult
 from aos_runtime.fence import meaning
 from aos_runtime.journal import JournalRow
-
-__all__ = ["ADAPTER_KINDS", "MIDDLEWARE_KINDS", "Failed", "LedgerRules", "Motions"]
 
 
 class Failed(Message, frozen=True):

@@ -1,7 +1,5 @@
 """The rule `replay`: the outcomes of a run's journal once more, through engines of the run's documents."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -14,8 +12,6 @@ from aos_deploy.studied_run import StudiedRun
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_runtime.mission_folders import mission_folders
-
-__all__ = ["Replay", "replayed"]
 
 
 class Replay(msgspec.Struct):

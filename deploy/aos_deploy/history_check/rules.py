@@ -1,10 +1,6 @@
 """The rules that every history of a run has to hold to, and their violations."""
 
-from __future__ import annotations
-
 import msgspec
-
-__all__ = ["BY_TIME", "RULES", "Violation"]
 
 RULES = {
     "rows": "the rows of each file are numbered from 1 without a gap, and each can be read",

@@ -1,14 +1,10 @@
 """The rule for what operators want of a mission: the same fold of the journal as the mission's own."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 from aos_protocol.messages import ActionRefused, DecisionRecord, MissionState, Steer
 from aos_solver.mission.steering import Asked, Steering
-
-__all__ = ["SteeringRules"]
 
 _RULE = "steering"
 

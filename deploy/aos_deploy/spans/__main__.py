@@ -3,8 +3,6 @@
 What goes wrong is in its log, and no mission depends on it.
 """
 
-from __future__ import annotations
-
 import logging
 import signal
 import sys

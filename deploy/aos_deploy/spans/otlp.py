@@ -22,8 +22,6 @@ from aos_runtime.distribution import pip_install
 if TYPE_CHECKING:
     from opentelemetry.sdk.trace import ReadableSpan
 
-__all__ = ["Collector", "check_otel_installed", "is_collector_address"]
-
 _NEEDS = ("opentelemetry.sdk", "opentelemetry.exporter.otlp.proto.http")
 _PATH = "/v1/traces"
 

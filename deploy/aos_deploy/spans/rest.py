@@ -1,15 +1,11 @@
 """The spans that are still to be sent when a run's processes have ended, such as that of the mission."""
 
-from __future__ import annotations
-
 import asyncio
 import sys
 from contextlib import suppress
 
 from aos_deploy.adapters import SPANS
 from aos_deploy.run_directory import RunDirectory
-
-__all__ = ["REST", "send_rest"]
 
 REST = "rest"
 """The word after the settings for a process that sends once what there is, and ends."""

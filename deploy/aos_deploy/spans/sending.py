@@ -4,8 +4,6 @@ The journals are the store. A place in them moves on once a collector has taken 
 nothing is lost while it is away, and nothing is kept in memory.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,8 +15,6 @@ from aos_deploy.spans.spans import Span, span_of_mission, spans_of_record
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_runtime.journal import Journal, JournalRow
-
-__all__ = ["Sender"]
 
 _BATCH = 500
 _PLACES = "spans.json"

@@ -1,7 +1,5 @@
 """The spans of a mission: the mission itself, and of each step decision, activation and belief update."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -9,8 +7,6 @@ import msgspec
 
 from aos_protocol.messages import DecisionRecord, MissionState, Outcome
 from aos_protocol.tracing import SpanOf, span_id, trace_id
-
-__all__ = ["Span", "span_of_mission", "spans_of_record"]
 
 
 class Span(NamedTuple):

@@ -3,8 +3,6 @@
 A view takes the events of `events` by calling it, and is a context manager around the time it is shown.
 """
 
-from __future__ import annotations
-
 from contextlib import AbstractContextManager
 from typing import Protocol, Self
 

@@ -1,7 +1,5 @@
 """One line for each event: for pipes and logs, and as JSON for programs."""
 
-from __future__ import annotations
-
 import sys
 import time
 from typing import Self
@@ -19,20 +17,6 @@ from aos_protocol.messages import (
     ModelAdopted,
     SkillProgress,
 )
-
-__all__ = [
-    "JsonView",
-    "PlainView",
-    "adopted_line",
-    "changes_text",
-    "decision_line",
-    "effort_text",
-    "endings_text",
-    "lines_of",
-    "on_one_line",
-    "risk_text",
-]
-
 
 _TELLING_AGAIN_S = 5.0
 _SHOWN_MOVES = 8

@@ -1,7 +1,5 @@
 """The live view of a mission in a terminal."""
 
-from __future__ import annotations
-
 import io
 import time
 from collections.abc import Iterator
@@ -18,8 +16,6 @@ from aos_deploy.terminal import console as our_console
 from aos_deploy.views.lines import effort_text, endings_text, lines_of, risk_text
 from aos_deploy.views.panels import belief_bars, belief_lines, progress_text, step_table, value_table
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
-
-__all__ = ["LiveView", "Screen"]
 
 _FIXED_ROWS = 11
 """Everything but the rows of steps, values and belief."""

@@ -1,14 +1,10 @@
 """Observations and values for people."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from aos_protocol.messages import ActionValue
-
-__all__ = ["at_least_text", "at_most_text", "observation_text", "value_text"]
 
 
 def observation_text(response: str, numbers: Mapping[str, Any]) -> str:

@@ -1,7 +1,5 @@
 """The parts of the live screen: steps, values of actions, belief; each within a width and some rows."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 
@@ -10,8 +8,6 @@ from rich.text import Text
 
 from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
 from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, Marginal, SkillProgress
-
-__all__ = ["belief_bars", "belief_lines", "brief_action", "progress_text", "step_table", "value_table"]
 
 _BAR_CELLS = 20
 _PROGRESS_CELLS = 10

@@ -1,10 +1,6 @@
 """A decision explained for people, in eight lines at most."""
 
-from __future__ import annotations
-
 from aos_protocol.messages import Consequence, Flip, ValueTerm, WhatIf, Why
-
-__all__ = ["what_if_lines", "why_lines"]
 
 _SHOWN_TERMS = 4
 _LEAST_TERM = 5e-4

@@ -1,7 +1,5 @@
 """Tables for people: the value of each action, and simulated missions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 
@@ -13,8 +11,6 @@ from aos_deploy.terminal import console
 from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
 from aos_protocol.messages import ActionValue
 from aos_solver.mission.simulation import SimulatedRun
-
-__all__ = ["print_runs", "print_states", "print_values"]
 
 BAR_WIDTH = 30
 LONGEST_ACTION = 48

@@ -1,7 +1,5 @@
 """The hand-written baselines of tests/bench: compiled once for this machine, and run."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 from pathlib import Path
@@ -14,8 +12,6 @@ from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler
-
-__all__ = ["NAME", "PROBLEMS", "WITHOUT_KNOWLEDGE", "BaselineFigure", "Baselines"]
 
 NAME = "by hand"
 SOURCE = shipped("tests/bench/baseline.cpp")

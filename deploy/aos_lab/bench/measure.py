@@ -1,7 +1,5 @@
 """The measurements of our own engine: rates, and returns of whole missions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 from aos_lab.bench.problems import Problem
@@ -10,8 +8,6 @@ from aos_solver.child.engine import Engine, Planner, Stepping
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
-
-__all__ = ["SIMULATIONS", "discounted_returns", "sampling_rate", "search_rate", "threaded_search_rates"]
 
 SIMULATIONS = 65_536
 """Descents of one search from a fresh root, about; in the baselines just as many."""

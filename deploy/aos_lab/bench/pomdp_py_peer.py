@@ -4,16 +4,12 @@ Its models are taken as it ships them, RockSample with the layout of RockSample(
 nothing, and play-outs know nothing.
 """
 
-from __future__ import annotations
-
 import importlib.util
 import itertools
 import random
 import time
 from collections.abc import Callable
 from typing import Any
-
-__all__ = ["NAME", "PROBLEMS", "is_installed", "sampling_rate", "search_rate"]
 
 NAME = "pomdp-py"
 

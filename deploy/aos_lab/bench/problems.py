@@ -1,14 +1,10 @@
 """The benchmark problems: where their documents are, and what is measured on each."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec
 
 from aos_deploy.shipped import shipped
-
-__all__ = ["Problem", "problem_names", "problems_named"]
 
 
 class Problem(msgspec.Struct, frozen=True):

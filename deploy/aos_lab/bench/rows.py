@@ -1,7 +1,5 @@
 """The report of a benchmark: rows of figures, what was left out and why, and on what machine it was."""
 
-from __future__ import annotations
-
 import datetime
 import importlib.metadata
 import os
@@ -13,8 +11,6 @@ from pathlib import Path
 import msgspec
 
 from aos_protocol import __version__
-
-__all__ = ["OURS", "Machine", "Report", "Row", "Skipped", "figure", "this_machine", "with_ratios"]
 
 OURS = "aos"
 

@@ -1,7 +1,5 @@
 """The whole benchmark: every figure of the problems asked for, ours and the others', one after the other."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
@@ -25,8 +23,6 @@ from aos_runtime.distribution import pip_install
 from aos_solver.building.compiler import find_compiler
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Planner, Stepping
-
-__all__ = ["METRICS", "Effort", "Suite"]
 
 METRICS = ("steps", "simulations", "return")
 STEPS_BY_CODE = "steps, by code"

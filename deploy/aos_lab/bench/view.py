@@ -1,7 +1,5 @@
 """The benchmark's report as a table for people, and as Markdown for a page."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from rich.box import SIMPLE_HEAD
@@ -9,8 +7,6 @@ from rich.table import Table
 
 from aos_deploy.terminal import console
 from aos_lab.bench.rows import OURS, Report, Row
-
-__all__ = ["markdown", "print_report"]
 
 _HEADINGS = ("problem", "metric", "aos", "±", "times", "of", "that")
 _ON_THE_RIGHT = ("aos", "±", "times", "that")

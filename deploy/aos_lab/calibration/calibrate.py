@@ -1,7 +1,5 @@
 """The calibration of documents by recorded missions: estimates, and the patch that they suggest."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -20,8 +18,6 @@ from aos_language.load import load_files
 from aos_protocol.errors import DocumentError
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-
-__all__ = ["Calibration", "calibrate"]
 
 
 def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:

@@ -5,8 +5,6 @@ from 1 on, or 0 where the last step did not come to it. All outcomes are equally
 the documents exclude: a record may show them. Nothing ends or is rewarded.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
@@ -17,8 +15,6 @@ from aos_language.cpp.tree import tree_of
 from aos_language.observed import reports_in
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Environment, Project, Skill, Snippet, StateVariable
-
-__all__ = ["Draw", "Draws", "Skipped", "draws_of"]
 
 _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?[fF]?")
 _KINDS = ("Bernoulli", "SampleDiscrete")

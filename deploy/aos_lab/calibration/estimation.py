@@ -5,8 +5,6 @@ leave it open, the outcomes are drawn along with the probabilities (Gibbs sampli
 that the interval is as much wider as the records say less.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 
@@ -17,8 +15,6 @@ import numpy.typing as npt
 from aos_lab.calibration.draws import Draw
 from aos_lab.calibration.lattice import Lattice
 from aos_lab.trials.intervals import CONFIDENCE, Interval
-
-__all__ = ["DrawEstimate", "Estimate", "estimate"]
 
 PRIOR = 0.5
 LEAST_DIFFERENCE = 0.1

@@ -5,8 +5,6 @@ each, and how likely one leads to another if all outcomes of draws are equally l
 belief gives that, one state at a time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import msgspec
@@ -18,8 +16,6 @@ from aos_protocol.errors import AosError, IntractableError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.belief_answers import ExportedBelief
 from aos_solver.child.engine import Engine
-
-__all__ = ["Lattice", "Layers", "lattice_of"]
 
 Numbers = npt.NDArray[np.float64]
 Outcomes = npt.NDArray[np.int64]

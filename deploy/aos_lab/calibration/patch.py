@@ -1,15 +1,11 @@
 """The documents with estimated numbers, as a unified diff. Nothing is changed here."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Mapping
 
 from aos_lab.calibration.draws import Draw
 from aos_lab.calibration.estimation import PRIOR, DrawEstimate, Estimate
 from aos_protocol.diagnostics import Span
-
-__all__ = ["patch_of", "proposed_numbers"]
 
 _DIGITS = 4
 _SAME = 0.5 * 10.0**-_DIGITS

@@ -1,7 +1,5 @@
 """Recorded missions: what was done, what came back, and the world's truth where somebody has recorded it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -16,8 +14,6 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
 from aos_runtime.journal import Journal
-
-__all__ = ["RecordedMission", "RecordedStep", "read_missions"]
 
 _TRUTHS = ("world.jsonl", "model.jsonl")
 

@@ -1,7 +1,5 @@
 """`aos bench`: the planner's figures on problems of the literature."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 from typing import Annotated, get_args
@@ -16,8 +14,6 @@ from aos_lab.bench.problems import problem_names, problems_named
 from aos_lab.bench.suite import METRICS, Effort, Suite
 from aos_lab.bench.view import markdown, print_report
 from aos_solver.child.engine import Planner
-
-__all__ = ["register"]
 
 PLANNERS: tuple[Planner, ...] = get_args(Planner)
 

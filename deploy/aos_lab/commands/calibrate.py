@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from aos_lab.calibration.calibrate import Calibration
     from aos_lab.calibration.estimation import DrawEstimate
 
-__all__ = ["register"]
-
 SHOWN_REMARKS = 5
 
 

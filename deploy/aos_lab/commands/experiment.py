@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from aos_lab.experiments.results import Results
     from aos_lab.trials.setting import Player
 
-__all__ = ["register"]
-
 
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`."""

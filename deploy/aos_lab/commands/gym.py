@@ -20,8 +20,6 @@ from aos_runtime.distribution import pip_install
 if TYPE_CHECKING:
     from aos_lab.gym import AosVectorEnv
 
-__all__ = ["register"]
-
 _SNIPPET = """\
 from aos_lab.gym import AosVectorEnv
 

@@ -1,15 +1,11 @@
 """The words of a command that Ctrl-C ends among missions."""
 
-from __future__ import annotations
-
 from contextlib import AbstractContextManager
 
 from rich.progress import Progress
 
 from aos_deploy.printing import count
 from aos_deploy.terminal import interruption_told
-
-__all__ = ["interruption_among_missions"]
 
 
 def interruption_among_missions(bar: Progress, *, are_kept: bool) -> AbstractContextManager[None]:

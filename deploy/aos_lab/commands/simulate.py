@@ -38,8 +38,6 @@ from aos_solver.offline.following import following
 if TYPE_CHECKING:
     from aos_lab.problem_missions import ProblemPlayer
 
-__all__ = ["register"]
-
 
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`."""

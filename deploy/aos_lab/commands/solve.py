@@ -1,7 +1,5 @@
 """`aos solve`: a policy for a bundle or a problem file, worked out before the mission."""
 
-from __future__ import annotations
-
 import asyncio
 import hashlib
 import math
@@ -37,8 +35,6 @@ from aos_solver.offline.policy import Policy, PolicyHeader
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
-
-__all__ = ["register"]
 
 Time = Annotated[
     float, typer.Option("--time", min=0.001, callback=finite, help="Seconds of computing at most")

@@ -21,8 +21,6 @@ from aos_lab.commands.interrupted import interruption_among_missions
 if TYPE_CHECKING:
     from aos_lab.trials.junit import Tested
 
-__all__ = ["register"]
-
 SHOWN_MISSIONS = 3
 """The number of missions shown where a claim did not hold; all are in the JUnit file and in the JSON."""
 

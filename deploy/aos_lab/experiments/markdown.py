@@ -1,7 +1,5 @@
 """Pieces of Markdown that reports are made of, and the page that it makes."""
 
-from __future__ import annotations
-
 import html
 import math
 from collections.abc import Iterator, Mapping
@@ -9,8 +7,6 @@ from collections.abc import Iterator, Mapping
 from markdown_it import MarkdownIt
 
 from aos_lab.trials.intervals import Interval
-
-__all__ = ["head", "page", "row", "shown", "tally"]
 
 _STYLE = (
     "body{font:16px/1.5 system-ui,sans-serif;max-width:66em;margin:2em auto;padding:0 1em}"

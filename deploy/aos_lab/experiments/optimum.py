@@ -1,7 +1,5 @@
 """The best that can be had of a mission, with proven bounds, beside what its missions brought."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import msgspec
@@ -16,8 +14,6 @@ from aos_solver.mission.endings import Ending
 from aos_solver.offline.enumeration import enumerate_model
 from aos_solver.offline.solving import SolvingLimits, solve
 from aos_solver.offline.stopping import with_stopping
-
-__all__ = ["Optimum", "Regret", "optimum_of", "regret_of"]
 
 CPU_S = 15.0
 

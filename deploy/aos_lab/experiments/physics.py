@@ -1,7 +1,5 @@
 """The traces of missions in a simulated world besides actions: how fast they were, and pictures."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Iterator, Sequence
@@ -9,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from aos_lab.trials.trial import Trial
-
-__all__ = ["keep_picture", "simulated_speed"]
 
 
 def simulated_speed(trials: Sequence[Trial]) -> float | None:

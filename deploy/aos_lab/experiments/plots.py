@@ -1,7 +1,5 @@
 """Pictures of an experiment's figures, with intervals: a row for each part, as SVG."""
 
-from __future__ import annotations
-
 import html
 import math
 from collections.abc import Callable, Sequence
@@ -10,8 +8,6 @@ from typing import NamedTuple
 
 from aos_lab.experiments.results import PartResult, Results
 from aos_lab.trials.intervals import Interval
-
-__all__ = ["draw_plots"]
 
 _COLOURS = {"model": "#3b6ea5", "system": "#c0662f"}
 _WIDTH_PX, _ROW_PX, _TOP_PX, _BOTTOM_PX, _RIGHT_PX = 672, 36, 8, 48, 12

@@ -1,7 +1,5 @@
 """The report of an experiment: Markdown for pages and repositories, and one HTML file to send to others."""
 
-from __future__ import annotations
-
 import html
 from base64 import b64encode
 from collections.abc import Iterator, Mapping
@@ -10,8 +8,6 @@ from pathlib import Path
 from aos_lab.experiments.markdown import head, row, shown, tally
 from aos_lab.experiments.markdown import page as page_of
 from aos_lab.experiments.results import PartResult, Results
-
-__all__ = ["markdown_report", "write_report"]
 
 _SHOWN_SEEDS = 20
 

@@ -1,8 +1,6 @@
 """The results of an experiment: figures with intervals and verdicts of each part, and what it was run
 with."""
 
-from __future__ import annotations
-
 import os
 import platform
 import subprocess
@@ -22,8 +20,6 @@ from aos_lab.trials.files import Experiment, Part
 from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share
 from aos_lab.trials.trial import Trial
 from aos_protocol import __version__
-
-__all__ = ["Figures", "PartResult", "Results", "Surroundings", "figures_of", "result_of", "surroundings"]
 
 _PACKAGES = ("eclipse-zenoh", "pybullet", "numpy")
 

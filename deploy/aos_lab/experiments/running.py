@@ -1,7 +1,5 @@
 """An experiment's missions: those of its parts, and those of scripts."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,8 +16,6 @@ from aos_lab.trials.campaign import Place, play_campaign
 from aos_lab.trials.files import Experiment, Part, ScriptFile
 from aos_lab.trials.setting import Player, Setting, deployment_of
 from aos_protocol.errors import IntractableError
-
-__all__ = ["Begin", "ExperimentRun", "statistics_of"]
 
 Begin = Callable[[str, int], Callable[[], None]]
 """Begins so many missions of this text, and gives what is to be called after each."""

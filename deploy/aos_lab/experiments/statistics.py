@@ -1,7 +1,5 @@
 """The shares of a script's steps that come out in each way, and what that says about documents."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -12,8 +10,6 @@ from aos_lab.calibration.records import RecordedMission
 from aos_lab.experiments.markdown import head, row, shown, tally
 from aos_lab.experiments.results import Surroundings
 from aos_lab.trials.intervals import Interval, interval_of_share
-
-__all__ = ["ScriptedStep", "Statistics", "markdown_statistics", "steps_of"]
 
 
 class ScriptedStep(msgspec.Struct, frozen=True, kw_only=True):

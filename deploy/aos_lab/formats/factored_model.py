@@ -1,7 +1,5 @@
 """The flattening of a POMDP over variables to one over states: those that can be reached, and no others."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import msgspec
@@ -10,8 +8,6 @@ import numpy as np
 from aos_lab.formats.factors import Factor, Table, Variable
 from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
-
-__all__ = ["MAX_STATES", "FactoredModel", "StateVariable", "flatten"]
 
 MAX_STATES = 2_000_000
 

@@ -1,7 +1,5 @@
 """Conditional tables over variables: as entries, and with an action chosen ready to be looked up."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import chain
@@ -10,8 +8,6 @@ import msgspec
 import numpy as np
 
 from aos_solver.offline.explicit_model import Floats, Integers
-
-__all__ = ["ANY", "EACH", "DenseFactor", "Entry", "Factor", "SparseFactor", "Table", "Variable"]
 
 ANY = -1
 EACH = -2

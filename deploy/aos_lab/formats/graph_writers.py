@@ -1,7 +1,5 @@
 """Writes a policy graph: for Graphviz, and as a C header that needs nothing else."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,8 +7,6 @@ from pathlib import Path
 from aos_lab.formats.policy_graph import OVER, PolicyGraph
 from aos_lab.formats.symbols import symbols
 from aos_protocol.errors import PlanningError
-
-__all__ = ["c_header", "graphviz", "write_text"]
 
 _MAX_NUMBERED = 0xFFFE
 

@@ -17,8 +17,6 @@ import numpy as np
 from aos_solver.offline.alpha_vectors import AlphaVectors
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers
 
-__all__ = ["OVER", "GraphNode", "PolicyGraph", "policy_graph"]
-
 OVER = -1
 """The mark in place of a node where the mission is over."""
 

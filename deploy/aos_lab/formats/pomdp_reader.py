@@ -1,7 +1,5 @@
 """Reads `.pomdp`, the text format of A. Cassandra's solvers."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Sequence
 from itertools import pairwise
@@ -14,8 +12,6 @@ from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_mod
 from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
 from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel
-
-__all__ = ["read_pomdp"]
 
 _SUM_TOLERANCE = 1e-4
 _MAX_NAMES = 2_000_000

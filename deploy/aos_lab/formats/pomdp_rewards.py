@@ -1,10 +1,6 @@
 """The `R:` rules of a `.pomdp` file: the last one that fits counts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
-
-__all__ = ["RewardRules"]
 
 Choice = int | None
 """A number, or None for all."""

@@ -1,7 +1,5 @@
 """The statements of a `.pomdp` file, as words."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from itertools import pairwise
@@ -10,8 +8,6 @@ import msgspec
 
 from aos_lab.formats.problem_text import ProblemFindings, Word
 from aos_protocol.spelling import did_you_mean
-
-__all__ = ["KEYWORDS", "Statement", "statements_of"]
 
 _WORD = re.compile(r"[^\s:]+|:")
 KEYWORDS = frozenset({"discount", "values", "states", "actions", "observations", "start", "T", "O", "R"})

@@ -1,7 +1,5 @@
 """The model that the tables of a `.pomdp` file say, in which outcomes share equal observations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import msgspec
@@ -9,8 +7,6 @@ import numpy as np
 
 from aos_lab.formats.pomdp_rewards import RewardRules
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
-
-__all__ = ["Distribution", "PomdpTables", "explicit_model"]
 
 Distribution = dict[int, float]
 

@@ -4,8 +4,6 @@ Tables (`TBL`) and decision diagrams (`DD`), `*`, `-`, `identity` and `uniform`,
 kind, parents within the same step.
 """
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterable, Mapping
 
@@ -15,8 +13,6 @@ from aos_lab.formats.pomdpx_tables import read_table
 from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError
 from aos_lab.formats.xml_text import Element, read_xml
 from aos_protocol.errors import DocumentError
-
-__all__ = ["read_pomdpx"]
 
 
 def read_pomdpx(name: str, data: bytes) -> FactoredModel:

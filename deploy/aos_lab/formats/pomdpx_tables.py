@@ -1,7 +1,5 @@
 """The tables and decision diagrams of a `.pomdpx` file, as entries over its variables."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 
@@ -12,8 +10,6 @@ from aos_lab.formats.problem_text import ProblemFindings, Word
 from aos_lab.formats.xml_text import Element
 from aos_language.number_text import is_number
 from aos_solver.offline.explicit_model import Floats
-
-__all__ = ["read_table"]
 
 
 def read_table(

@@ -1,7 +1,5 @@
 """Problem files of other planners, by the ending of their names."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,8 +8,6 @@ from aos_lab.formats.pomdp_reader import read_pomdp
 from aos_lab.formats.pomdpx_reader import read_pomdpx
 from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel
-
-__all__ = ["read_problem"]
 
 
 def read_problem(

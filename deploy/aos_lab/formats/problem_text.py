@@ -1,7 +1,5 @@
 """The text of a problem file: where its words stand, and what is wrong with them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 
@@ -9,8 +7,6 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
-
-__all__ = ["ProblemFindings", "TooManyFindingsError", "Word", "words_of"]
 
 _WORD = re.compile(r"\S+")
 _MAX_FINDINGS = 50

@@ -1,7 +1,5 @@
 """Writes `.pomdp` and `.pomdpx`, for other planners to read."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -10,8 +8,6 @@ from aos_lab.formats.sensing_by_state import NEVER, SensingByState, with_sensing
 from aos_lab.formats.symbols import symbols
 from aos_protocol.errors import PlanningError
 from aos_solver.offline.explicit_model import ExplicitModel
-
-__all__ = ["WRITERS", "write_problem"]
 
 _LATER = "later"
 

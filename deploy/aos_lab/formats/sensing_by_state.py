@@ -1,14 +1,10 @@
 """Models as problem files want them: action and next state alone decide about the observation."""
 
-from __future__ import annotations
-
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from aos_solver.offline.explicit_model import ExplicitModel, Integers, Ragged, StartBelief
-
-__all__ = ["SensingByState", "with_sensing_by_state"]
 
 NEVER = -1
 

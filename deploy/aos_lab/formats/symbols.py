@@ -1,11 +1,7 @@
 """Names as problem files and C can have them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
-
-__all__ = ["symbols"]
 
 _NO_SYMBOL = re.compile(r"[^A-Za-z0-9_]+")
 _RESERVED = frozenset({

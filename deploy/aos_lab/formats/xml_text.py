@@ -7,8 +7,6 @@ from xml.parsers import expat
 
 from aos_lab.formats.problem_text import ProblemFindings, Word, words_of
 
-__all__ = ["Element", "read_xml"]
-
 
 class Element:
     """An element with its place; the text of its children does not belong to its own."""

@@ -4,8 +4,6 @@ The observation is what the robot is told: a response, by its number, or a text 
 stays hidden. Needs the package gymnasium: pip install 'aos-autonomy[gym]'.
 """
 
-from __future__ import annotations
-
 from aos_lab.gym.environment import AosEnv
 from aos_lab.gym.vector_environment import AosVectorEnv
 

@@ -1,7 +1,5 @@
 """One world as a `gymnasium.Env`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
@@ -13,8 +11,6 @@ from numpy.typing import NDArray
 from aos_lab.gym.number_columns import Numbers
 from aos_lab.gym.spaces import Observation, observation_space, observations
 from aos_lab.gym.worlds import ENDINGS, HiddenWorlds, check_at_least_one
-
-__all__ = ["AosEnv"]
 
 MAX_SEED = 2**63 - 1
 

@@ -3,8 +3,6 @@
 Names of all skills share a row: a name has one column, or as many as there is room for where it is an array.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -13,8 +11,6 @@ from numpy.typing import NDArray
 
 from aos_solver.child.world_answers import WorldSteps
 from aos_solver.emission.program import Observed
-
-__all__ = ["NumberColumns", "Numbers"]
 
 _INDEX_BITS = 16
 

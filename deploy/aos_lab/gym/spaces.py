@@ -6,8 +6,6 @@ is alike in two texts stays alike, which numbers in the order of appearance woul
 numbers beside their responses, an observation is a dict of both.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import gymnasium
@@ -16,8 +14,6 @@ from numpy.typing import NDArray
 
 from aos_lab.gym.number_columns import Numbers
 from aos_lab.gym.worlds import TEXT_BYTES, HiddenWorlds, as_bytes
-
-__all__ = ["Observation", "observation_space", "observations"]
 
 Observation = np.int64 | NDArray[np.uint8] | dict[str, Any]
 

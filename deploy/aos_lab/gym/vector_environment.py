@@ -1,7 +1,5 @@
 """Many worlds as a `gymnasium.vector.VectorEnv`: one call steps them all, in one process beside."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
@@ -15,8 +13,6 @@ from numpy.typing import NDArray
 from aos_lab.gym.environment import MAX_SEED
 from aos_lab.gym.spaces import observation_space, observations
 from aos_lab.gym.worlds import HiddenWorlds, check_at_least_one
-
-__all__ = ["AosVectorEnv"]
 
 Numbers = NDArray[Any]
 

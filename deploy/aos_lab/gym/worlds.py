@@ -1,7 +1,5 @@
 """The hidden worlds of a bundle's model in its engine child, for callers that are not asynchronous."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Coroutine, Mapping, Sequence
 from pathlib import Path
@@ -20,8 +18,6 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DocumentError
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-
-__all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes", "check_at_least_one"]
 
 ENDINGS = ("", "goal", "failure", "over")
 """The endings of an episode, by number."""

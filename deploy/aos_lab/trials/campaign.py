@@ -1,7 +1,5 @@
 """Many missions of one setting, several at a time, none run twice where their records are kept."""
 
-from __future__ import annotations
-
 import asyncio
 import hashlib
 from collections.abc import Callable, Sequence
@@ -22,8 +20,6 @@ from aos_protocol import __version__
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import MissionValue
 from aos_runtime.lifecycle import root_cause
-
-__all__ = ["HERE", "Place", "Played", "play_campaign"]
 
 HERE = "local"
 """The name of this machine as the place where missions are played."""

@@ -3,8 +3,6 @@
 A claim that something never happens would hold because of them, whatever the robot does.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
@@ -22,8 +20,6 @@ from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Project, Skill
 from aos_protocol.errors import AosError
-
-__all__ = ["ClaimNames", "project_of_setting"]
 
 _WILD = re.compile(r"[*?\[]")
 _ARGUMENT = re.compile(r"(?:^|, )(\w+)=([^,()]*)")

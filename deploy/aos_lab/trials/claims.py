@@ -5,8 +5,6 @@ with what came back. `*` and `?` stand for any text and any letter, ` | ` separa
 name alone means it with any parameters.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from typing import Annotated, Any, Literal
@@ -15,19 +13,6 @@ import msgspec
 
 from aos_lab.trials.intervals import Interval, interval_of_share
 from aos_lab.trials.trial import Trial
-
-__all__ = [
-    "Around",
-    "Before",
-    "Claim",
-    "Count",
-    "Verdict",
-    "When",
-    "asking_the_world",
-    "has_check",
-    "judge",
-    "matches",
-]
 
 Share = Annotated[float, msgspec.Meta(ge=0, le=1)]
 Number = Annotated[int, msgspec.Meta(ge=0)]

@@ -1,7 +1,5 @@
 """Files of claims: mission tests of users, and experiments. Everything wrong with one is found in one run."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal, TypeVar
 
@@ -15,18 +13,6 @@ from aos_lab.trials.setting import Setting
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
-
-__all__ = [
-    "Experiment",
-    "MissionTest",
-    "Part",
-    "ScriptFile",
-    "ScriptedPart",
-    "TestFile",
-    "read_experiment",
-    "read_script_file",
-    "read_test_file",
-]
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
 Seed = Annotated[int, msgspec.Meta(ge=0)]

@@ -1,14 +1,10 @@
 """Intervals that hold the true value with a probability of 0.95: of a share, and of a mean."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Sequence
 
 import msgspec
-
-__all__ = ["CONFIDENCE", "Interval", "interval_of_mean", "interval_of_share"]
 
 CONFIDENCE = 0.95
 _Z = statistics.NormalDist().inv_cdf(0.5 + CONFIDENCE / 2)

@@ -12,8 +12,6 @@ from aos_lab.trials.claims import Verdict, asking_the_world, judge
 from aos_lab.trials.files import MissionTest
 from aos_lab.trials.trial import Trial
 
-__all__ = ["Tested", "failed_missions", "verdict_text", "write_junit"]
-
 
 class Tested(msgspec.Struct, frozen=True, kw_only=True):
     """The result of a test."""

@@ -20,8 +20,6 @@ from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 from aos_solver.offline.following import following
 
-__all__ = ["ModelMissions", "ModelPlayer"]
-
 DEFAULT_SIMULATIONS = 100_000
 """The number is that of the commands, where neither simulations nor a time is given."""
 

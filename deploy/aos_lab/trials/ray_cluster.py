@@ -17,8 +17,6 @@ from aos_lab.trials.trial import Trial
 from aos_protocol.errors import AosError, DeployError
 from aos_runtime.distribution import pip_install
 
-__all__ = ["OWN", "RayPlayer"]
-
 OWN = "ray"
 """The word in place of an address: a Ray of our own on this machine, with a worker for each processor."""
 

@@ -23,8 +23,6 @@ from aos_protocol.errors import AosError, DeployError
 from aos_solver.child.answers import GroundedAction
 from aos_solver.child.engine import Engine
 
-__all__ = ["ScriptPlayer"]
-
 
 class ScriptPlayer:
     """Plays the same actions in a fresh world for each seed."""

@@ -1,7 +1,5 @@
 """The setting of a mission: a deploy file, and what is different from it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,8 +13,6 @@ from aos_deploy.needed_here import check_sandbox
 from aos_deploy.played_faults import PlayedFaults
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
-
-__all__ = ["Player", "Setting", "deployment_of", "world_deployment_of"]
 
 Player = Literal["model", "system", "system-model"]
 """The player of the skills: the documents' model in this process, or a whole system, by the deploy file's

@@ -1,7 +1,5 @@
 """Missions of a whole system, as `aos-up` runs them, each with a run directory of its own."""
 
-from __future__ import annotations
-
 import asyncio
 import shutil
 from pathlib import Path
@@ -15,8 +13,6 @@ from aos_deploy.run_directory import RunDirectory, Summary
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
-
-__all__ = ["SystemPlayer"]
 
 MISSION_S = 1800.0
 """A mission that takes longer is ended, and counts as broken."""

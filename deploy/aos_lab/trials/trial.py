@@ -1,12 +1,8 @@
 """One mission that was run for its record: what was done, what came back, how it ended."""
 
-from __future__ import annotations
-
 import json
 
 import msgspec
-
-__all__ = ["NOTHING_OBSERVED", "Trial"]
 
 NOTHING_OBSERVED = "no observation"
 """The text in a step that brought none; no response has a space."""

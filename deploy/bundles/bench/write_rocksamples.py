@@ -3,8 +3,6 @@
 The environment comes from `rocksample.ef.template`; the skills are those of RockSample(7, 8).
 """
 
-from __future__ import annotations
-
 import random
 import sys
 from collections.abc import Iterator

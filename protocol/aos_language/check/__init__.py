@@ -9,8 +9,6 @@ skill say to each other, `mapping_code` at the Python of the mappings, `stop_whe
 `shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
 """
 
-from __future__ import annotations
-
 from aos_language.assembly import Assembly
 from aos_language.check.declarations import check_environment_names, check_skill_declarations
 from aos_language.check.defaults import check_defaults

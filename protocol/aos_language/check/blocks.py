@@ -1,24 +1,11 @@
 """The pieces of model code of the documents, each with what it may read and write."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 import msgspec
 
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_declarations, read_cpp_expression
 from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet, TemporaryVariable
-
-__all__ = [
-    "Block",
-    "Role",
-    "assignment_blocks",
-    "environment_blocks",
-    "given_observation_blocks",
-    "read_block",
-    "skill_blocks",
-    "titles_with",
-]
 
 
 class Role(msgspec.Struct, frozen=True):

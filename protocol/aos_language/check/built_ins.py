@@ -1,7 +1,5 @@
 """Calls of what AOS gives to model code: `AOS.Bernoulli(p)` and its like."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Callable, Collection
@@ -10,8 +8,6 @@ from aos_language.cpp.snippets import Call, Extent
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.spelling import quoted
-
-__all__ = ["BUILT_INS", "check_built_in"]
 
 BUILT_INS = {
     "AOS": (

@@ -3,8 +3,6 @@
 A constraint speaks of states and actions that the project has, a condition of the state that there is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from aos_language.assembly import Assembly
@@ -14,8 +12,6 @@ from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.snippets import Access, Cpp, read_cpp_expression, strip_comments
 from aos_language.findings import Findings
 from aos_protocol.documents import Constraint, Project, Snippet
-
-__all__ = ["check_conditions", "check_constraints"]
 
 CONSTRAINT = Role("a constraint", ("state", "state__"), sees_chosen_action=True)
 CONDITION = Role("a condition", ("state",))

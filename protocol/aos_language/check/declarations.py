@@ -1,7 +1,5 @@
 """Names and types: everything is declared once, under a usable name, with a type that exists."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from aos_language.check.scope import Scope
@@ -11,8 +9,6 @@ from aos_language.reading.document import array_type
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import CompoundType, Environment, SkillModel
 from aos_protocol.spelling import quoted
-
-__all__ = ["check_environment_names", "check_skill_declarations"]
 
 _OURS = frozenset({"AOS", "AOSUtils", "NULL", "state", "state_", "state__", "state___"})
 

@@ -1,15 +1,11 @@
 """The code that sets variables at the start: each sets its own."""
 
-from __future__ import annotations
-
 import re
 
 from aos_language.cpp.snippets import Access, Mention, read_cpp
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Environment, StateVariable
-
-__all__ = ["check_defaults"]
 
 
 def check_defaults(environment: Environment, findings: Findings) -> None:

@@ -1,14 +1,10 @@
 """Endings that the documents leave to the sign of a reward."""
 
-from __future__ import annotations
-
 import re
 
 from aos_language.check.blocks import SPECIAL, assignment_blocks
 from aos_language.findings import Findings
 from aos_protocol.documents import Environment, SpecialState
-
-__all__ = ["check_endings", "check_goals"]
 
 _NEGATIVE = re.compile(r"\b__reward\s*(?:=\s*-|-=)")
 _OTHER_REWARD = re.compile(r"\b__reward\s*[+*/]?=(?!=|\s*(?:-|0*\.?0*\s*;))")

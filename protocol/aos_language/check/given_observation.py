@@ -1,13 +1,9 @@
 """Code for a state given an observation against the local variables of the mapping, which it may name."""
 
-from __future__ import annotations
-
 from aos_language.check.blocks import given_observation_blocks, read_block
 from aos_language.findings import Findings
 from aos_language.local_types import local_type, local_type_text, reported_variables
 from aos_protocol.documents import AbstractionMapping, Environment, SkillModel
-
-__all__ = ["check_given_observation", "check_reported_variables", "names_in_given_observation"]
 
 
 def check_given_observation(model: SkillModel, mapping: AbstractionMapping, findings: Findings) -> None:

@@ -1,7 +1,5 @@
 """The Python of the mappings: does it parse, which names does it use, and which rules can fire?"""
 
-from __future__ import annotations
-
 import ast
 import keyword
 import re
@@ -24,8 +22,6 @@ from aos_protocol.documents import (
     Snippet,
 )
 from aos_protocol.spelling import quoted
-
-__all__ = ["check_low_level", "check_mapping", "parsed", "snippets_of_mapping"]
 
 _CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")

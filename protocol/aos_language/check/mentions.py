@@ -1,7 +1,5 @@
 """Names in the C++ of environment and skills: is each one there, and may it be read or written there?"""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Set
 
@@ -14,8 +12,6 @@ from aos_language.document_code import absent_skills
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.spelling import nearest, quoted
-
-__all__ = ["LITERAL_NAMES", "MentionCheck", "listing"]
 
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 LITERAL_NAMES = frozenset({"false", "nullptr", "true"})

@@ -1,14 +1,10 @@
 """The declarations of mission parameters: one value or a structure of such, there before any state is."""
 
-from __future__ import annotations
-
 from aos_language.check.scope import Scope
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_language.findings import Findings
 from aos_language.mission_parameters import parameter_leaves
 from aos_protocol.documents import Environment, Snippet, StateVariable
-
-__all__ = ["check_mission_parameters"]
 
 _DRAWS = frozenset({"AOS", "AOSUtils"})
 

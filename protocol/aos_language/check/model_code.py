@@ -1,7 +1,5 @@
 """The C++ of environment and skills: does each snippet stay in its function, and mean what exists?"""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import msgspec
@@ -30,8 +28,6 @@ from aos_language.cpp.unset import unset_reads
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.documents import Assignment, Environment, SkillModel
-
-__all__ = ["check_block", "check_environment_code", "check_skill_code"]
 
 
 def check_environment_code(environment: Environment, scope: Scope, findings: Findings) -> None:

@@ -1,7 +1,5 @@
 """Numbers that a skill reports beside its response, against the local variables that are to give them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from aos_language.check.blocks import DYNAMIC, Block, environment_blocks, read_block, skill_blocks
@@ -9,8 +7,6 @@ from aos_language.findings import Findings
 from aos_language.local_types import local_type, reported_variables
 from aos_language.observed import OBSERVED, ReportedNumber, misuses_of, reported_numbers, reports_in
 from aos_protocol.documents import AbstractionMapping, Environment, LocalVariable, SkillModel
-
-__all__ = ["check_environment_reports", "check_observed_numbers", "check_reports"]
 
 _NUMBERS = ("bool", "int", "float", "double")
 

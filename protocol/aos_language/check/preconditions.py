@@ -1,15 +1,11 @@
 """Preconditions that nothing keeps, or whose violation earns something: a skill runs also where its
 precondition does not hold."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from aos_language.document_code import snippets_of
 from aos_language.findings import Findings
 from aos_protocol.documents import Assignment, SkillModel
-
-__all__ = ["check_precondition"]
 
 _MEETS = "__meetPrecondition"
 

@@ -28,8 +28,6 @@ from aos_protocol.documents import (
 )
 from aos_protocol.spelling import nearest, quoted
 
-__all__ = ["PythonNames", "check_fields_set", "check_names", "column_of", "top_level_names"]
-
 _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """The names by which rules read how a skill has failed."""
 _INPUT, _PARAMETERS = "__input", "parameters"

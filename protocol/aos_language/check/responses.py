@@ -1,7 +1,5 @@
 """The responses that a skill document reports against those that its abstraction mapping gives."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from difflib import get_close_matches
 
@@ -13,8 +11,6 @@ from aos_language.derived_mapping import sets_response
 from aos_language.findings import Findings
 from aos_protocol.documents import AbstractionMapping, SkillModel
 from aos_protocol.spelling import quoted
-
-__all__ = ["check_responses"]
 
 _RESPONSES = frozenset({"__moduleResponse", "__moduleResponseStr"})
 _NO_RESPONSE = "DefaultObservation"

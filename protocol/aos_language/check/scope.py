@@ -20,8 +20,6 @@ from aos_protocol.documents import (
     StateVariable,
 )
 
-__all__ = ["NUMBERS", "PRIMITIVES", "STATE_COPIES", "Scope", "ValueType", "names_in_type"]
-
 NUMBERS = frozenset({"bool", "double", "float", "int"})
 PRIMITIVES = NUMBERS | {"anyValue", "string"}
 STATE_COPIES = ("state", "state_", "state__", "state___")

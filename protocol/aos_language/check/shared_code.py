@@ -1,7 +1,5 @@
 """The code that all model code of a project shares: can each part of it be shared, and is it used?"""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 
@@ -12,8 +10,6 @@ from aos_language.cpp.shared import SharedName
 from aos_language.document_code import shared_code_of
 from aos_language.findings import Findings
 from aos_protocol.documents import Environment, SkillModel
-
-__all__ = ["check_shared_code", "check_shared_names_are_used"]
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 

@@ -1,7 +1,5 @@
 """The Python that all mappings of a project share: does it parse, keep nothing, and is it used?"""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable, Iterator
 
@@ -12,8 +10,6 @@ from aos_language.findings import Findings
 from aos_language.local_types import RESERVED_LOCAL_NAMES
 from aos_language.python_syntax import module_of
 from aos_protocol.documents import AbstractionMapping, Snippet
-
-__all__ = ["check_shared_mapping_code"]
 
 _CHANGING = frozenset({
     "add", "append", "clear", "discard", "extend", "insert", "pop", "popitem", "remove", "reverse",

@@ -1,7 +1,5 @@
 """`stop_when` of a mapping: does it name what is there while the skill runs, and can it become True?"""
 
-from __future__ import annotations
-
 import ast
 import re
 
@@ -11,8 +9,6 @@ from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Severity
 from aos_protocol.documents import AbstractionMapping, LocalSource, SkillModel, Snippet
-
-__all__ = ["check_stop_when", "tells_of_stops"]
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _NO_TRUTH = (

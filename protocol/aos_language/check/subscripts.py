@@ -1,13 +1,9 @@
 """The contents of the brackets in an access path."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
 from aos_language.cpp.snippets import Extent, Mention
-
-__all__ = ["subscripts_of"]
 
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 

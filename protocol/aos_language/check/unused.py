@@ -1,7 +1,5 @@
 """Variables that are declared and then mentioned nowhere."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable
@@ -9,8 +7,6 @@ from collections.abc import Collection, Iterable
 from aos_language.check.blocks import environment_blocks, skill_blocks
 from aos_language.findings import Findings
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, SkillModel, Snippet
-
-__all__ = ["check_unused_locals", "check_unused_variables"]
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 

@@ -1,15 +1,11 @@
 """Probabilities and weights that stand as numbers in the model code."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping
 
 from aos_language.cpp.snippets import Call, Extent
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-
-__all__ = ["check_weights"]
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?[fF]?")
 _WEIGHT_LIST = re.compile(

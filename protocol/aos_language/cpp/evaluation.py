@@ -1,15 +1,11 @@
 """The order in which C++ expressions read local variables that may have no value yet, and set them."""
 
-from __future__ import annotations
-
 import tree_sitter
 
 from aos_language.cpp.facts import CHANGING_METHODS, READING_FUNCTIONS, READING_METHODS
 from aos_language.cpp.flow import is_draw, names_in
 from aos_language.cpp.nodes import text_of
 from aos_language.cpp.ways import State
-
-__all__ = ["Evaluation", "below", "operator_of"]
 
 _READING_METHODS = (CHANGING_METHODS | READING_METHODS) - {"swap"}
 _NO_READS = frozenset({

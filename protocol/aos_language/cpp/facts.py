@@ -1,26 +1,11 @@
 """The findings of a C++ snippet, as data; `snippets` fills them in."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from enum import StrEnum
 
 import msgspec
 
 from aos_language.cpp.tokens import Extent, Fault
-
-__all__ = [
-    "CHANGING_METHODS",
-    "HANDLE_METHODS",
-    "READING_FUNCTIONS",
-    "READING_METHODS",
-    "Access",
-    "Call",
-    "Cpp",
-    "Declaration",
-    "DeclarationKind",
-    "Mention",
-]
 
 CHANGING_METHODS = frozenset({
     "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "insert", "insert_or_assign",

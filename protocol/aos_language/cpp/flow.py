@@ -5,8 +5,6 @@ leaves a doubt, a name counts as `used`: it may have an effect on anything. So a
 leads from to what is used has an effect on nothing.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 
@@ -22,8 +20,6 @@ from aos_language.cpp.facts import (
 )
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["STATES", "Flow", "Flows", "Name", "flows_of"]
 
 STATES = frozenset({"state", "state_", "state__", "state___"})
 """The copies of the state; `state.x` and `state__.x` are one name."""

@@ -7,8 +7,6 @@ evaluated, even if one does not hold. The reading is of the text. Where it leave
 not count.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 
@@ -18,8 +16,6 @@ from aos_language.cpp.facts import Cpp
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["Edits", "counted_conditions"]
 
 Edits = tuple[tuple[Extent | int, str], ...]
 

@@ -1,10 +1,6 @@
 """The words of C++20 and of model code that can name nothing else."""
 
-from __future__ import annotations
-
 import re
-
-__all__ = ["COMPILER_NAMES", "CPP_KEYWORDS", "SPECIAL_NAMES"]
 
 CPP_KEYWORDS = frozenset({
     "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",

@@ -3,8 +3,6 @@
 The reading is of the text. Where the text leaves a doubt, the answer is no.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
@@ -14,8 +12,6 @@ from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["adds_only_to", "identifiers_of", "linear_draws"]
 
 _CONTINUOUS = ("SampleNormal", "SampleUniform")
 _DOUBLE = ("double", "auto")

@@ -16,8 +16,6 @@ from aos_language.cpp.facts import Cpp
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
 
-__all__ = ["DrawingLoop", "Loops", "Scope", "loops_of"]
-
 
 class Scope(msgspec.Struct, frozen=True):
     """The names that a snippet finds when it begins, and those that it leaves to the next one of its

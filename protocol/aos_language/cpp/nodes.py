@@ -1,12 +1,8 @@
 """The nodes of a syntax tree: their text, and all that is below one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import tree_sitter
-
-__all__ = ["below", "text_of"]
 
 
 def text_of(node: tree_sitter.Node) -> str:

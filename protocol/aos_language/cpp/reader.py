@@ -1,7 +1,5 @@
 """A walk over the syntax tree of a C++ snippet that collects what it mentions, calls and declares."""
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections.abc import Iterable
 
@@ -19,8 +17,6 @@ from aos_language.cpp.facts import (
 )
 from aos_language.cpp.nodes import text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
-
-__all__ = ["TreeReader"]
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
 

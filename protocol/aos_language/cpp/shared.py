@@ -5,8 +5,6 @@ emitted code. Documents do not write it: they write `AOS.Bernoulli(p)` in the fu
 other.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from functools import lru_cache
@@ -19,8 +17,6 @@ from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["NO_SHARED_CODE", "SharedCode", "SharedFunction", "SharedMisuse", "SharedName", "shared_code"]
 
 
 class SharedName(msgspec.Struct, frozen=True):

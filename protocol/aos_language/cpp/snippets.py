@@ -5,8 +5,6 @@ snippet with bracket, quote, comment or preprocessor faults could leave its func
 read, nor of one that takes the parser long. No names are resolved here: a mention is what is written.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import lru_cache
 

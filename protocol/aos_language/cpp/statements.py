@@ -3,16 +3,12 @@
 The marked code does what the code does, on the same lines; what the marks do is up to who puts them there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import msgspec
 import tree_sitter
 
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["Marks", "Statement", "marked"]
 
 
 class Statement(msgspec.Struct, frozen=True):

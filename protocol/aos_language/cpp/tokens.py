@@ -4,8 +4,6 @@ A parser recovers from an unbalanced bracket somewhere; a person wants to know w
 digraphs, raw strings and digit separators are read as the compiler reads them, so that no bracket hides.
 """
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -13,8 +11,6 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import msgspec
-
-__all__ = ["Extent", "Fault", "FaultKind", "Lines", "Tokens", "cut"]
 
 MAX_NESTING = 200
 

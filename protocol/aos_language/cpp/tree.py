@@ -1,13 +1,9 @@
 """C++ text as a syntax tree: the only door to the parser of tree-sitter."""
 
-from __future__ import annotations
-
 import time
 
 import tree_sitter
 import tree_sitter_cpp
-
-__all__ = ["tree_of", "tree_soon"]
 
 MAX_CPU_S = 2.0
 """A text that is far from C++ takes the parser time that grows faster than the text."""

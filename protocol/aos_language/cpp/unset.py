@@ -6,8 +6,6 @@ call that takes it, a reference, a lambda that names it. Nobody asks whether two
 other, so a variable that was set under a condition counts as set under another one about the same names.
 """
 
-from __future__ import annotations
-
 import msgspec
 import tree_sitter
 
@@ -19,8 +17,6 @@ from aos_language.cpp.reader import TreeReader
 from aos_language.cpp.tokens import Extent, Tokens
 from aos_language.cpp.tree import tree_of
 from aos_language.cpp.ways import State, Ways, merged
-
-__all__ = ["Unset", "unset_reads"]
 
 
 class Unset(msgspec.Struct, frozen=True):

@@ -1,7 +1,5 @@
 """Names in a skill's code that are both a response and a value of an enum: where the value is meant."""
 
-from __future__ import annotations
-
 import re
 
 import tree_sitter
@@ -11,8 +9,6 @@ from aos_language.cpp.flow import STATES
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["values_meant"]
 
 _COMPARING = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _NUMBERS = re.compile(r"\b(?:auto|char|int|long|short|signed|size_t|u?int\d+_t|unsigned)\b")

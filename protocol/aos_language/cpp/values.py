@@ -1,14 +1,10 @@
 """The lone names that an expression of C++ can be the value of: not those of its conditions and arguments."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import tree_sitter
 
 from aos_language.cpp.tree import tree_of
-
-__all__ = ["value_names"]
 
 _VALUES = {
     "parenthesized_expression": (0,),

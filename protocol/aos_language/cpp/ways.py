@@ -6,8 +6,6 @@ from collections.abc import Iterable
 
 import msgspec
 
-__all__ = ["State", "Ways", "merged"]
-
 
 class Ways(msgspec.Struct, frozen=True):
     """The ways on which a variable is without a value: all of them (`never` set), or some.

@@ -1,10 +1,6 @@
 """Snippets cut to size: expressions without blanks and semicolons, Python without common indentation."""
 
-from __future__ import annotations
-
 from aos_protocol.documents import Snippet
-
-__all__ = ["cut", "dedented", "expression", "guarded", "without_blank_lines"]
 
 
 def cut(snippet: Snippet, start: int, end: int) -> Snippet:

@@ -1,7 +1,5 @@
 """The result of a reader: one document with its identity."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from enum import StrEnum
@@ -13,8 +11,6 @@ from aos_language.findings import Findings
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, EnumType, Environment, LowLevelDocument, SkillModel
-
-__all__ = ["Document", "DocumentKind", "array_type", "check_name", "enum_type", "normal_type"]
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}")
 _ARRAY = re.compile(r"(.*\S)\s*\[\s*([A-Za-z_]\w*|)\s*\]\s*")

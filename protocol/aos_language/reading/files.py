@@ -1,7 +1,5 @@
 """Files to documents: which reader takes which file, and what a bundle may hold besides documents."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import PurePath
 
@@ -15,15 +13,6 @@ from aos_language.reading.sdl_document import read_sdl
 from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Span
-
-__all__ = [
-    "MAX_BUNDLE_BYTES",
-    "MAX_BUNDLE_FILES",
-    "KnownFiles",
-    "is_document_name",
-    "read_documents",
-    "skills_of_files",
-]
 
 MAX_BUNDLE_FILES = 1000
 MAX_BUNDLE_BYTES = 8 * 1024 * 1024

@@ -1,12 +1,8 @@
 """The JSON form of model code: blocks of assignments, temporary variables, loops over state variables."""
 
-from __future__ import annotations
-
 from aos_language.reading.document import check_name, enum_type, normal_type
 from aos_language.reading.json_record import Record
 from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
-
-__all__ = ["read_block"]
 
 
 def read_block(record: Record, key: str) -> tuple[Assignment, ...]:

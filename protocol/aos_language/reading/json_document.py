@@ -1,7 +1,5 @@
 """A JSON file to a document: the header decides, in the paper's spelling (`GsdlMain`) or that of AOS 1.x."""
 
-from __future__ import annotations
-
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind, check_name
 from aos_language.reading.json_environment import read_environment, read_low_level
@@ -13,8 +11,6 @@ from aos_language.reading.source import Source, Text
 from aos_language.reading.version import read_version
 from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
 from aos_protocol.spelling import nearest
-
-__all__ = ["read_json"]
 
 _HEADERS = ("PlpMain", "GsdlMain")
 _KINDS = {

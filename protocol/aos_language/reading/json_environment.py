@@ -1,7 +1,5 @@
 """The environment document and its Python side (`EnvironmentGlue`), in JSON."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
@@ -28,8 +26,6 @@ from aos_protocol.documents import (
     SpecialState,
     StateVariable,
 )
-
-__all__ = ["read_environment", "read_low_level"]
 
 _RANGE = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)")
 _KINDS = ("enum", "compound")

@@ -1,7 +1,5 @@
 """The abstraction mapping in JSON (`Glue`, in the paper `AM`)."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_language.reading.code import dedented
@@ -22,8 +20,6 @@ from aos_protocol.documents import (
     ResponseRule,
     Snippet,
 )
-
-__all__ = ["read_mapping"]
 
 
 def read_mapping(record: Record, project: str, name: str, span: Span) -> AbstractionMapping | None:

@@ -24,8 +24,6 @@ from aos_language.reading.source import Source, Text
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import Snippet
 
-__all__ = ["Record"]
-
 T = TypeVar("T")
 
 _BOOLEANS = {"true": True, "false": False}

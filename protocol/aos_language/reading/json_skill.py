@@ -1,14 +1,10 @@
 """The skill document in JSON (`PLP`, in the paper `GSDL`)."""
 
-from __future__ import annotations
-
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.json_blocks import read_block
 from aos_language.reading.json_record import Record
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Parameter, SkillModel
-
-__all__ = ["read_skill"]
 
 
 def read_skill(record: Record, project: str, name: str, span: Span) -> SkillModel:

@@ -17,18 +17,6 @@ from aos_language.reading.source import Source
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 
-__all__ = [
-    "JsonArray",
-    "JsonConstant",
-    "JsonNumber",
-    "JsonObject",
-    "JsonString",
-    "JsonValue",
-    "code_snippet",
-    "describe",
-    "parse_json",
-]
-
 MAX_NESTING = 64
 
 _BLANK = re.compile(r"[ \t\n]*")

@@ -1,7 +1,5 @@
 """The kind of local variable that a set of attributes makes, the same for every dialect."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_language.findings import Findings
@@ -9,8 +7,6 @@ from aos_language.reading.document import check_name
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
-
-__all__ = ["LocalVariableParts", "build_local_variable"]
 
 
 class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):

@@ -4,8 +4,6 @@ Here it is only read: that it is Python with a function `draw`. Whatever is wron
 no mission depends on it.
 """
 
-from __future__ import annotations
-
 import ast
 import warnings
 
@@ -13,8 +11,6 @@ from aos_language.findings import Findings
 from aos_language.python_syntax import module_of
 from aos_language.reading.source import Source
 from aos_protocol.diagnostics import Span
-
-__all__ = ["DRAW", "PICTURE", "check_picture"]
 
 PICTURE = "picture.py"
 DRAW = "draw"

@@ -1,7 +1,5 @@
 """Model code in SDL: a section's body, or the assignments inside it that JSON blocks are made of."""
 
-from __future__ import annotations
-
 import re
 
 import msgspec
@@ -13,8 +11,6 @@ from aos_language.reading.sdl_text import Part, Section, enum_values
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Iteration, Snippet, TemporaryVariable
-
-__all__ = ["read_block"]
 
 _TEMPORARY_ENUM = re.compile(r"enum\s+(\S+?)\s*\{(.*)\}\s*(\S+)")
 _TYPE_AND_NAME = re.compile(r"(\S.*?)\s+(\S+)")

@@ -1,7 +1,5 @@
 """The one-line forms of SDL: `<type> <name> ...`, numbers, and values."""
 
-from __future__ import annotations
-
 import re
 
 import msgspec
@@ -10,8 +8,6 @@ from aos_language.findings import Findings
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.sdl_text import Part
 from aos_language.reading.source import Text
-
-__all__ = ["Declaration", "read_declaration", "read_number", "read_truth"]
 
 _DECLARATION = re.compile(
     r"((?:(?:unsigned|signed|long|short)\s+)*[A-Za-z_][\w:]*(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[]+)(\s*)"

@@ -1,7 +1,5 @@
 """An SDL file to a document: its suffix gives the kind, its stem a skill's name."""
 
-from __future__ import annotations
-
 from pathlib import PurePath
 
 from aos_language.findings import Findings
@@ -14,8 +12,6 @@ from aos_language.reading.sdl_skill import read_skill
 from aos_language.reading.sdl_text import Section, parse_sdl
 from aos_language.reading.source import Source, Text
 from aos_language.reading.version import read_version
-
-__all__ = ["read_sdl"]
 
 _KINDS = {
     ".ef": DocumentKind.ENVIRONMENT,

@@ -1,7 +1,5 @@
 """The environment file (`.ef`)."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
@@ -30,8 +28,6 @@ from aos_protocol.documents import (
     SpecialState,
     StateVariable,
 )
-
-__all__ = ["read_environment"]
 
 _KEY = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)|\w+")
 _KEYS = re.compile(rf"(?:{_KEY.pattern})(?:\s*,\s*(?:{_KEY.pattern}))*")

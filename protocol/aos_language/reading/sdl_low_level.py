@@ -1,7 +1,5 @@
 """The low-level file (`.lf`): the Python values behind `anyValue`. AOS 2.0 has no such file; it is ours."""
 
-from __future__ import annotations
-
 import re
 
 from aos_language.findings import Findings
@@ -11,8 +9,6 @@ from aos_language.reading.sdl_text import Part, Section
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import LowLevelConstant, LowLevelDocument, LowLevelType, Parameter
-
-__all__ = ["read_low_level"]
 
 _TYPE_AND_NAME = re.compile(r"(\S.*?)\s+(\S+)")
 

@@ -1,7 +1,5 @@
 """The abstraction mapping (`.am`)."""
 
-from __future__ import annotations
-
 import re
 from itertools import pairwise
 
@@ -27,8 +25,6 @@ from aos_protocol.documents import (
     ResponseRule,
     Snippet,
 )
-
-__all__ = ["read_mapping"]
 
 _IMPORT = re.compile(r"(?:from(?:\s*:\s*|\s+)(?P<module>\S+)\s+)?import(?:\s*:\s*|\s+)(?P<names>.+)")
 _COLON_AFTER_WORD = re.compile(r"(?:from\s*:.*\s)?import\s*:")

@@ -1,7 +1,5 @@
 """The grammar of the three SDL files, and a file's sections by word."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from aos_language.findings import Findings
@@ -9,8 +7,6 @@ from aos_language.reading.sdl_blocks import read_block
 from aos_language.reading.sdl_text import Body, Grammar, Section, Word, last_of
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment
-
-__all__ = ["DEFAULT_DISCOUNT", "GRAMMARS", "Sections", "places_of_words"]
 
 DEFAULT_DISCOUNT = 0.9999
 

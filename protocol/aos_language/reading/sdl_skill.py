@@ -1,14 +1,10 @@
 """The skill document (`.sd`)."""
 
-from __future__ import annotations
-
 from aos_language.findings import Findings
 from aos_language.reading.sdl_declaration import read_declaration, read_number
 from aos_language.reading.sdl_sections import Sections
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Parameter, SkillModel
-
-__all__ = ["read_skill"]
 
 
 def read_skill(sections: Sections, project: str, name: str, span: Span, findings: Findings) -> SkillModel:

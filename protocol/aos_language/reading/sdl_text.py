@@ -21,18 +21,6 @@ from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.documents import Snippet
 from aos_protocol.spelling import nearest
 
-__all__ = [
-    "Body",
-    "Grammar",
-    "Part",
-    "Section",
-    "Word",
-    "enum_values",
-    "last_of",
-    "listed_values",
-    "parse_sdl",
-]
-
 _OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
 _WORD_ALONE = re.compile(r"[ \t]*(?P<word>[a-z]+(?:_[a-z]+)*)(?:[ \t]+(?P<rest>\S.*?))?[ \t]*$")
 _BETWEEN_NAMES = frozenset({"and", "else", "for", "if", "in", "is", "not", "or"})

@@ -11,8 +11,6 @@ from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 
-__all__ = ["MAX_FILE_BYTES", "Source", "Text", "open_source"]
-
 MAX_FILE_BYTES = 1024 * 1024
 
 _BYTE_ORDER_MARK = "\ufeff"

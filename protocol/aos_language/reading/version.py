@@ -1,13 +1,9 @@
 """The version a document declares, and which of two is higher."""
 
-from __future__ import annotations
-
 import re
 
 from aos_language.findings import Findings
 from aos_language.reading.source import Text
-
-__all__ = ["is_higher", "read_version"]
 
 _VERSION = re.compile(r"\d{1,9}(\.\d{1,9}){0,3}")
 

@@ -4,8 +4,6 @@ They are as strict as `aos lint`, which warns of unknown keys, with what the lin
 should not have left out: text for true and false, keys that have no effect any more.
 """
 
-from __future__ import annotations
-
 from aos_language.schemas.parts import (
     BLOCK,
     CODE,
@@ -21,8 +19,6 @@ from aos_language.schemas.parts import (
     shared_parts,
 )
 from aos_protocol.documents import ACTIVATION_KINDS
-
-__all__ = ["gsdl_schema", "plp_schema"]
 
 _ENVIRONMENT, _SKILL, _MAPPING, _LOW_LEVEL = "environment", "skill", "mapping", "low_level"
 

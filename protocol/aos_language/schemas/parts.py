@@ -1,13 +1,6 @@
 """The parts that the schemas of the JSON documents are put together from."""
 
-from __future__ import annotations
-
 from typing import Any
-
-__all__ = [
-    "BLOCK", "CODE", "IMPORTS", "NUMBER", "TEXT", "TRUTH", "Schema",
-    "expression", "list_of", "object_of", "said", "shared_parts",
-]  # fmt: skip
 
 Schema = dict[str, Any]
 

@@ -1,7 +1,5 @@
 """A document as AOS 1.x JSON."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable
 from typing import Any
@@ -26,8 +24,6 @@ from aos_protocol.documents import (
     StateVariable,
     TemporaryVariable,
 )
-
-__all__ = ["json_text"]
 
 _TYPES = {Environment: "Environment", SkillModel: "PLP", AbstractionMapping: "Glue"}
 

@@ -1,7 +1,5 @@
 """A document as SDL text."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 
@@ -22,8 +20,6 @@ from aos_protocol.documents import (
     StateVariable,
     TemporaryVariable,
 )
-
-__all__ = ["sdl_text"]
 
 _LOOKS_LIKE_A_SCALE = re.compile(r".*\S\s+(ml_ignore|[\d.]+)")
 

@@ -6,8 +6,6 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 
-__all__ = ["Assignment", "Iteration", "Snippet", "TemporaryVariable"]
-
 
 class Snippet(msgspec.Struct, frozen=True):
     """Code from a document, verbatim.

@@ -7,17 +7,6 @@ import msgspec
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents.code import Assignment, Snippet
 
-__all__ = [
-    "MAX_HORIZON",
-    "CompoundType",
-    "EnumType",
-    "Environment",
-    "Field",
-    "MonitorModel",
-    "SpecialState",
-    "StateVariable",
-]
-
 MAX_HORIZON = 10_000
 """Searches call themselves for each decision that they look ahead."""
 

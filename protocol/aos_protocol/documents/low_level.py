@@ -8,8 +8,6 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents.code import Snippet
 from aos_protocol.documents.skill_model import Parameter
 
-__all__ = ["LowLevelConstant", "LowLevelDocument", "LowLevelType"]
-
 
 class LowLevelType(msgspec.Struct, frozen=True):
     """A Python-side structure for `anyValue` parameters."""

@@ -10,19 +10,6 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents.code import Snippet
 from aos_protocol.older_python import StrEnum
 
-__all__ = [
-    "ACTIVATION_KINDS",
-    "NO_ACTIVATION",
-    "AbstractionMapping",
-    "Activation",
-    "ActivationField",
-    "Import",
-    "LocalSource",
-    "LocalVariable",
-    "LowLevelAssignment",
-    "ResponseRule",
-]
-
 
 class Import(msgspec.Struct, frozen=True):
     """`from module import names`, or `import names` where `module` is empty."""

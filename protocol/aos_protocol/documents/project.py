@@ -11,8 +11,6 @@ from aos_protocol.documents.low_level import LowLevelDocument
 from aos_protocol.documents.mapping import AbstractionMapping
 from aos_protocol.documents.skill_model import SkillModel
 
-__all__ = ["Constraint", "MissionValue", "Project", "Skill"]
-
 
 class Skill(msgspec.Struct, frozen=True):
     """A skill's two documents; the registry derives the mapping of a skill that has none written."""

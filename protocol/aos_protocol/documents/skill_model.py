@@ -7,8 +7,6 @@ import msgspec
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents.code import Assignment
 
-__all__ = ["Parameter", "SkillModel"]
-
 
 class Parameter(msgspec.Struct, frozen=True):
     """A skill parameter."""

@@ -6,12 +6,6 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
 
-__all__ = [
-    "Envelope",
-    "Fault",
-    "Message",
-]
-
 
 class Message(msgspec.Struct, frozen=True, omit_defaults=True):
     """Base of every structure on the bus."""

@@ -6,20 +6,6 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.messages.base import Message
 
-__all__ = [
-    "BundleReport",
-    "Catalogue",
-    "CatalogueEntry",
-    "CatalogueQuery",
-    "ProjectQuery",
-    "ProjectRevision",
-    "PushBundle",
-    "RemoveDocuments",
-    "RevisionEntry",
-    "Revisions",
-    "RevisionsQuery",
-]
-
 
 class PushBundle(Message, frozen=True):
     """A bundle for the registry: file names, relative and flat, with their bytes. `source` is for people."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from aos_protocol.messages.base import Message
 
-__all__ = ["DriftTest", "DriftTests", "ModelDrift"]
-
 
 class ModelDrift(Message, frozen=True):
     """An alarm: a skill's response comes more often, or more rarely, than the model predicts.

@@ -13,31 +13,6 @@ from aos_protocol.messages.drift import ModelDrift
 from aos_protocol.messages.records import ChosenBy, SearchMade
 from aos_protocol.messages.skills import Outcome
 
-__all__ = [
-    "ActionValue",
-    "BeliefSummary",
-    "CheckModel",
-    "ConstraintRisk",
-    "DecisionRecord",
-    "EndingOdds",
-    "History",
-    "HistoryQuery",
-    "Marginal",
-    "MissionBegun",
-    "MissionEntry",
-    "MissionQuery",
-    "MissionState",
-    "Missions",
-    "MissionsQuery",
-    "ModelAdopted",
-    "ModelCheck",
-    "PredictedObservation",
-    "ResumeMission",
-    "StartMission",
-    "StopMission",
-    "TakeoverWay",
-]
-
 
 class CheckModel(Message, frozen=True):
     """The registry's question before it accepts documents: can the solver use them, now?"""

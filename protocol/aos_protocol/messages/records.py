@@ -6,8 +6,6 @@ from typing import Literal
 
 from aos_protocol.messages.base import Message
 
-__all__ = ["BeliefRow", "ChosenBy", "SearchMade", "WeightedStates"]
-
 ChosenBy = Literal["planner", "policy", "retry", "operator", "script"]
 """The chooser of an action: a search, a policy file, the rule that tries a failed action again, a person, or
 a person's script of actions."""

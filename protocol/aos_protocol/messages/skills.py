@@ -6,21 +6,6 @@ from typing import Any
 
 from aos_protocol.messages.base import Fault, Message
 
-__all__ = [
-    "Activate",
-    "ActivationId",
-    "Cancel",
-    "Cancelled",
-    "MappingQuery",
-    "MappingState",
-    "Outcome",
-    "SkillCall",
-    "SkillProgress",
-    "SkillResult",
-    "Stray",
-    "TopicMessage",
-]
-
 
 class ActivationId(Message, frozen=True):
     """Identifies one run of one grounded action for ever, whichever process asks for it."""

@@ -6,8 +6,6 @@ from typing import Literal
 
 from aos_protocol.messages.base import Message
 
-__all__ = ["ActionRefused", "Steer", "SteeringVerb"]
-
 SteeringVerb = Literal["hold", "step", "resume", "stop", "act", "script", "leave_out", "take_back"]
 """The things that somebody can want of a mission that runs; Steer says what each does."""
 

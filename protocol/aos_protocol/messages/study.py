@@ -13,20 +13,6 @@ import msgspec
 from aos_protocol.messages.base import Message
 from aos_protocol.messages.mission import ActionValue, BeliefSummary
 
-__all__ = [
-    "Consequence",
-    "DecisionTree",
-    "Flip",
-    "TreeBranch",
-    "TreeNode",
-    "TreeQuery",
-    "ValueTerm",
-    "WhatIf",
-    "WhatIfQuery",
-    "Why",
-    "WhyQuery",
-]
-
 
 class WhyQuery(Message, frozen=True):
     """Asks why a decision was made, and not `instead` another action; by default the runner-up."""

@@ -11,8 +11,6 @@ import msgspec
 
 from aos_protocol.messages import ActivationId
 
-__all__ = ["Adapter", "Answer", "Call", "Observed"]
-
 
 class Observed(msgspec.Struct, frozen=True):
     """The answer of an adapter that knows the observation itself: then the mappings' rules do not run.

@@ -13,8 +13,6 @@ from contextlib import contextmanager
 
 from aos_runtime.code_places import place_of
 
-__all__ = ["ends_if_blocked"]
-
 _ANSWER_S = 5.0
 """The time that the loop may take to answer: after a pause of the whole process it has to catch up first."""
 

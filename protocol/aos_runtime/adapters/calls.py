@@ -24,8 +24,6 @@ from aos_runtime.lifecycle import Service
 from aos_runtime.older_python import timeout
 from aos_runtime.subscription import Subscription
 
-__all__ = ["Calls"]
-
 MIDDLEWARE_AWAY_S = 2.0
 """A motion is stopped when nobody could hear of it for this long."""
 

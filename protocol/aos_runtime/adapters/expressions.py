@@ -12,8 +12,6 @@ from typing import Any
 
 from aos_protocol.errors import SkillError
 
-__all__ = ["check_expression", "translated"]
-
 _KNOWN = {name: value for name, value in vars(math).items() if not name.startswith("_")}
 
 

@@ -37,8 +37,6 @@ from aos_runtime.asking import ask_until_answered
 from aos_runtime.lifecycle import Service
 from aos_runtime.subscription import together
 
-__all__ = ["Host", "load_adapter", "serve_adapter"]
-
 _ASK_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 2.0
 """A process has this time for saying why it ends, when something in it cannot be ended."""

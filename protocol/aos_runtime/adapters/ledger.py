@@ -13,8 +13,6 @@ from aos_protocol.messages import ActivationId, Fault, Message, SkillCall, Skill
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import is_before
 
-__all__ = ["Ledger"]
-
 
 class _Failure(Message, frozen=True):
     id: ActivationId

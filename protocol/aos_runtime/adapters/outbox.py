@@ -13,8 +13,6 @@ from aos_protocol.messages import TopicMessage
 from aos_runtime.adapters.sendable import sendable
 from aos_runtime.bus import Bus
 
-__all__ = ["MAX_UNSENT_MESSAGES", "Outbox"]
-
 MAX_UNSENT_MESSAGES = 10_000
 """The oldest topic messages give way where more than these wait to be sent."""
 

@@ -6,8 +6,6 @@ import asyncio
 
 from aos_runtime.bus_config import ADAPTER_LEASE_S
 
-__all__ = ["Pauses"]
-
 _TURN_S = 0.1
 _PAUSE_S = ADAPTER_LEASE_S / 2
 """A loop that stands still for longer may have left the bus without knowing it."""

@@ -11,8 +11,6 @@ from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import Binding
 
-__all__ = ["result_of"]
-
 
 def result_of(
     call: Call, binding: Binding, answer: Any, published: dict[str, int], adapter: str

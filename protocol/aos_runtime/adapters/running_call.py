@@ -9,8 +9,6 @@ from aos_protocol.errors import AosError
 from aos_protocol.messages import SkillProgress
 from aos_runtime.adapters.adapter import Answer, Call
 
-__all__ = ["PROGRESS_EVERY_S", "RunningCall", "last_progress"]
-
 PROGRESS_EVERY_S = 0.05
 """Progress is told this often; of what comes faster, the newest."""
 

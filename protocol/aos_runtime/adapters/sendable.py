@@ -11,8 +11,6 @@ from aos_protocol.codec import MAX_BYTES
 from aos_protocol.errors import SkillError
 from aos_runtime.plain_data import plain_from
 
-__all__ = ["sendable"]
-
 _encoder = msgspec.msgpack.Encoder()
 
 

@@ -9,8 +9,6 @@ import msgspec
 from aos_protocol.access import ADAPTER, Party
 from aos_runtime.service_settings import ServiceSettings
 
-__all__ = ["AdapterSettings", "Binding"]
-
 
 class Binding(msgspec.Struct, frozen=True, kw_only=True):
     """The binding of a path to the adapter's own terms.

@@ -16,8 +16,6 @@ from aos_protocol.codec import UNREADABLE
 from aos_runtime.adapters.settings import AdapterSettings
 from aos_runtime.credentials import PASSWORD_FILE_VARIABLE
 
-__all__ = ["USAGE", "settings_told"]
-
 USAGE = """usage: python -m aos_runtime.adapters MODULE:CLASS [NAME=VALUE]...
 
 CLASS of MODULE, or of a FILE.py, is the adapter; it finds each NAME in host.options. aos-up tells the rest

@@ -17,8 +17,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import NoReturn
 
-__all__ = ["ACCESS", "Sandbox", "become_confined"]
-
 ACCESS = {"--read": READ, "--execute": EXECUTE, "--write": WRITE}
 
 _DEVICES = (("/dev/null", WRITE), ("/dev/zero", READ), ("/dev/urandom", READ), ("/dev/random", READ))

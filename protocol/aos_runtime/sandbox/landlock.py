@@ -17,8 +17,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["EXECUTE", "READ", "WRITE", "restrict_files", "version", "why_missing"]
-
 _CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
 """The same numbers on all architectures."""
 _VERSION_FLAG = 1

@@ -12,8 +12,6 @@ import os
 from aos_runtime.sandbox import system_calls as calls
 from aos_runtime.sandbox.seccomp import ALLOW, TRAP, Rule, assemble, fail_with
 
-__all__ = ["ALONE", "ENVIRONMENT", "program_of"]
-
 _REFUSED = fail_with(errno.EPERM)
 _ABSENT = fail_with(errno.ENOSYS)
 

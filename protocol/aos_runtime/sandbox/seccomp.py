@@ -17,19 +17,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = [
-    "ALLOW",
-    "KILL",
-    "TRAP",
-    "Condition",
-    "Rule",
-    "assemble",
-    "fail_with",
-    "give_up_new_privileges",
-    "put_on",
-    "why_missing",
-]
-
 KILL, TRAP, ALLOW = 0x80000000, 0x00030000, 0x7FFF0000
 _FAIL = 0x00050000
 

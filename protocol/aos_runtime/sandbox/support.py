@@ -14,16 +14,6 @@ import msgspec
 from aos_protocol.errors import DeployError
 from aos_runtime.sandbox import landlock, seccomp
 
-__all__ = [
-    "TRUST_VARIABLE",
-    "Support",
-    "require_sandbox",
-    "sandbox_support",
-    "sandbox_text",
-    "trust_documents",
-    "trusts_documents",
-]
-
 _log = logging.getLogger("aos.sandbox")
 
 TRUST_VARIABLE = "AOS_TRUST"

@@ -6,19 +6,6 @@ have the same.
 
 from __future__ import annotations
 
-__all__ = [
-    "ALLOWED",
-    "ARCHITECTURES",
-    "CHANGES_OF_FILES",
-    "CHANGES_OF_OWNERS",
-    "NETWORK",
-    "NEWEST_KNOWN",
-    "NEW_PROCESSES",
-    "OTHER_PROCESSES",
-    "SYSTEM",
-    "numbers_of",
-]
-
 ARCHITECTURES = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 """The machines, as `uname` names them, that filters can be made for, and what the kernel calls them."""
 

@@ -10,8 +10,6 @@ import tempfile
 from aos_runtime.children import Confinement, Limits, guarded
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
-__all__ = ["what_a_confined_program_can"]
-
 _TRIAL_S = 20.0
 _PROGRAM = """
 import os, socket, sys

@@ -1,7 +1,5 @@
 """`python -m aos_gateway` is `aos serve`."""
 
-from __future__ import annotations
-
 import typer
 
 from aos_gateway.command import serve

@@ -5,8 +5,6 @@ here (DNS rebinding) it could read the answers. So the `Host` of every request h
 gateway's names, and an `Origin` has to be the gateway itself, also on loopback.
 """
 
-from __future__ import annotations
-
 import hmac
 import os
 import secrets
@@ -19,8 +17,6 @@ from urllib.parse import urlsplit
 import msgspec
 
 from aos_protocol.errors import GatewayError, StorageError
-
-__all__ = ["COOKIE", "Access", "access_of", "kept_token"]
 
 COOKIE = "aos-token"
 """The cookie by which a browser that has shown the token may read where reading needs it."""

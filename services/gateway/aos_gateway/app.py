@@ -1,7 +1,5 @@
 """The gateway as an ASGI application: access first, then the operations, then the page."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
 
@@ -21,8 +19,6 @@ from aos_gateway.page import page_routes
 from aos_gateway.shared import Gateway
 from aos_gateway.table import OPERATIONS
 from aos_protocol.errors import AosError, BusError, GatewayError
-
-__all__ = ["make_app"]
 
 _HEADERS = {
     "content-security-policy": "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; "

@@ -1,7 +1,5 @@
 """`aos serve`: the runs of this machine over HTTP, and the page that shows them."""
 
-from __future__ import annotations
-
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Annotated
@@ -11,9 +9,6 @@ import typer
 from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.living_runs import runs_here
 from aos_protocol.errors import DeployError
-
-__all__ = ["register", "serve"]
-
 
 Listen = Annotated[str, typer.Option("--listen", metavar="ADDRESS", help="The address that it listens at")]
 Port = Annotated[int, typer.Option("--port", min=0, max=65535, help="The port; 0 takes any free one")]

@@ -1,7 +1,5 @@
 """The documents of a mission: the files of each revision, and the lines that a step is about."""
 
-from __future__ import annotations
-
 import asyncio
 import sqlite3
 from contextlib import closing
@@ -18,8 +16,6 @@ from aos_protocol.errors import AosError, GatewayError, StorageError
 from aos_protocol.messages import Catalogue, CatalogueEntry, CatalogueQuery
 from aos_registry.catalogue import Catalogue as KeptCatalogue
 from aos_runtime.plain_tables import require_plain_tables
-
-__all__ = ["bundles", "documents", "draws_state", "picture_of"]
 
 _ANSWER_S = 5.0
 

@@ -1,15 +1,11 @@
 """Pictures of states, each drawn in a process of its own, and those that were drawn last."""
 
-from __future__ import annotations
-
 import asyncio
 from collections import OrderedDict
 from typing import Any
 
 from aos_middleware.picture import Drawn, draw
 from aos_protocol.messages import DecisionRecord
-
-__all__ = ["Drawings"]
 
 _KEPT = 32
 _AT_ONCE = 2

@@ -5,8 +5,6 @@ the connection sends it as `Last-Event-ID`, and gets what it missed from the jou
 nothing for it, so that this also holds for a gateway that was started again.
 """
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 
@@ -15,8 +13,6 @@ import msgspec
 from aos_gateway.feed import Frame, Watches, frame_of_record, frame_of_state
 from aos_gateway.runs import Run, RunShelf
 from aos_gateway.trace import Steps
-
-__all__ = ["EVENT_STREAM", "place_of", "stream"]
 
 EVENT_STREAM = "text/event-stream"
 _BEAT_S = 10.0

@@ -1,13 +1,9 @@
 """Counters, gauges and histograms, and Prometheus' text format for them (version 0.0.4)."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
-
-__all__ = ["EXPOSITION", "Counter", "Family", "Gauge", "Histogram", "exposition"]
 
 EXPOSITION = "text/plain; version=0.0.4; charset=utf-8"
 """The media type."""

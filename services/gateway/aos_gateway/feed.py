@@ -5,8 +5,6 @@ A viewer has a queue of bounded length. One that does not keep up is let go: it 
 of the last event that it has got, and the journal has what it missed.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Callable, Iterator
@@ -20,8 +18,6 @@ from aos_gateway.trace import Step, Steps
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
 from aos_runtime.subscription import merged
-
-__all__ = ["Frame", "Presence", "StepEvent", "Watches", "frame_of_record", "frame_of_state"]
 
 _QUEUE_FRAMES = 2000
 _LINGER_S = 5.0

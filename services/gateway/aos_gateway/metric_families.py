@@ -1,11 +1,7 @@
 """The metrics of missions by name, and what a decision record adds to them."""
 
-from __future__ import annotations
-
 from aos_gateway.exposition import Counter, Family, Gauge, Histogram
 from aos_protocol.messages import DecisionRecord
-
-__all__ = ["Families"]
 
 _SECONDS = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
 _NATS = (0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0)

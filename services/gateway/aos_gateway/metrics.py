@@ -5,8 +5,6 @@ at that moment is counted from its first step. Nothing is read while nobody asks
 recorded between two scrapes is counted with the second, so that none is lost.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import time
@@ -20,8 +18,6 @@ from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
 from aos_runtime.journal import Journal
 from aos_solver.mission.logbook import JOURNAL
-
-__all__ = ["Metrics"]
 
 _log = logging.getLogger("aos.gateway")
 

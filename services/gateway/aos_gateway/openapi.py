@@ -1,7 +1,5 @@
 """The OpenAPI document, made from the table of operations and the message types."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from typing import Any
@@ -11,8 +9,6 @@ import msgspec
 from aos_gateway.operations import JSON, Operation
 from aos_gateway.problems import PROBLEM_TYPE, Problem
 from aos_protocol import __version__
-
-__all__ = ["openapi_document"]
 
 _REFERENCES = "#/components/schemas/{name}"
 _NAME = {"type": "string", "minLength": 1}

@@ -4,8 +4,6 @@ Routes, checks of requests and the OpenAPI document are made from it, so that no
 else.
 """
 
-from __future__ import annotations
-
 import gzip
 import inspect
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -21,8 +19,6 @@ from aos_gateway.problems import PROBLEM_TYPE, problem_of
 from aos_gateway.shared import Gateway
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, GatewayError
-
-__all__ = ["JSON", "Content", "Operation", "operation", "response_of", "route_of"]
 
 JSON = "application/json"
 SVG = "image/svg+xml"

@@ -3,8 +3,6 @@
 A file whose name ends in `.gz` is kept compressed, and is known by the name without that.
 """
 
-from __future__ import annotations
-
 import contextlib
 import gzip
 import hashlib
@@ -17,8 +15,6 @@ import msgspec
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
-
-__all__ = ["page_routes"]
 
 _FOLDER = Path(__file__).resolve().parent / "page"
 _MEDIA = {

@@ -1,15 +1,11 @@
 """Errors as problem details (RFC 9457), with the AOS code, what to do, and the places in documents."""
 
-from __future__ import annotations
-
 from http import HTTPStatus
 
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import CODES, AosError
-
-__all__ = ["PROBLEM_TYPE", "Problem", "problem_of", "status_of"]
 
 PROBLEM_TYPE = "application/problem+json"
 

@@ -1,7 +1,5 @@
 """The resources that journals and the bus have: runs, missions, decisions, beliefs, activations."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator
 from typing import Annotated, Any
@@ -25,20 +23,6 @@ from aos_protocol.messages import (
     MissionState,
     Outcome,
 )
-
-__all__ = [
-    "activations",
-    "beliefs",
-    "decision",
-    "decisions",
-    "events",
-    "index",
-    "mission",
-    "missions",
-    "run",
-    "runs",
-    "trace",
-]
 
 _PAGE = 1000
 _TRACE_RECORDS = 4000

@@ -1,7 +1,5 @@
 """The files of a run on this machine that can be read: logs of its processes, pictures of its world."""
 
-from __future__ import annotations
-
 import asyncio
 import re
 from pathlib import Path
@@ -14,8 +12,6 @@ from aos_gateway.operations import Content
 from aos_gateway.runs import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError, StorageError
-
-__all__ = ["OfLog", "log", "number_of_step", "picture", "pictures", "services"]
 
 _LOG_BYTES = 200_000
 _SERVICE = re.compile(r"[A-Za-z0-9_-]{1,64}")

@@ -1,7 +1,5 @@
 """The runs that the gateway knows: those on this machine, living and past, and systems at an endpoint."""
 
-from __future__ import annotations
-
 import asyncio
 import threading
 import time
@@ -25,8 +23,6 @@ from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder, mission_folders, number_in, number_of
 from aos_solver.mission.history import history_page
 from aos_solver.mission.logbook import JOURNAL, entries_of
-
-__all__ = ["KeptRun", "RemoteRun", "Run", "RunEntry", "RunShelf"]
 
 LATEST = "latest"
 _ANSWER_S = 5.0

@@ -1,7 +1,5 @@
 """The gateway as a process: its socket, its note for `aos-up --page`, and uvicorn."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import socket
@@ -22,8 +20,6 @@ from aos_gateway.runs import RemoteRun, RunShelf
 from aos_gateway.shared import Gateway
 from aos_gateway.trace import Traces
 from aos_protocol.errors import DeployError
-
-__all__ = ["Settings", "serve_gateway"]
 
 _LAST_STREAMS_S = 1
 """Streams are cut this long after the gateway was told to end."""

@@ -1,7 +1,5 @@
 """The surroundings that all operations of the gateway share."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 
@@ -13,8 +11,6 @@ from aos_gateway.metrics import Metrics
 from aos_gateway.runs import RunShelf
 from aos_gateway.trace import Traces
 from aos_language.reading.files import MAX_BUNDLE_BYTES
-
-__all__ = ["Gateway"]
 
 
 class Gateway(msgspec.Struct, frozen=True, kw_only=True):

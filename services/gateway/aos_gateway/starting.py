@@ -1,7 +1,5 @@
 """Systems that the gateway starts, and that go on when the gateway ends."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import subprocess
@@ -13,8 +11,6 @@ import msgspec
 
 from aos_deploy.started_system import started_process, until_run
 from aos_gateway.runs import RunShelf
-
-__all__ = ["StartedRun", "start_system"]
 
 
 class StartedRun(msgspec.Struct, frozen=True):

@@ -1,7 +1,5 @@
 """The picture of a mission's state at a step, drawn by the bundle's `picture.py` when somebody looks."""
 
-from __future__ import annotations
-
 import asyncio
 
 from aos_gateway.documents import picture_of
@@ -10,8 +8,6 @@ from aos_gateway.reading import decision
 from aos_gateway.runs import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError
-
-__all__ = ["state_picture"]
 
 _NEVER_CHANGES_S = 3600
 

@@ -2,8 +2,6 @@
 directory.
 """
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable
 from typing import Annotated, TypeVar
 
@@ -19,8 +17,6 @@ from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, 
 from aos_runtime.client import STUDY_TIMEOUT_S
 from aos_runtime.mission_folders import number_in
 from aos_solver.study.study import Study
-
-__all__ = ["tree", "what_if", "why"]
 
 A = TypeVar("A", Why, DecisionTree, WhatIf)
 

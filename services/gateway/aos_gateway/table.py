@@ -1,12 +1,8 @@
 """All operations of the gateway, in the order of the documentation."""
 
-from __future__ import annotations
-
 from aos_gateway import documents, reading, run_files, study, writing
 from aos_gateway.operations import Operation, operation
 from aos_gateway.state_picture import state_picture
-
-__all__ = ["OPERATIONS"]
 
 _ARCHIVE = "an archive of documents, or one document"
 

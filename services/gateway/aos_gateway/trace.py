@@ -4,16 +4,12 @@ A decision record says all of one step. Views over time need little of each: wha
 what was expected and seen, and the belief. A row has of the belief what is another than in the row before.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 
 import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, Marginal, ModelDrift
-
-__all__ = ["Endings", "Step", "Steps", "Trace", "Traces", "steps_of"]
 
 _DIGITS = 4
 _SHOWN_VALUES = 8

@@ -1,7 +1,5 @@
 """Bundles that come over HTTP: archives or single documents, and the projects that are kept of them."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 import shutil
@@ -15,8 +13,6 @@ from aos_language.archive import is_archive_name, read_archive
 from aos_language.reading.files import is_document_name
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DocumentError, StorageError
-
-__all__ = ["ProjectEntry", "files_of_upload", "keep_project", "kept_projects"]
 
 _LONGEST_NAME_BYTES = 200
 _LONGEST_ROBOT = 64

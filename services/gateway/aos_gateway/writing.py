@@ -1,7 +1,5 @@
 """The operations that change something: checks, missions, bundles. Each needs the token."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 from typing import Annotated, Literal
@@ -19,17 +17,6 @@ from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import DocumentError, GatewayError
 from aos_protocol.messages import BundleReport, MissionState, PushBundle, Steer, SteeringVerb
-
-__all__ = [
-    "check",
-    "projects",
-    "push",
-    "start",
-    "start_next",
-    "steer",
-    "stop",
-    "upload",
-]
 
 _PUSH_S = 200.0
 

@@ -5,8 +5,6 @@ message that was sent before the call ended; the result; the rules. Nothing of o
 next.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from typing import Any
@@ -27,8 +25,6 @@ from aos_protocol.documents import AbstractionMapping
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Activate, Fault, Outcome, SkillResult, TopicMessage
 from aos_runtime.subscription import merged
-
-__all__ = ["refused", "run_activation"]
 
 _log = logging.getLogger("aos.middleware")
 

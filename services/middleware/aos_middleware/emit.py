@@ -4,8 +4,6 @@ The module's text depends on nothing but the documents, byte for byte. Every lin
 document knows its place there, so that whatever Python says about the module is said about the document.
 """
 
-from __future__ import annotations
-
 import hashlib
 import warnings
 from collections.abc import Mapping
@@ -24,8 +22,6 @@ from aos_middleware.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, SkillModel, Snippet
 from aos_protocol.errors import DocumentError
-
-__all__ = ["EmittedMapping", "emit_mapping", "emit_monitor"]
 
 _DIGEST_LENGTH = 16
 

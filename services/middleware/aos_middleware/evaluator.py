@@ -4,8 +4,6 @@ The process is started when it is first needed and again after it ended, whateve
 evaluation beyond its deadline, a kill. What mapping code prints is in a log file of its own.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import os
@@ -41,8 +39,6 @@ from aos_protocol.errors import MappingError, StorageError
 from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.failpoints import reach
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
-
-__all__ = ["EvaluationLimits", "Evaluator", "MappingFault", "worker_confinement"]
 
 A = TypeVar("A", Begun, Done, Observed, Taken)
 

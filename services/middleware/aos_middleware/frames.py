@@ -4,29 +4,9 @@ A frame is four bytes of length, most significant first, and a msgpack body. The
 answers each question with one frame; a question that brings no answer ends with the worker's process.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec
-
-__all__ = [
-    "MAX_FRAME_BYTES",
-    "Answer",
-    "Begin",
-    "Begun",
-    "Done",
-    "Finish",
-    "Load",
-    "Observed",
-    "Question",
-    "Raised",
-    "Take",
-    "Taken",
-    "pack",
-    "read_answer",
-    "read_question",
-]
 
 MAX_FRAME_BYTES = 64 * 1024 * 1024
 

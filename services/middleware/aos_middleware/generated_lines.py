@@ -4,15 +4,11 @@ A template decides how the module looks; each line it places carries an invisibl
 taken out again after rendering. No line count is kept by hand, and no document text becomes template source.
 """
 
-from __future__ import annotations
-
 import re
 
 import msgspec
 
 from aos_middleware.python_code import LineOrigin, PythonCode
-
-__all__ = ["MarkedLines", "literal", "word"]
 
 _MARK = re.compile("\x00(\\d+)\x00")
 _INDENT = " " * 4

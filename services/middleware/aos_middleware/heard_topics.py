@@ -1,7 +1,5 @@
 """The topics of one activation: each message that was sent before its call ended is evaluated, in order."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from typing import Any
@@ -13,8 +11,6 @@ from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.messages import SkillResult, TopicMessage
 from aos_runtime.bus import Subscription
-
-__all__ = ["QUEUE_SIZE", "HeardTopics"]
 
 CATCH_UP_S = 0.5
 """An activation waits so long, after the call, for topic messages that were sent during it."""

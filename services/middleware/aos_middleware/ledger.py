@@ -1,15 +1,11 @@
 """The activations that were started and how they ended, so that a repeated request moves nothing twice."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Self
 
 from aos_protocol.messages import Activate, ActivationId, Outcome, Stray
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import is_before
-
-__all__ = ["OutcomeLedger"]
 
 _STARTED = "started"
 _ENDED = "ended"

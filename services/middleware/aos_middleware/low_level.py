@@ -5,8 +5,6 @@ their place. They belong to state variables; an activation finds them under the 
 those variables.
 """
 
-from __future__ import annotations
-
 import copy
 import logging
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,8 +14,6 @@ from aos_language.cpp.snippets import Access, read_cpp
 from aos_middleware.values import put
 from aos_protocol.documents import CompoundType, Environment, Project
 from aos_protocol.messages import Activate, Outcome
-
-__all__ = ["LowLevelValues", "assigned_variables", "default_constants"]
 
 _log = logging.getLogger("aos.middleware")
 

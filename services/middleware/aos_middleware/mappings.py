@@ -5,8 +5,6 @@ model before the newest ones, whose responses are those of that revision's mappi
 change is shared between them.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging
@@ -21,8 +19,6 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, SkillError
 from aos_protocol.messages import MappingState, ProjectRevision
 from aos_protocol.spelling import did_you_mean
-
-__all__ = ["Mappings", "emit_project"]
 
 _KEPT = 4
 

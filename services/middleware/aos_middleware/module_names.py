@@ -1,7 +1,5 @@
 """The names of a mapping's module beside its functions: shared code, low-level values, imports."""
 
-from __future__ import annotations
-
 import ast
 import builtins
 import keyword
@@ -16,8 +14,6 @@ from aos_middleware.python_code import LineOrigin, read_body
 from aos_middleware.read_snippets import ReadSnippets, function_name
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, Import, LocalSource, LowLevelDocument, Snippet
-
-__all__ = ["ImportPart", "ModuleNames"]
 
 _PRIMITIVES = frozenset({"bool", "int", "float", "double", "string", "str"})
 

@@ -4,8 +4,6 @@ What a monitor has heard since the outcome before becomes one response with the 
 that becomes true stops what runs, or what would be called next where nothing runs.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
@@ -19,8 +17,6 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
 from aos_runtime.bus import Bus
 from aos_runtime.subscription import merged
-
-__all__ = ["Monitored", "Monitors"]
 
 LISTEN_S = 5.0
 """An activation waits this long for new monitors to be at work."""

@@ -1,7 +1,5 @@
 """One motion of the robot at a time, whichever processes move it."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,8 +9,6 @@ from aos_protocol.errors import AosError, LostAnswerError, NobodyAnswersError, S
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId, Cancel, Cancelled
 from aos_runtime.bus import Bus
-
-__all__ = ["GONE_S", "MotionGate"]
 
 CONFIRM_S = 3.0
 """A motion waits this long for word that an earlier skill has stopped."""

@@ -1,15 +1,11 @@
 """The reason why an activation that ended well brought no response: AOS402, with what the result said."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
 from aos_middleware.evaluator import MappingFault
 from aos_protocol.documents import AbstractionMapping
 from aos_protocol.spelling import did_you_mean, quoted
-
-__all__ = ["no_response"]
 
 _FIELD = "response"
 """A derived mapping takes this field from a result."""

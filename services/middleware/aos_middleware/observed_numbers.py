@@ -1,7 +1,5 @@
 """The numbers of an observation: values of the local variables that the skill's model reports."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -9,8 +7,6 @@ from typing import Any
 import msgspec
 
 from aos_protocol.codec import UNREADABLE
-
-__all__ = ["observed_numbers"]
 
 
 def observed_numbers(names: Iterable[str], local_variables: Mapping[str, str]) -> dict[str, Any]:

@@ -3,8 +3,6 @@
 The worker is started for one picture and ends with it. Nothing that it does reaches whoever asks.
 """
 
-from __future__ import annotations
-
 import asyncio
 import signal
 import sys

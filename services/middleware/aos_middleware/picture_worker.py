@@ -4,8 +4,6 @@ It reads what is to be drawn from its input and writes the picture to its output
 does not reach: what that prints goes to the error output.
 """
 
-from __future__ import annotations
-
 import faulthandler
 import os
 import signal
@@ -17,8 +15,6 @@ import msgspec
 
 from aos_middleware.raised import raised
 from aos_middleware.worker_pipes import take_over_pipes
-
-__all__ = ["FILE_NAME", "MOST_BYTES", "Drawn", "NotDrawn", "Subject"]
 
 FILE_NAME = "picture.py"
 MOST_BYTES = 1024 * 1024

@@ -19,8 +19,6 @@ from aos_language.python_syntax import module_of, tree_of
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Snippet
 
-__all__ = ["CodeLine", "LineOrigin", "PythonCode", "python_fault", "read_body", "read_expression"]
-
 _TAB = "    "
 
 

@@ -1,12 +1,8 @@
 """The error that code in a worker raised: its text, and the place in the generated module."""
 
-from __future__ import annotations
-
 from types import CodeType, TracebackType
 
 from aos_middleware.frames import Raised
-
-__all__ = ["NoTruthValue", "raised"]
 
 _MAX_ERROR_CHARACTERS = 2000
 

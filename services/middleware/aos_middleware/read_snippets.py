@@ -1,15 +1,11 @@
 """The documents' Python of one mapping as it is read for its module: code, mistakes, and marked lines."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from aos_middleware.generated_lines import MarkedLines
 from aos_middleware.python_code import PythonCode, read_body, read_expression
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable, Snippet
-
-__all__ = ["ReadSnippets", "function_name"]
 
 
 class ReadSnippets:

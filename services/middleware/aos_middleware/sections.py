@@ -3,8 +3,6 @@
 Pure: typed documents in, lines and diagnostics out. What each part means is said in docs/middleware.md.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import msgspec
@@ -13,8 +11,6 @@ from aos_middleware.generated_lines import literal, word
 from aos_middleware.python_code import LineOrigin, PythonCode
 from aos_middleware.read_snippets import ReadSnippets, function_name
 from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable
-
-__all__ = ["Function", "Sections", "Table"]
 
 _OF_SKILL = ("__skill_status", "__skill_error")
 """The names by which rules read how a skill has failed."""

@@ -1,7 +1,5 @@
 """The paths that can be called: liveliness tokens say who answers them."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections import Counter
@@ -11,8 +9,6 @@ from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys, Serving
 from aos_runtime.bus import Bus
 from aos_runtime.subscription import merged
-
-__all__ = ["ServedPaths", "no_adapter"]
 
 _log = logging.getLogger("aos.middleware")
 

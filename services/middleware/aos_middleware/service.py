@@ -4,8 +4,6 @@ Ready as soon as it can be asked; the project comes from the registry when that 
 announcement. One activation at a time runs for each skill.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from pathlib import Path
@@ -36,8 +34,6 @@ from aos_protocol.messages import (
 from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
 from aos_runtime.registry_watch import RegistryWatch
-
-__all__ = ["serve"]
 
 FIRST_MAPPINGS_S = 20.0
 """An activation waits this long for the first mappings of a middleware that was started again."""

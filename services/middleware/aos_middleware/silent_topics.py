@@ -1,14 +1,10 @@
 """Topics that mappings read and on which nothing has ever come, such as those whose name is misspelt."""
 
-from __future__ import annotations
-
 import logging
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
 from aos_protocol.spelling import did_you_mean
-
-__all__ = ["SilentTopics"]
 
 CALLS = 3
 """A topic that was silent during this many calls of skills is told."""

@@ -3,8 +3,6 @@
 A call is asked for again where the router has gone, and cancelled where it is late.
 """
 
-from __future__ import annotations
-
 import logging
 from typing import Any
 
@@ -17,8 +15,6 @@ from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, Nobo
 from aos_protocol.messages import Activate, Cancel, Cancelled, SkillCall, SkillResult, Stray
 from aos_runtime.asking import AWAY_S
 from aos_runtime.failpoints import reach
-
-__all__ = ["Call"]
 
 _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25

@@ -1,7 +1,5 @@
 """The end of a call that is stopped while it runs: by its mapping's `stop_when`."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 
@@ -9,8 +7,6 @@ from aos_protocol.errors import AosError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, Cancel, Cancelled
 from aos_runtime.bus import Bus
-
-__all__ = ["Stop"]
 
 STOP_S = 3.0
 """An adapter has this long to answer that what it is to stop has stopped, before it is asked again."""

@@ -1,7 +1,5 @@
 """The outside of an activation, which the service makes once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -14,8 +12,6 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import Stray
 from aos_runtime.bus import Bus
 from aos_runtime.clock import Clock
-
-__all__ = ["Surroundings"]
 
 
 class Surroundings(NamedTuple):

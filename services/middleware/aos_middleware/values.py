@@ -5,8 +5,6 @@ of a robot framework: `__input.pose.x`, `Point(x=1.0)`. `Message` gives the firs
 the framework's class cannot be imported, and `plain_from` turns both, and the real classes, into plain data.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,8 +12,6 @@ import msgspec
 
 from aos_protocol.spelling import nearest
 from aos_runtime import plain_data
-
-__all__ = ["Message", "low_level_type", "message_from", "plain_from", "put", "stand_in", "text_of"]
 
 
 class Message:

@@ -5,8 +5,6 @@ prints goes to the error output. An evaluation that takes too long ends the proc
 a traceback there, even inside a C function: `faulthandler` writes it, and then the signal does what it does.
 """
 
-from __future__ import annotations
-
 import builtins
 import copy
 import faulthandler
@@ -35,8 +33,6 @@ from aos_middleware.frames import (
 from aos_middleware.raised import NoTruthValue, raised
 from aos_middleware.values import message_from, plain_from, put, text_of
 from aos_middleware.worker_pipes import take_over_pipes
-
-__all__ = ["LoadedMapping", "main"]
 
 Function = Callable[..., Any]
 

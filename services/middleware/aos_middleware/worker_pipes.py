@@ -1,13 +1,9 @@
 """The pipes between a worker and its service, out of reach of the code that the worker runs."""
 
-from __future__ import annotations
-
 import io
 import os
 import sys
 from typing import BinaryIO
-
-__all__ = ["take_over_pipes"]
 
 _MAX_PRINTED_BYTES = 1024 * 1024
 

@@ -1,7 +1,5 @@
 """The registry service as a process: `python -m aos_registry SETTINGS.json`."""
 
-from __future__ import annotations
-
 from aos_registry.service import serve
 from aos_registry.settings import Settings
 from aos_runtime.lifecycle import run_service

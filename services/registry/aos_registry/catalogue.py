@@ -4,8 +4,6 @@ A revision is stored in one transaction, on the disk before `store` returns: aft
 catalogue holds the old revision or the new one. Equal files are stored once, by digest.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import sqlite3
@@ -19,8 +17,6 @@ import msgspec
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import CatalogueEntry, RevisionEntry
 from aos_runtime.plain_tables import require_plain_tables
-
-__all__ = ["Catalogue", "Revision"]
 
 _SCHEMA_VERSION = 2
 _BUSY_TIMEOUT_S = 5.0

@@ -1,7 +1,5 @@
 """Bundles that were dropped into the watched folder, and those of them that wait for what they lack."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping
@@ -14,8 +12,6 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport
 from aos_registry.watch import watch_for_bundles
-
-__all__ = ["DroppedBundles"]
 
 LACKING = ("AOS105", "AOS110", "AOS113", "AOS114", "AOS115")
 """Other documents can mend these errors: something is missing, or a name that nothing defines."""

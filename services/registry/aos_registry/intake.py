@@ -1,7 +1,5 @@
 """The intake of a push: read, merged, checked, stored. Nothing is stored unless all of it is accepted."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable, Mapping
 
 from aos_language.findings import Findings
@@ -17,8 +15,6 @@ from aos_protocol.messages import BundleReport, ProjectRevision
 from aos_protocol.spelling import did_you_mean, quoted
 from aos_registry.catalogue import Catalogue
 from aos_runtime.clock import Clock
-
-__all__ = ["Intake", "ModelCheckPort"]
 
 ModelCheckPort = Callable[[Project], Awaitable[tuple[Diagnostic, ...]]]
 """Asks the solver whether it can use a project; no diagnostics when there is no solver to ask."""

@@ -1,7 +1,5 @@
 """The registry service: bundles come in by question or by folder, projects go out by answer and stream."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Mapping
@@ -31,8 +29,6 @@ from aos_registry.drops import DroppedBundles
 from aos_registry.intake import Intake
 from aos_registry.settings import Settings
 from aos_runtime.lifecycle import Service
-
-__all__ = ["serve"]
 
 _log = logging.getLogger("aos.registry")
 

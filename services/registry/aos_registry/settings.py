@@ -1,10 +1,6 @@
 """The settings that the registry service is started with."""
 
-from __future__ import annotations
-
 from aos_runtime.lifecycle import ServiceSettings
-
-__all__ = ["Settings"]
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):

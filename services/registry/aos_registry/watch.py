@@ -1,7 +1,5 @@
 """A folder that is watched for bundles dropped into it."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
@@ -11,8 +9,6 @@ from watchfiles import awatch
 
 from aos_language.archive import is_archive_name
 from aos_protocol.errors import StorageError
-
-__all__ = ["watch_for_bundles"]
 
 _LONGEST_WAIT_S = 30.0
 

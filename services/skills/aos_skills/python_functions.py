@@ -7,8 +7,6 @@ when the adapter starts. The user's code runs on a thread of its own, with an ev
 it does, calls and cancellations are answered.
 """
 
-from __future__ import annotations
-
 import asyncio
 import importlib
 import importlib.util
@@ -23,8 +21,6 @@ from typing import Any
 
 from aos_protocol.errors import DeployError, SkillError
 from aos_runtime.adapters import Answer, Call, Host
-
-__all__ = ["PythonAdapter"]
 
 _END_S = 1.0
 _POSITIONAL = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)

@@ -1,7 +1,5 @@
 """The ports of a mission on bus and disk: the robot through the middleware, the journal, the models."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 
@@ -15,8 +13,6 @@ from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Past
 from aos_solver.mission.takeover import RunningModel, Takeover
 from aos_solver.settings import Settings
-
-__all__ = ["BusPorts"]
 
 ACTIVATION_MARGIN_S = 5.0
 """An answer may take this much longer than the activation itself."""

@@ -1,7 +1,5 @@
 """The engines of the models that a mission had before, for one that is taken up."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -19,8 +17,6 @@ from aos_solver.mission.retracing import Earlier
 from aos_solver.mission.stretches import models_before
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.settings import Settings
-
-__all__ = ["built_for", "earlier_models"]
 
 log = logging.getLogger(__name__)
 

@@ -1,7 +1,5 @@
 """The middleware as the solver sees it: which mappings run, and which skills can be run."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Callable
 from contextlib import suppress
@@ -12,8 +10,6 @@ from aos_protocol.messages import MappingQuery, MappingState
 from aos_runtime.bus import Bus
 from aos_runtime.reported_state import state_when
 from aos_runtime.subscription import merged
-
-__all__ = ["MAPPING_DEADLINE_S", "MappingWatch"]
 
 log = logging.getLogger(__name__)
 

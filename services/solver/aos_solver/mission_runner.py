@@ -1,7 +1,5 @@
 """The missions of a solver, one or one after the other: how each begins or is taken up, and runs."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging
@@ -30,8 +28,6 @@ from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
-
-__all__ = ["MissionRunner"]
 
 log = logging.getLogger(__name__)
 

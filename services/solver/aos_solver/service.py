@@ -5,8 +5,6 @@ is there, builds it, and waits for the start of the mission; from then on newer 
 background. Whoever starts the mission is told about a model that cannot be built.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from pathlib import Path
@@ -43,8 +41,6 @@ from aos_solver.mission_runner import MissionRunner
 from aos_solver.settings import Settings
 from aos_solver.steering_desk import SteeringDesk
 from aos_solver.study_desk import StudyDesk
-
-__all__ = ["serve"]
 
 log = logging.getLogger(__name__)
 

@@ -1,7 +1,5 @@
 """The settings that the solver service is started with."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import msgspec
@@ -10,8 +8,6 @@ from aos_protocol.documents import Constraint, MissionValue
 from aos_runtime.lifecycle import ServiceSettings
 from aos_solver.child.mission_questions import DEFAULT_PLANNER, Planner
 from aos_solver.mission.failures import SkillRule
-
-__all__ = ["Settings"]
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):

@@ -1,7 +1,5 @@
 """The desk of a solver where operators ask: finds the mission that runs, and answers when it has turned."""
 
-from __future__ import annotations
-
 import uuid
 from collections.abc import Callable
 
@@ -13,8 +11,6 @@ from aos_protocol.messages import MissionState, Steer
 from aos_runtime.bus import Bus
 from aos_solver.mission_runner import MissionRunner
 from aos_solver.stopping import until_stopped
-
-__all__ = ["SteeringDesk"]
 
 _SOMEBODY = "somebody"
 

@@ -1,7 +1,5 @@
 """The end of a mission that somebody stops: what moves for it is cancelled, until it has ended."""
 
-from __future__ import annotations
-
 import asyncio
 from contextlib import suppress
 
@@ -11,8 +9,6 @@ from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
 from aos_runtime.served import served
 from aos_solver.mission.loop import Mission
-
-__all__ = ["until_stopped"]
 
 CANCEL_AGAIN_S = 0.2
 """A mission that is stopped cancels again after this time: what it asked for may not have begun before."""

@@ -1,7 +1,5 @@
 """The solver's answers to studies of its missions, by an engine that no mission asks."""
 
-from __future__ import annotations
-
 import asyncio
 from pathlib import Path
 
@@ -23,8 +21,6 @@ from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import NICENESS, ReplayedMission
 from aos_solver.study.study import Study
-
-__all__ = ["StudyDesk"]
 
 _PATIENCE_S = 0.5
 """Whoever asks in a mission is not to wait for a compiler that gives way to everything else."""

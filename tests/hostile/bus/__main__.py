@@ -4,8 +4,6 @@ python -m tests.hostile.bus                     all of it
 python -m tests.hostile.bus matrix forgeries    parts
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import random

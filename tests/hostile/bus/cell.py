@@ -1,7 +1,5 @@
 """A small mission on a real system, which waits in its midst until somebody has tried what he wants to."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -19,8 +17,6 @@ from aos_runtime.credentials import credential_of_run
 
 from ..counters import counting
 from .routed import opened
-
-__all__ = ["ROBOT", "STEPS", "Cell", "cell"]
 
 ROBOT = "cell"
 STEPS = 8

@@ -1,7 +1,5 @@
 """The cost of names, passwords and access control, for a question and for a session."""
 
-from __future__ import annotations
-
 import statistics
 import time
 from pathlib import Path
@@ -16,8 +14,6 @@ from aos_runtime.bus_config import client_config
 
 from .matrix import PARTIES
 from .routed import ROBOT, open_router, round_trip, routed
-
-__all__ = ["cost"]
 
 _KEY = Keys(ROBOT).call("/pick")
 _ANSWER_S = 5.0

@@ -1,7 +1,5 @@
 """An adapter on another host, behind a bad link: a network namespace with an SSH server of its own."""
 
-from __future__ import annotations
-
 import getpass
 import json
 import os
@@ -17,8 +15,6 @@ from typing import Any, NamedTuple
 
 from ..counters import counting
 from .wire import Wire, wire
-
-__all__ = ["Cut", "FarMission", "far_mission", "is_possible"]
 
 _PORT = 2222
 _PATIENCE_S = 120.0

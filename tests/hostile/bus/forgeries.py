@@ -1,7 +1,5 @@
 """Messages that somebody makes up in mid-mission: each must change nothing, and be told in a log."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -30,8 +28,6 @@ from aos_runtime.credentials import Credential
 
 from .cell import ROBOT, Cell
 from .routed import round_trip
-
-__all__ = ["FORGERIES", "Forgery", "faults_of"]
 
 KEYS = Keys(ROBOT)
 _HAND = "hand"

@@ -24,8 +24,6 @@ from aos_protocol.messages import StopMission
 from .cell import ROBOT, Cell
 from .routed import round_trip
 
-__all__ = ["Flood", "flooded_keys", "flooding", "noise"]
-
 KEYS = Keys(ROBOT)
 _IN_FLIGHT = 64
 _ANSWER_S = 30.0

@@ -1,7 +1,5 @@
 """Every party tries every act on every key: what the table allows has an effect, all else has none."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
@@ -25,8 +23,6 @@ from aos_protocol.access import (
 )
 
 from .routed import ROBOT, Routed, round_trip
-
-__all__ = ["PARTIES", "Attempt", "attempts", "has_effect", "wrong"]
 
 PARTIES = (
     *(Party(name=role, role=role) for role in (REGISTRY, MIDDLEWARE, SOLVER)),

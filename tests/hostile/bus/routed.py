@@ -1,7 +1,5 @@
 """A router with access control as a process, and bare Zenoh sessions on it, without `Bus`."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -22,8 +20,6 @@ from aos_runtime.bus_config import client_config
 from aos_runtime.credentials import Credential
 from aos_runtime.parent import PARENT_VARIABLE
 from aos_runtime.router import RouterSettings
-
-__all__ = ["ROBOT", "Routed", "open_router", "opened", "round_trip", "routed"]
 
 ROBOT = "test"
 _PATIENCE_S = 30.0

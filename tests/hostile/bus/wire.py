@@ -3,8 +3,6 @@
 Two TUN devices, and this process between them: kernels without `netem` have it too.
 """
 
-from __future__ import annotations
-
 import fcntl
 import heapq
 import os
@@ -17,8 +15,6 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-
-__all__ = ["Wire", "wire"]
 
 _TUNSETIFF = 0x400454CA
 _IFF_TUN, _IFF_NO_PI = 0x0001, 0x1000

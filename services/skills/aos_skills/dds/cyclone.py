@@ -3,8 +3,6 @@
 Cyclone calls back on its own threads; a callback only wakes the event loop, which then takes what has come.
 """
 
-from __future__ import annotations
-
 import asyncio
 import struct
 import types as python_types
@@ -39,8 +37,6 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
         code="AOS805",
         hint=f"Run {pip_install('dds')}",
     ) from error
-
-__all__ = ["HEADER", "Endpoint", "Participant", "Reader", "Writer"]
 
 HEADER = struct.Struct("<Qq")
 """The beginning of Cyclone's requests and replies: who asks, and the number of the question."""

@@ -1,7 +1,5 @@
 """A ROS 2 node over DDS: topics of any vendor, services and actions of robots that run Cyclone DDS."""
 
-from __future__ import annotations
-
 import asyncio
 import itertools
 import logging
@@ -14,8 +12,6 @@ from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicF
 from aos_skills.ros.ros2_node import Ros2Node
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.wire import ros_type
-
-__all__ = ["DdsNode"]
 
 _CDR = b"\x00\x01\x00\x00"
 _MATCH_POLL_S = 0.01

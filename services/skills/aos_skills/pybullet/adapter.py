@@ -1,7 +1,5 @@
 """A simulated world as an adapter: it runs on a thread of its own, beside the service."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import time
@@ -14,8 +12,6 @@ from aos_runtime.adapters import Call, Host
 from aos_skills.pybullet.parts.scene import STEP_S
 from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.world_file import WorldFile, load_world_file
-
-__all__ = ["PybulletAdapter"]
 
 PUBLISH_EVERY_S = 0.05
 

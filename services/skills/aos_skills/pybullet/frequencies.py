@@ -1,14 +1,10 @@
 """Counting how picks end, each in a fresh world."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-
-__all__ = ["counted", "pick_options", "shares"]
 
 
 def pick_options(description: str | None) -> argparse.ArgumentParser:

@@ -1,7 +1,5 @@
 """World files: where things stand, and the faults; the `kind` says which world it is."""
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 from dataclasses import dataclass
@@ -16,8 +14,6 @@ from aos_protocol.errors import DeployError
 from aos_protocol.spelling import did_you_mean
 from aos_skills.pybullet import worlds
 from aos_skills.pybullet.parts.world import World, WorldKind
-
-__all__ = ["WorldFile", "kinds", "load_world_file"]
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,6 @@ from aos_skills.ros.node import DISCOVERY_S, ActionEnd, ActionRequest, Fields, S
 if TYPE_CHECKING:
     from aos_skills.ros.ros2_node import Ros2Node  # It has a client.
 
-__all__ = ["STATUS", "ActionClient"]
-
 STATUS = {
     1: "accepted",
     2: "executing",

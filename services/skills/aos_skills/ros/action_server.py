@@ -1,14 +1,10 @@
 """Serving an action as a ROS 2 node does: three services, feedback and the list of goals' states."""
 
-from __future__ import annotations
-
 import asyncio
 import time
 
 from aos_protocol.errors import AosError
 from aos_skills.ros.node import Fields, Qos, RosNode, RunGoal
-
-__all__ = ["ActionServer", "Goal"]
 
 _ACCEPTED, _EXECUTING, _CANCELING, _SUCCEEDED, _CANCELED, _ABORTED = range(1, 7)
 _NO_ERROR, _REJECTED, _UNKNOWN_GOAL, _TERMINATED = range(4)

@@ -4,8 +4,6 @@ Which paths there are, and which topics are listened to, the deploy file and the
 path is served while some node of the robot serves it.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import logging
@@ -18,8 +16,6 @@ from aos_skills.ros.connect import connect
 from aos_skills.ros.documented import documented
 from aos_skills.ros.faults import CANCEL_S
 from aos_skills.ros.node import ActionRequest, Fields, RosNode, ServiceRequest
-
-__all__ = ["DdsAdapter", "Ros1Adapter", "Ros2Adapter", "RosAdapter", "Way", "way_to"]
 
 MAX_PROGRESS_TEXT = 120
 

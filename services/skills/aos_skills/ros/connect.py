@@ -1,14 +1,10 @@
 """The node of each kind, from the options of a deploy file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from aos_skills.ros.node import RosNode
-
-__all__ = ["DEFAULT_ROUTER", "KINDS", "connect"]
 
 KINDS = ("ros2", "dds", "ros1")
 

@@ -5,23 +5,11 @@ them (an action's services, a service's event) is added here too, so that everyt
 messages only. The texts of the messages are ROS's own notation.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from aos_protocol.errors import DeployError
-
-__all__ = [
-    "Definition",
-    "InterfaceName",
-    "definitions_in",
-    "file_of",
-    "interface_name",
-    "messages_of",
-    "missing_interface",
-]
 
 KINDS = ("msg", "srv", "action")
 

@@ -1,14 +1,10 @@
 """The words of a project's mappings about its robot: the paths that they call, the topics that they listen
 to."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from aos_protocol.documents import Import, LocalSource, Project
-
-__all__ = ["Documented", "documented"]
 
 
 class Documented(NamedTuple):

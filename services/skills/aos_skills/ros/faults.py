@@ -1,20 +1,8 @@
 """The errors of a robot's services and actions, whichever way its nodes are reached."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from aos_protocol.errors import SkillError
-
-__all__ = [
-    "CANCEL_S",
-    "check_type",
-    "node_lost",
-    "not_answered",
-    "not_cancelled",
-    "not_ended",
-    "not_served",
-]
 
 CANCEL_S = 1.8
 """A node may take this long to end a goal after it was asked to: less than an adapter has for it."""

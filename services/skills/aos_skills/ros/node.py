@@ -1,27 +1,11 @@
 """A ROS node as everything above it sees it, whichever way it reaches the others."""
 
-from __future__ import annotations
-
 import asyncio
 from abc import abstractmethod
 from collections.abc import Awaitable, Callable, Iterable
 from typing import Any, NamedTuple
 
 from aos_runtime.closing import Closing
-
-__all__ = [
-    "DEFAULT_QOS",
-    "DISCOVERY_S",
-    "ActionEnd",
-    "ActionRequest",
-    "Fields",
-    "Qos",
-    "RosNode",
-    "RunGoal",
-    "ServiceRequest",
-    "TopicFound",
-    "named_skills",
-]
 
 DISCOVERY_S = 5.0
 """A server or publisher may take this long to appear."""

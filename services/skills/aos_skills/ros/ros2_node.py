@@ -1,7 +1,5 @@
 """The common part of all ROS 2 nodes: actions stand on services and topics, whatever carries these."""
 
-from __future__ import annotations
-
 import logging
 from abc import abstractmethod
 from collections.abc import Callable
@@ -11,8 +9,6 @@ from aos_skills.ros.action_client import ActionClient
 from aos_skills.ros.action_server import ActionServer
 from aos_skills.ros.node import ActionEnd, ActionRequest, Fields, RosNode, RunGoal, named_skills
 from aos_skills.ros.types import RosTypes
-
-__all__ = ["Ros2Node"]
 
 _log = logging.getLogger("aos.ros2")
 

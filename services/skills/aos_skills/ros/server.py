@@ -4,8 +4,6 @@
 answers a path, and our simulated worlds first of all, can so be tried by somebody's ROS programs.
 """
 
-from __future__ import annotations
-
 import asyncio
 import itertools
 import logging
@@ -21,8 +19,6 @@ from aos_protocol.messages import ActivationId, Cancel, Cancelled, SkillCall, Sk
 from aos_runtime.lifecycle import Service, ServiceSettings, run_service
 from aos_skills.ros.connect import connect
 from aos_skills.ros.node import Fields, RosNode
-
-__all__ = ["ServerSettings", "serve"]
 
 _GRACE_S = 5.0
 """The adapter's own deadlines come first."""

@@ -6,8 +6,6 @@ names the messages of services `package/srv/msg/X`, and it hashes the type `char
 where ROS 2 hashes `uint8`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -36,8 +34,6 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
         code="AOS805",
         hint=f"Run {pip_install('ros')}",
     ) from error
-
-__all__ = ["DISTRIBUTIONS", "NO_HASH", "Field", "RosTypes"]
 
 DISTRIBUTIONS = tuple(
     store.value.removeprefix("ros2_") for store in Stores if store.value.startswith("ros2_")

@@ -34,8 +34,6 @@ from aos_skills.ros.node import (
 )
 from aos_skills.ros1.process import Ros1Process
 
-__all__ = ["DEFAULT_MASTER", "DEFAULT_PYTHON", "Ros1Node"]
-
 DEFAULT_MASTER = "http://127.0.0.1:11311"
 DEFAULT_PYTHON = "/usr/bin/python3"
 

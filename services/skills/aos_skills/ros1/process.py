@@ -15,8 +15,6 @@ from aos_protocol.errors import AosError, BusError, SkillError, error_from_code
 from aos_runtime.children import PIPE, Child, guarded
 from aos_skills.ros.definitions import interface_name, missing_interface
 
-__all__ = ["Ros1Process"]
-
 LONGEST_REASON = 200
 START_S = 15.0
 MAX_LINE_BYTES = 2**26

@@ -1,13 +1,9 @@
 """The ROS 2 nodes that are there, and what they serve and publish: the liveliness tokens of one domain."""
 
-from __future__ import annotations
-
 import asyncio
 
 from aos_runtime.foreign_bus import ForeignBus
 from aos_skills.ros2.wire import Endpoint, Kind, endpoint_of
-
-__all__ = ["Graph"]
 
 
 class Graph:

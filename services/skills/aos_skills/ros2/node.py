@@ -16,8 +16,6 @@ from aos_skills.ros.types import NO_HASH, RosTypes
 from aos_skills.ros2.graph import Graph
 from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
 
-__all__ = ["Node"]
-
 _FIRST_ENTITY = 10
 
 

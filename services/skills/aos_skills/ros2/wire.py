@@ -13,19 +13,6 @@ from typing import NamedTuple
 
 from aos_skills.ros.node import DEFAULT_QOS, Qos
 
-__all__ = [
-    "Attachment",
-    "Endpoint",
-    "Kind",
-    "data_key",
-    "dds_type",
-    "endpoint_of",
-    "gid_of",
-    "qos_of",
-    "qos_text",
-    "ros_type",
-]
-
 
 class Kind(StrEnum):
     """The kinds of things that a token stands for."""

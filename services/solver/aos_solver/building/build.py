@@ -8,8 +8,6 @@ A model has two builds, which decide alike. The quick build is there sooner. The
 steps, and hardly faster searches: most of a search is the engine.
 """
 
-from __future__ import annotations
-
 import asyncio
 import re
 import resource
@@ -27,18 +25,6 @@ from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_messages import read_messages, without_line_directives
 from aos_solver.building.compiler_run import LIMIT_HINT, Given, internal_error, ran_out, run_compiler
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
-
-__all__ = [
-    "ANY_SIZE",
-    "NUMBERS",
-    "SOURCES",
-    "SUPPORT",
-    "BuildKind",
-    "BuiltModel",
-    "build",
-    "build_engine",
-    "number_object",
-]
 
 SOURCES = Path(__file__).parents[1] / "cpp"
 """The engine, and what emitted models stand on."""

@@ -7,8 +7,6 @@ a month, and beyond the cache's size those that were not asked for the longest.
 Who makes an entry holds its lock (`build_lock`), and others wait for the entry instead of making it as well.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os
@@ -19,8 +17,6 @@ from pathlib import Path
 
 from aos_protocol.errors import StorageError
 from aos_solver.building.build_lock import build_lock
-
-__all__ = ["BuildCache", "digest_of"]
 
 _ABANDONED_AFTER_S = 3600.0
 _UNUSED_AFTER_S = 30 * 86400.0

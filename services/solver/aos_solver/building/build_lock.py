@@ -5,8 +5,6 @@ however it ends: nobody has to find out whether an owner lives. One that lives a
 for until a deadline. Where the file system has no locks, nobody waits.
 """
 
-from __future__ import annotations
-
 import asyncio
 import errno
 import fcntl
@@ -15,8 +13,6 @@ import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-
-__all__ = ["build_lock"]
 
 _LOOK_EVERY_S = 0.1
 

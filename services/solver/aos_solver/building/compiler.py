@@ -4,8 +4,6 @@ The first of these that is new enough counts: what $CXX names, g++, clang++, and
 brings clang and a C++ library with it for machines without a compiler.
 """
 
-from __future__ import annotations
-
 import asyncio
 import importlib.util
 import os
@@ -20,8 +18,6 @@ import msgspec
 from aos_protocol.errors import DeployError, ModelError
 from aos_runtime.children import PIPE, Child
 from aos_runtime.distribution import pip_install
-
-__all__ = ["Compiler", "Family", "find_compiler"]
 
 Family = str
 """`gcc`, `clang`, or `zig`, which is clang inside."""

@@ -1,7 +1,5 @@
 """The compiler's messages as diagnostics at the documents' places."""
 
-from __future__ import annotations
-
 import re
 
 import msgspec
@@ -9,8 +7,6 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
 from aos_solver.emission.emit import EmittedModel
-
-__all__ = ["CompilerReport", "read_messages", "without_line_directives"]
 
 _PLACE = re.compile(
     r"(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:(?P<column>\d+):)?\s+"

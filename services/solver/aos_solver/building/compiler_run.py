@@ -1,7 +1,5 @@
 """One run of the compiler: as a child with a deadline, with limits to its memory, its files and its words."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 from collections.abc import Sequence
@@ -12,8 +10,6 @@ from aos_protocol.errors import AosError, ModelError, StorageError
 from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.sandbox.places import SYSTEM, folders_of_tool, python_folders
 from aos_solver.building.compiler import Compiler
-
-__all__ = ["LIMIT_HINT", "internal_error", "ran_out", "run_compiler"]
 
 LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 """The advice about a compiler that runs out of time or memory over a model."""

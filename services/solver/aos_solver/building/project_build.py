@@ -1,7 +1,5 @@
 """The build of a project: lowered, emitted, compiled, with the values of its mission parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -16,8 +14,6 @@ from aos_solver.building.build import BuildKind, BuiltModel, build
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
 from aos_solver.emission.program import Program
-
-__all__ = ["build_project", "emitted_model", "lowered"]
 
 
 async def build_project(

@@ -3,8 +3,6 @@
 Within a mission a thorough build would win less than is lost with the search tree, which does not move over.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from pathlib import Path
@@ -12,8 +10,6 @@ from pathlib import Path
 from aos_protocol.errors import AosError
 from aos_solver.building.build import build
 from aos_solver.emission.emit import EmittedModel
-
-__all__ = ["ThoroughBuilds"]
 
 log = logging.getLogger(__name__)
 

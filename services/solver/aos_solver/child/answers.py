@@ -1,29 +1,10 @@
 """The answers of an engine child about its model, its plans and its values, as typed data."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec
 
 from aos_protocol.messages import ActionValue, PredictedObservation
-
-__all__ = [
-    "EngineDescription",
-    "EngineFault",
-    "ExactValues",
-    "GoalReach",
-    "GroundedAction",
-    "Listed",
-    "Plan",
-    "Progress",
-    "Reach",
-    "ReachedAction",
-    "RewardTerm",
-    "RewardTerms",
-    "Risks",
-    "WrittenListing",
-]
 
 
 class GroundedAction(msgspec.Struct, frozen=True):

@@ -5,8 +5,6 @@ become a ModelError that names the document line; the next question starts a new
 the old one had.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Callable, Mapping, Sequence
@@ -34,8 +32,6 @@ from aos_solver.child.replay import at_its_statement
 from aos_solver.child.shared_memory import SharedMemory
 from aos_solver.emission.emit import Bound
 from aos_solver.emission.program import Observed
-
-__all__ = ["ANSWER_DEADLINE_S", "Asking", "Done"]
 
 log = logging.getLogger(__name__)
 

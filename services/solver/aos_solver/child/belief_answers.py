@@ -1,7 +1,5 @@
 """The answers of an engine child about beliefs, as typed data."""
 
-from __future__ import annotations
-
 import math
 
 import msgspec
@@ -9,16 +7,6 @@ import msgspec
 from aos_protocol.messages import BeliefSummary, PredictedObservation
 from aos_solver.child.answers import EngineFault
 from aos_solver.child.command_line import command_line
-
-__all__ = [
-    "BeliefCount",
-    "BeliefUpdate",
-    "Believed",
-    "Conditioned",
-    "ExportedBelief",
-    "ExportedBeliefs",
-    "Prediction",
-]
 
 _ROUNDING = 1e-9
 

@@ -4,11 +4,7 @@ A change of the belief draws from a stream of its own, whose seed is a function 
 step. So the same outcomes give the same particles, whatever the process did before or between them.
 """
 
-from __future__ import annotations
-
 import hashlib
-
-__all__ = ["BeliefDraws", "draws_of"]
 
 
 def draws_of(seed: int, step: int = 0) -> int:

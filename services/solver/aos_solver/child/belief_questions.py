@@ -1,7 +1,5 @@
 """The questions about what is believed, and the observations that change it."""
 
-from __future__ import annotations
-
 import logging
 from collections.abc import Mapping
 from typing import Any
@@ -23,8 +21,6 @@ from aos_solver.child.belief_answers import (
 from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.observed_numbers import numbers_field
-
-__all__ = ["BeliefQuestions"]
 
 log = logging.getLogger(__name__)
 

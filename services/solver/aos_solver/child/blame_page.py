@@ -1,12 +1,8 @@
 """The piece of document code that a child runs: memory that it writes, and that is read when it is gone."""
 
-from __future__ import annotations
-
 import struct
 
 from aos_solver.child.shared_memory import SharedMemory
-
-__all__ = ["new_blame_page", "running_piece"]
 
 _BYTES = 65536
 """The largest page that blame.hpp maps; each of its threads has a line of 64 bytes in the first 4096."""

@@ -4,13 +4,9 @@ The line is the command's name, its fields as `name=value`, and for a command th
 and the items, all apart by tabs. Fields are known by their names; the child says which one is missing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from aos_protocol.errors import ModelError
-
-__all__ = ["command_line", "with_field"]
 
 
 def command_line(command: str, items: Iterable[object] | None = None, /, **fields: object) -> str:

@@ -1,13 +1,9 @@
 """The sandbox of an engine: it reads its own file and libraries, and writes to what it is given."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_runtime.children import Confinement
 from aos_runtime.sandbox.places import library_folders, loader_of
-
-__all__ = ["confinement_of"]
 
 
 def confinement_of(executable: Path, *reads: Path) -> Confinement:

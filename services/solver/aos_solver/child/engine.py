@@ -1,7 +1,5 @@
 """The engine of one model: all questions that can be asked of its child process."""
 
-from __future__ import annotations
-
 from aos_solver.child.belief_questions import BeliefQuestions
 from aos_solver.child.engine_child import ImpossiblePolicy
 from aos_solver.child.listing_questions import ListingQuestions

@@ -4,8 +4,6 @@ Every question has a deadline; a crash, a hang and an exit become a ModelError t
 that ran.
 """
 
-from __future__ import annotations
-
 import asyncio
 import signal
 import sys
@@ -32,8 +30,6 @@ from aos_solver.child.blame_page import new_blame_page, running_piece
 from aos_solver.child.confinement import confinement_of
 from aos_solver.child.printed import pass_on
 from aos_solver.child.shared_memory import SharedMemory
-
-__all__ = ["EngineChild", "EngineStart", "ImpossiblePolicy", "KilledError", "OverdueError"]
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
 

@@ -1,12 +1,8 @@
 """The questions of listing: which states there are, and how the actions lead to them."""
 
-from __future__ import annotations
-
 from aos_solver.child.answers import Listed, Reach, WrittenListing
 from aos_solver.child.asking import Asking
 from aos_solver.child.command_line import command_line
-
-__all__ = ["ListingQuestions"]
 
 LISTING_DEADLINE_S = 600.0
 

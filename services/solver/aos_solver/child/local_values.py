@@ -4,8 +4,6 @@ The middleware tells them as text: JSON for plain data, Python's `repr` for the 
 `StateReader` in state_text.hpp reads.
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any
@@ -14,8 +12,6 @@ import msgspec
 
 from aos_protocol.codec import UNREADABLE
 from aos_solver.emission.program import Local
-
-__all__ = ["UnusableLocals", "local_values_line", "numbers_of"]
 
 _SHOWN_CHARACTERS = 60
 _Int = Annotated[int, msgspec.Meta(ge=-(2**31), lt=2**31)]

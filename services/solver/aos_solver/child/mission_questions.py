@@ -1,7 +1,5 @@
 """The questions of a mission about its decisions: plans, risks, the way to a goal."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal
 
@@ -10,8 +8,6 @@ import msgspec
 from aos_solver.child.answers import ExactValues, GoalReach, Plan, Risks
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking, Done
 from aos_solver.child.command_line import command_line
-
-__all__ = ["DEFAULT_PLANNER", "UNRESTRICTED", "MissionQuestions", "Planner", "Restriction"]
 
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
 DEFAULT_PLANNER: Planner = "auto"

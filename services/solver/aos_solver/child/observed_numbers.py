@@ -1,13 +1,9 @@
 """The numbers of an observation: by name for people and messages, by number and index for an engine child."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from aos_solver.emission.program import Observed
-
-__all__ = ["numbers_by_name", "numbers_field"]
 
 
 def numbers_field(observed: Sequence[Observed], numbers: Mapping[str, Any]) -> str:

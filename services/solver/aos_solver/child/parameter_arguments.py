@@ -3,14 +3,10 @@
 Each is `name=value`, with the value as `StateReader` in state_text.hpp reads it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from aos_language.mission_parameters import ParameterLeaf
 from aos_solver.child.local_values import numbers_of
-
-__all__ = ["parameter_arguments"]
 
 
 def parameter_arguments(leaves: Mapping[str, ParameterLeaf], values: Mapping[str, str]) -> tuple[str, ...]:

@@ -1,12 +1,8 @@
 """The output that model code prints goes on to our error output, up to a limit: no loop of a document
 fills a disk."""
 
-from __future__ import annotations
-
 import asyncio
 from typing import BinaryIO
-
-__all__ = ["PRINT_LIMIT_BYTES", "pass_on"]
 
 PRINT_LIMIT_BYTES = 1_000_000
 """An engine child may print this many bytes in its life."""

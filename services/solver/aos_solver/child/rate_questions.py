@@ -1,7 +1,5 @@
 """The question how quickly the model gives samples."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from aos_solver.child.answers import EndlessSteps
@@ -9,8 +7,6 @@ from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
 from aos_solver.child.command_line import command_line
 from aos_solver.child.slow_code import SlowCode, slow_code
 from aos_solver.child.world_answers import SampleCount
-
-__all__ = ["RateQuestions", "Stepping"]
 
 Stepping = Literal["code", "table"]
 """The ways to make steps: by the documents' code, or by a table of all steps, which POMCP has of small

@@ -6,8 +6,6 @@ traced and without optimisation, and asked the same from the same belief. If tha
 are tried. A fault that does not come again stays where it was told.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import re
@@ -24,8 +22,6 @@ from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.child.command_line import command_line
 from aos_solver.child.engine_child import HANG_PERIODS, EngineChild, EngineStart
 from aos_solver.emission.trace import TracedModel, traced
-
-__all__ = ["at_its_statement"]
 
 log = logging.getLogger(__name__)
 

@@ -9,8 +9,6 @@ from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine
 from aos_solver.child.mission_questions import DEFAULT_PLANNER, UNRESTRICTED, Planner, Restriction
 
-__all__ = ["Search"]
-
 SEEDS_PER_MISSION = 1000
 
 

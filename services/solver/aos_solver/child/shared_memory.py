@@ -1,11 +1,7 @@
 """Memory that a child process writes and its parent keeps when the child is gone."""
 
-from __future__ import annotations
-
 import os
 from typing import Self
-
-__all__ = ["SharedMemory"]
 
 
 class SharedMemory:

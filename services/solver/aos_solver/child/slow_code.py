@@ -4,8 +4,6 @@ A running model tells the piece of document code that runs. A piece of several l
 statement by a build that tells of each of them.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections import Counter
@@ -19,8 +17,6 @@ from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.command_line import command_line
 from aos_solver.child.engine_child import EngineChild, EngineStart
 from aos_solver.emission.trace import TracedModel, traced
-
-__all__ = ["SlowCode", "slow_code"]
 
 log = logging.getLogger(__name__)
 

@@ -1,15 +1,11 @@
 """The questions of a study: beliefs that are supposed, and the rewards behind a value."""
 
-from __future__ import annotations
-
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.answers import ExactValues, RewardTerms
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking, Done
 from aos_solver.child.belief_answers import Believed
 from aos_solver.child.command_line import command_line
 from aos_solver.child.mission_questions import EXACT_BELIEF_BUDGET, EXACT_TIME_S
-
-__all__ = ["StudyQuestions"]
 
 
 class StudyQuestions(Asking):

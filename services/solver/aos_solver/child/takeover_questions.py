@@ -1,7 +1,5 @@
 """The questions by which an engine of other documents takes a mission over."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import msgspec
@@ -11,8 +9,6 @@ from aos_solver.child.asking import Asking, Done
 from aos_solver.child.belief_answers import BeliefCount, BeliefUpdate
 from aos_solver.child.command_line import command_line
 from aos_solver.emission.layout import Common, Layout
-
-__all__ = ["JointBelief", "JointBeliefs", "TakeoverQuestions"]
 
 _TOLD_VALUES = 100_000
 """The most values of all variables together; the marginals of most models have fewer."""

@@ -1,17 +1,6 @@
 """The answers of an engine child about simulated worlds and samples of steps, as typed data."""
 
-from __future__ import annotations
-
 import msgspec
-
-__all__ = [
-    "SampleCount",
-    "WorldStart",
-    "WorldState",
-    "WorldStep",
-    "WorldSteps",
-    "Worlds",
-]
 
 
 class WorldStart(msgspec.Struct, frozen=True):

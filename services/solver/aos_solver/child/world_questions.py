@@ -1,7 +1,5 @@
 """The questions of simulated worlds: hidden states that the model moves."""
 
-from __future__ import annotations
-
 from base64 import b64encode
 from collections.abc import Sequence
 
@@ -9,8 +7,6 @@ from aos_solver.child.asking import Asking
 from aos_solver.child.command_line import command_line
 from aos_solver.child.observed_numbers import numbers_by_name
 from aos_solver.child.world_answers import EngineStep, Worlds, WorldStart, WorldState, WorldStep, WorldSteps
-
-__all__ = ["WorldQuestions"]
 
 
 class WorldQuestions(Asking):

@@ -1,10 +1,6 @@
 """The parts of the C++ library that document code may take: headers by name, and what it must leave alone."""
 
-from __future__ import annotations
-
 import re
-
-__all__ = ["headers_for", "unrepeatable_names"]
 
 _HEADERS = {
     "algorithm": (

@@ -1,15 +1,11 @@
 """Document code in the emitted file: each piece in its place, with what leads back from the lines."""
 
-from __future__ import annotations
-
 import re
 
 import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.program import Piece
-
-__all__ = ["END", "MARK", "MODEL_FILE", "Origin", "put_code", "string_literal"]
 
 MODEL_FILE = "model.cpp"
 """The name that the emitted file has for itself in its #line directives."""

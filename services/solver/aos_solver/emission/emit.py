@@ -4,8 +4,6 @@ The templates lay out; document code is put in afterwards, so that no text of a 
 template or for a mark. The same program gives the same bytes.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -10,8 +10,6 @@ import msgspec
 
 from aos_solver.emission.program import Loop, Piece, Program, Section, SpecialState, Statement, Variable
 
-__all__ = ["Common", "Layout", "layout_of", "saved_variables"]
-
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _VECTOR = "aos::Vector<"
 _CAPACITY = re.compile(r", \d+$")

@@ -3,8 +3,6 @@
 A pure function of the project. Mistakes of the documents come back as diagnostics, all at once.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping
 
@@ -60,8 +58,6 @@ from aos_solver.emission.program import (
     SpecialState,
 )
 from aos_solver.emission.program import Skill as LoweredSkill
-
-__all__ = ["lower"]
 
 _MAX_FLAGS = 64
 

@@ -8,15 +8,11 @@ enumerated.
 The reading is of the text. Where the text leaves a doubt, the draw stays as it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from aos_language.cpp.linear import adds_only_to, identifiers_of, linear_draws
 from aos_language.document_code import snippets_of
 from aos_protocol.documents import Assignment, Project, Snippet
-
-__all__ = ["averaged_draws"]
 
 _REWARD = "__reward"
 _CONTINUOUS = (("SampleNormal",), ("SampleUniform",))

@@ -1,7 +1,5 @@
 """The lengths that the vectors of a state can have: read off what the documents assign to them."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -9,8 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 
 from aos_language.cpp.snippets import Access, Call, Cpp, Mention, strip_comments
-
-__all__ = ["Capacities"]
 
 GROWING_CAPACITY = 64
 """A vector that grows by code gets this capacity, if nothing in the code tells more."""

@@ -1,7 +1,5 @@
 """Document code: which copies of the state each section sees and changes, and its functions."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -37,8 +35,6 @@ from aos_solver.emission.cpp_library import unrepeatable_names
 from aos_solver.emission.lower_types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
 from aos_solver.emission.rewrite import NO_LOOPS, EnumValues, LoopsOfPiece, Rewriting, rewrite
-
-__all__ = ["BELIEF", "Phase", "Pieces", "SectionLowering", "sections_of"]
 
 
 class Phase(msgspec.Struct, frozen=True):

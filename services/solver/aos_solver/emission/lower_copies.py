@@ -4,8 +4,6 @@ Where no code reads an older copy of a variable after it has changed a newer one
 Where the text leaves a doubt, the copy is made: a copy costs time, and a missing copy would change the model.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 
@@ -15,8 +13,6 @@ from aos_language.cpp.snippets import Access, Cpp, Extent, Mention, strip_commen
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_solver.emission.lower_writes import LAMBDA
-
-__all__ = ["Copies", "copies_of"]
 
 _WHOLE_STATE = "*"
 _READING_METHODS = frozenset({"at", "back", "contains", "count", "empty", "front", "length", "size"})

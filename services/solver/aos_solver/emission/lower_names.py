@@ -1,7 +1,5 @@
 """The check that the documents' names can be names in C++."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from aos_language.cpp.keywords import CPP_KEYWORDS
@@ -10,8 +8,6 @@ from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Environment, Project
 from aos_solver.emission.lower_code import sections_of
-
-__all__ = ["check_names"]
 
 _OF_THE_LANGUAGE = frozenset({
     "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "state", "state_",

@@ -23,8 +23,6 @@ from aos_language.observed import is_draw
 from aos_protocol.documents import Assignment, Environment, Project, Snippet
 from aos_solver.emission.lower_shared import looked_through
 
-__all__ = ["certain_rewards", "irrelevant_variables", "sensing_draws", "skills_alike"]
-
 _OBSERVATION = frozenset({"__moduleResponse", "__moduleResponseStr", "__observed"})
 
 

@@ -1,12 +1,8 @@
 """The reads in calls of shared functions: functions that only read may be looked through."""
 
-from __future__ import annotations
-
 from aos_language.cpp.flow import STATES
 from aos_language.cpp.shared import SharedCode, SharedFunction
 from aos_language.cpp.snippets import Cpp, Extent
-
-__all__ = ["looked_through"]
 
 
 def looked_through(cpp: Cpp, shared: SharedCode) -> str:

@@ -1,7 +1,5 @@
 """Types and variables of the environment."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from aos_language.cpp.snippets import read_cpp
@@ -15,15 +13,6 @@ from aos_solver.emission.lower_types import Types, ordered_compounds
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
 from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
 from aos_solver.emission.rewrite import Rewriting
-
-__all__ = [
-    "capacities_of",
-    "lower_compounds",
-    "lower_variables",
-    "member_names",
-    "object_lists",
-    "parameter_values",
-]
 
 
 def capacities_of(project: Project) -> Capacities:

@@ -1,7 +1,5 @@
 """The types of the documents as C++ types of fixed storage."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 
@@ -10,8 +8,6 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
 from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.program import Axis, Enum
-
-__all__ = ["Types", "lower_enum", "ordered_compounds"]
 
 _PLAIN = frozenset({
     "anyValue", "bool", "char", "double", "float", "int", "int16_t", "int32_t", "int64_t", "int8_t", "long",

@@ -4,8 +4,6 @@ Where the text leaves a doubt, the variable counts as changed. A change that is 
 compile: constants are constant to the compiler.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
@@ -25,8 +23,6 @@ from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.local_types import reported_variables
 from aos_protocol.documents import Environment, Project
 from aos_solver.emission.lower_code import BELIEF, sections_of
-
-__all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
 
 LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
 """The beginning of a lambda."""

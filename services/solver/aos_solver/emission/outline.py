@@ -1,7 +1,5 @@
 """The lowered model as text for people: what `aos inspect --stage model` shows."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 from aos_solver.emission.program import (
@@ -15,8 +13,6 @@ from aos_solver.emission.program import (
     Statement,
     Variable,
 )
-
-__all__ = ["outline"]
 
 
 def outline(program: Program) -> str:

@@ -13,30 +13,6 @@ from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 
-__all__ = [
-    "Axis",
-    "Compound",
-    "Constraint",
-    "DeclaredVariable",
-    "Edit",
-    "Enum",
-    "EnumVariable",
-    "Field",
-    "Local",
-    "Loop",
-    "ObjectList",
-    "Observed",
-    "Parameter",
-    "ParameterValues",
-    "Piece",
-    "Program",
-    "Section",
-    "Skill",
-    "SpecialState",
-    "Statement",
-    "Variable",
-]
-
 
 class Edit(msgspec.Struct, frozen=True):
     """`removed` characters from a line and column of a snippet on, replaced by `inserted` others."""

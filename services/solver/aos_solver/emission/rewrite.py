@@ -1,7 +1,5 @@
 """The few edits that make document code C++ in its function. They stay within their lines."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
@@ -18,8 +16,6 @@ from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_containers import container_edits
 from aos_solver.emission.rewrite_objects import object_edits
 from aos_solver.emission.rewrite_references import reference_edits
-
-__all__ = ["NO_LOOPS", "EnumValues", "LoopsOfPiece", "Rewriting", "rewrite"]
 
 _CATCH_ALL = re.compile(r"\bcatch\s*\(\s*\.\.\.\s*\)\s*\{")
 _SCOPE = re.compile(r"AOS(?:Utils)?")

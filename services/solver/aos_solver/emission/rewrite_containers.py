@@ -4,15 +4,11 @@ State variables are not std::vector, std::string and std::map, though they conve
 block of code fills with constants anew in each run costs more than the rest of the step.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
 from aos_language.cpp.flow import STATES
 from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind
-
-__all__ = ["container_edits"]
 
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"

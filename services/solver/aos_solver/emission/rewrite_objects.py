@@ -3,15 +3,11 @@
 What `state.<Type>Objects` points at is const where its state is; documents write `tCup*` for it everywhere.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
 from aos_language.cpp.flow import STATES
 from aos_language.cpp.snippets import Cpp, Declaration, DeclarationKind, Extent, strip_comments
-
-__all__ = ["object_edits"]
 
 _POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")
 _REFERENCE = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*&\s*$")

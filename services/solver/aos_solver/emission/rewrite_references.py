@@ -4,15 +4,11 @@ AOS 1.x gives special states a state that is not const, and documents write `int
 A reference that changes a const state does not compile all the same.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 
 from aos_language.cpp.flow import STATES
 from aos_language.cpp.snippets import Cpp, Declaration, DeclarationKind
-
-__all__ = ["reference_edits"]
 
 _TYPE = re.compile(r"(?:^|[;{}(])\s*([A-Za-z_][\w:]*(?:\s+[A-Za-z_][\w:]*)*)\s*[&*]\s*$")
 _LOOP_COLON = re.compile(r"\s*:\s*")

@@ -4,8 +4,6 @@ A model that is in use tells only which piece of document code runs, since a ste
 one more store for each is not free. Statements are counted on from the pieces.
 """
 
-from __future__ import annotations
-
 import re
 
 import msgspec
@@ -14,8 +12,6 @@ from aos_language.cpp.statements import Marks, Statement, marked
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.emit import EmittedModel
 from aos_solver.emission.program import Piece
-
-__all__ = ["TracedModel", "traced"]
 
 _RESULTS = ("__reward", "__moduleResponse")
 """The reward is looked at first, so it has to be the last that tells of itself when the section is over."""

@@ -1,13 +1,9 @@
 """Work whose result is not needed any more, given up while it goes on."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Coroutine
 from contextlib import suppress
 from typing import Any, TypeVar
-
-__all__ = ["GRACE_S", "Abandoning"]
 
 T = TypeVar("T")
 

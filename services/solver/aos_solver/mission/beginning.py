@@ -1,15 +1,11 @@
 """The belief with which a mission begins: the initial or the last one, later on, given what is known."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable
 
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import StartMission
 from aos_solver.child.belief_answers import ExportedBeliefs
 from aos_solver.child.engine import Engine
-
-__all__ = ["begin_with"]
 
 
 async def begin_with(

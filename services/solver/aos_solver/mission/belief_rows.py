@@ -1,13 +1,9 @@
 """Whole beliefs in the journal, so that what was believed can be looked at without a replay."""
 
-from __future__ import annotations
-
 from aos_protocol.messages import BeliefRow, BeliefSummary, WeightedStates
 from aos_solver.child.belief_answers import ExportedBelief, ExportedBeliefs
 from aos_solver.mission.ports import Record
 from aos_solver.mission.takeover import RunningModel
-
-__all__ = ["BELIEF", "LARGE_EVERY", "MOST_BYTES", "SMALL_BYTES", "exported_of", "keep_belief"]
 
 BELIEF = "belief"
 """The kind of the journal's rows."""

@@ -1,7 +1,5 @@
 """The choice of a mission's next step: an action, an ending, or to hold, for what can be carried out now."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import msgspec
@@ -22,8 +20,6 @@ from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.steering import Asked
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
-
-__all__ = ["Choice", "Chooser", "Ended", "Held", "Refused"]
 
 _TOO_RISKY = "it risks more than the mission's constraints have left"
 _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"

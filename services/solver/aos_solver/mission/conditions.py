@@ -5,8 +5,6 @@ are, into a model of their own, and run in the same sandbox. That model's constr
 `Engine.condition`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,8 +17,6 @@ from aos_protocol.documents import Constraint, Project, Snippet
 from aos_protocol.errors import AosError, DocumentError, ModelError
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
-
-__all__ = ["OPTION", "built_with_conditions"]
 
 OPTION = "--given"
 """The place of what is wrong with a condition. Its line is the number of the condition."""

@@ -7,16 +7,12 @@ bets that the odds are others by some factor, from the first use on or from a la
 likelihood ratios: Robbins, 1970). It alarms where it reaches the number of tests divided by FALSE_ALARMS.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, DriftTest, DriftTests, ModelDrift
-
-__all__ = ["DRIFT", "FALSE_ALARMS", "after_use", "begun", "drifts", "text_of"]
 
 DRIFT = "drift"
 """The kind of the journal's row with which the tests of a model begin, or go over to another mission."""

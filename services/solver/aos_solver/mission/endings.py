@@ -1,24 +1,11 @@
 """The end of a mission, and how it ended: the rules that the mission loop and `aos simulate` share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from enum import StrEnum
 
 import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds
-
-__all__ = [
-    "Ending",
-    "MissionLimits",
-    "believed_ending",
-    "ending_after_planning",
-    "ending_of_belief",
-    "is_held_back",
-    "is_worth_nothing",
-    "remark_of",
-]
 
 
 class Ending(StrEnum):

@@ -3,8 +3,6 @@
 docs/when-a-skill-fails.md has all rules.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Literal
 
@@ -12,8 +10,6 @@ import msgspec
 
 from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.mission.setting_aside import SettingAside
-
-__all__ = ["FailureRules", "Failures", "OnFailure", "SkillRule"]
 
 OnFailure = Literal["observe", "retry", "hold", "end"]
 

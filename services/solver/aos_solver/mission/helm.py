@@ -1,7 +1,5 @@
 """The helm of a mission: takes what somebody wants of it, journals it, and answers who waits for it."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 
@@ -11,8 +9,6 @@ from aos_protocol.spelling import did_you_mean, nearest
 from aos_solver.child.answers import EngineDescription
 from aos_solver.mission.ports import Record
 from aos_solver.mission.steering import REFUSED, STEERED, Asked, Steering
-
-__all__ = ["Helm"]
 
 _REFUSED = "AOS518"
 

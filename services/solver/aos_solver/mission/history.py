@@ -1,7 +1,5 @@
 """The decision records of a mission, page by page out of its journal."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -12,8 +10,6 @@ import msgspec
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery
 from aos_runtime.journal import Journal, JournalRow
-
-__all__ = ["PAGE_BYTES", "PAGE_RECORDS", "HistoryReader", "history_page"]
 
 PAGE_BYTES = 2**20
 """A page ends with the record that exceeds it. As objects it takes some ten times the memory."""

@@ -1,15 +1,11 @@
 """The holds of a mission: for skills that cannot be run, after a failure, and by whoever steers it."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable
 
 from aos_protocol.errors import AosError
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.helm import Helm
 from aos_solver.mission.ports import Ports
-
-__all__ = ["Holding"]
 
 _LOOKS_AGAIN_S = 60.0
 """A mission that waits for somebody looks again after this time, whatever was told."""

@@ -1,7 +1,5 @@
 """The missions of a run, each with its journal: one alone, or one after the other in a system that stays."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec
@@ -17,8 +15,6 @@ from aos_runtime.mission_folders import (
     number_in,
 )
 from aos_solver.mission.memory import BEGUN, MissionMemory, folded
-
-__all__ = ["JOURNAL", "Logbook", "Logbooks", "entries_of", "entry_of"]
 
 JOURNAL = "journal.db"
 

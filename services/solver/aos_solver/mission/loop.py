@@ -5,8 +5,6 @@ is, which model comes next. Every decision is in the journal before it is on the
 move before anything moves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import msgspec
@@ -41,8 +39,6 @@ from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.steering import LIFTS, Asked
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
-
-__all__ = ["Mission"]
 
 _NOTHING = MissionMemory()
 

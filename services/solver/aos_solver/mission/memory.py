@@ -3,8 +3,6 @@
 An empty journal folds to the start of a mission, so that starting and taking up are one path.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -27,8 +25,6 @@ from aos_runtime.journal import JournalRow
 from aos_solver.mission.drift import DRIFT, after_use
 from aos_solver.mission.steering import LIFTS, REFUSED, STEERED, Steering
 from aos_solver.mission.stretches import Stretch, after
-
-__all__ = ["BEGUN", "MissionMemory", "PastStep", "Pending", "folded"]
 
 BEGUN = "begun"
 """The kind of the row with which each solver begins, or takes up, a mission."""

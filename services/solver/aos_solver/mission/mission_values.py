@@ -1,7 +1,5 @@
 """The values of mission parameters in each model of a mission: those that it began with stay."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import msgspec
@@ -10,8 +8,6 @@ from aos_language.findings import Findings
 from aos_language.mission_parameters import ParameterLeaf, checked_values, usable_values
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue
-
-__all__ = ["NOWHERE", "MissionValues"]
 
 NOWHERE = Span("the documents")
 """The place of a value that nobody has set."""

@@ -7,8 +7,6 @@ middleware, and the belief moves over (takeover.py). No decision waits for a mod
 A mission uses a quick build at once. A thorough one is made meanwhile, for the next start.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping
@@ -30,8 +28,6 @@ from aos_solver.mission.mission_values import NOWHERE, MissionValues
 from aos_solver.mission.past import Past
 from aos_solver.mission.push_trial import faults_in_trial
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover
-
-__all__ = ["ModelShelf"]
 
 log = logging.getLogger(__name__)
 

@@ -4,8 +4,6 @@ One rule holds for beliefs: a model's belief is its posterior given the past. A 
 that is taken up and a model that takes a mission over update their beliefs by the same function.
 """
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Iterable, Mapping
 from typing import Any
 
@@ -16,8 +14,6 @@ from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.child.engine import Engine
 from aos_solver.mission.failures import Failures
-
-__all__ = ["Beginning", "Evidence", "Past", "evidence_of", "replayed", "updated"]
 
 _DEFAULT_RESPONSE = "DefaultObservation"
 

@@ -3,8 +3,6 @@
 `aos_solver.bus_ports` gives a mission the bus and the disk; `simulation` gives it a hidden state.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Protocol
 
@@ -13,8 +11,6 @@ from aos_runtime.clock import Clock, SystemClock
 from aos_solver.mission.endings import Ending
 from aos_solver.mission.past import Past
 from aos_solver.mission.takeover import RunningModel, Takeover
-
-__all__ = ["Available", "Models", "Ports", "QuietPorts", "Record", "Robot"]
 
 
 class Available(Protocol):

@@ -1,14 +1,10 @@
 """The trial of documents that are pushed into a mission: random actions, and a decision."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine
-
-__all__ = ["faults_in_trial"]
 
 _TRIED_S = 0.1
 _TRIED_CPU_S = 4.0

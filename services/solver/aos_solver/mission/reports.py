@@ -1,7 +1,5 @@
 """The reports of a mission: states, decisions and outcomes, each in the journal before anybody hears it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec
@@ -23,8 +21,6 @@ from aos_solver.mission.memory import MissionMemory
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.steering import Steering
 from aos_solver.mission.takeover import RunningModel
-
-__all__ = ["Reports"]
 
 
 class Reports:

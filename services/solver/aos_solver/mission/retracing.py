@@ -1,7 +1,5 @@
 """The models that a mission had, one after the other, and how a belief goes through them."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Sequence
 from typing import NamedTuple
 
@@ -9,8 +7,6 @@ from aos_runtime.clock import SystemClock
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.past import Past, replayed
 from aos_solver.mission.takeover import RunningModel, Successor
-
-__all__ = ["Earlier", "retraced"]
 
 
 class Earlier(NamedTuple):

@@ -6,15 +6,11 @@ never exceeds the bound, and that sum, in expectation, is the mean number of vio
 least the probability that there is one. docs/constraints.md has the proof, and what it supposes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from aos_protocol.messages import ConstraintRisk
 from aos_solver.child.answers import Risks
 from aos_solver.emission.emit import Bound
-
-__all__ = ["RiskBudget"]
 
 _ROUNDING = 1e-12
 """Sums of probabilities are no more exact than that."""

@@ -1,13 +1,9 @@
 """Skills that are set aside: after a row of failures nobody decides for them, for a while."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 
 import msgspec
-
-__all__ = ["SettingAside"]
 
 _COUNTS_FULLY = math.log(10)
 """The surprise from which on a failure that a rule has told counts as a whole one: one in ten."""

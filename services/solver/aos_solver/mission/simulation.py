@@ -5,8 +5,6 @@ can be compared. A mission with a robot knows its belief alone; here the world i
 the belief was right.
 """
 
-from __future__ import annotations
-
 import sys
 
 import msgspec
@@ -21,8 +19,6 @@ from aos_solver.mission.loop import Mission
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
-
-__all__ = ["SimulatedRun", "simulate_mission"]
 
 _NO_CONSEQUENCES = FailureRules(failure_limit=sys.maxsize, set_aside_after=sys.maxsize)
 """A model's skills never break. Where the world has other documents, their reports are left to the belief."""

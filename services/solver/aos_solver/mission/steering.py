@@ -11,8 +11,6 @@ import msgspec
 
 from aos_protocol.messages import ActionRefused, DecisionRecord, Steer
 
-__all__ = ["LIFTS", "REFUSED", "STEERED", "Asked", "Steering"]
-
 STEERED = "steered"
 """The kind of the row with which somebody steers."""
 

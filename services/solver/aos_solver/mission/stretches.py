@@ -4,15 +4,11 @@ A model that took over by replay has the belief that its own replay of the past 
 One that took over by import or projection has got its belief from the model before it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import msgspec
 
 from aos_protocol.messages import MissionBegun, ModelAdopted, TakeoverWay
-
-__all__ = ["Stretch", "after", "models_before"]
 
 
 class Stretch(msgspec.Struct, frozen=True):

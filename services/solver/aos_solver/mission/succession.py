@@ -4,8 +4,6 @@ Each mission has an engine of its own, started with the mission's seed: so it de
 a system that is started with this seed. What it keeps of the mission before is the belief alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable
 from functools import partial
 from pathlib import Path
@@ -30,8 +28,6 @@ from aos_solver.mission.past import Beginning, Past
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
-
-__all__ = ["KEEP", "Begun", "Succession"]
 
 KEEP = "keep"
 """The belief of a mission that begins with the last one of the mission before; all others begin with the

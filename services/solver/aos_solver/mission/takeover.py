@@ -5,8 +5,6 @@ past from its own initial belief. Where the past is impossible in it, or would t
 that both models have keep their joint distribution, and the others are as the initial belief has them.
 """
 
-from __future__ import annotations
-
 import asyncio
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -19,8 +17,6 @@ from aos_runtime.clock import Clock
 from aos_solver.child.engine import Engine
 from aos_solver.mission.drift import begun
 from aos_solver.mission.past import Past, replayed
-
-__all__ = ["REPLAY_S", "RunningModel", "Successor", "Takeover", "distances"]
 
 REPLAY_S = 10.0
 """A replay that would take longer is given up."""

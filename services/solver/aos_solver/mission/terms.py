@@ -1,14 +1,10 @@
 """The terms that a mission is run on."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules
-
-__all__ = ["Terms"]
 
 
 class Terms(msgspec.Struct, frozen=True, kw_only=True):

@@ -5,8 +5,6 @@ gaps: for every region, in the line's order, u32 states[states], u32 actions[vec
 values[vectors][states].
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Self
 
@@ -15,8 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aos_solver.offline.explicit_model import Floats, Integers
-
-__all__ = ["AlphaVectors", "Choice", "RegionSize", "RegionVectors"]
 
 
 class RegionSize(msgspec.Struct, frozen=True):

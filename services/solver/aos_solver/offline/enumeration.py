@@ -1,7 +1,5 @@
 """A bundle's model as numbers, from its compiled engine."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import msgspec
@@ -11,8 +9,6 @@ from aos_protocol.errors import IntractableError
 from aos_solver.child.answers import Listed
 from aos_solver.child.engine import Engine
 from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Floats, read_flat, with_more_outcomes
-
-__all__ = ["ENDED", "MAX_STATES", "Enumeration", "enumerate_model"]
 
 MAX_STATES = 1_000_000
 ENDED = "ended"

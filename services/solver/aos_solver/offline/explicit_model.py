@@ -9,17 +9,6 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "ExplicitModel",
-    "FlatModel",
-    "Floats",
-    "ModelSize",
-    "Ragged",
-    "StartBelief",
-    "read_flat",
-    "with_more_outcomes",
-]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

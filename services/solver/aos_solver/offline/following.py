@@ -1,15 +1,11 @@
 """The choice between searching and following a policy file, for commands that may have either."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec
 
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-
-__all__ = ["following"]
 
 
 def following(search: Search, policy: Path | None, *, engine: Engine | None = None) -> Search:

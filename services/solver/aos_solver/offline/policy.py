@@ -23,8 +23,6 @@ from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
 
-__all__ = ["FORMAT", "Policy", "PolicyHeader", "PolicySearch"]
-
 FORMAT = "aos-policy-2"
 
 

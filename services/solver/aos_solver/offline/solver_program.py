@@ -1,15 +1,11 @@
 """The solver's executable: compiled once, from the sources beside this file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_solver.building.build import SOURCES
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import find_compiler
 from aos_solver.building.compiler_run import internal_error, run_compiler
-
-__all__ = ["build_solver"]
 
 _SOURCE = Path(__file__).parent / "cpp" / "sarsop.cpp"
 _SHARED = (*sorted((SOURCES / "aos/base").iterdir()), *sorted((SOURCES / "point_based").iterdir()))

@@ -1,7 +1,5 @@
 """Runs the solver on a model: bounds over time, and the alpha vectors in the end."""
 
-from __future__ import annotations
-
 import asyncio
 import tempfile
 from collections.abc import Callable
@@ -16,8 +14,6 @@ from aos_solver.child.confinement import confinement_of
 from aos_solver.offline.alpha_vectors import AlphaVectors, RegionSize
 from aos_solver.offline.explicit_model import ExplicitModel
 from aos_solver.offline.solver_program import build_solver
-
-__all__ = ["Bounds", "Solution", "SolvingLimits", "check_discount", "solve"]
 
 _ADDRESS_SPACE_BYTES = 16 << 30
 _LINE_LIMIT_BYTES = 1 << 16

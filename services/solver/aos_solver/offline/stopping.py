@@ -1,14 +1,10 @@
 """The choice to end the mission at any time, as one more action."""
 
-from __future__ import annotations
-
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from aos_solver.offline.explicit_model import ExplicitModel, with_more_outcomes
-
-__all__ = ["STOP", "over_states", "with_stopping"]
 
 STOP = "stop"
 

@@ -1,14 +1,10 @@
 """A belief that is put aside while others are supposed."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 from aos_protocol.errors import SkillError
 from aos_solver.child.engine import Engine
-
-__all__ = ["put_aside"]
 
 
 @asynccontextmanager

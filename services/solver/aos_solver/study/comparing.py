@@ -1,7 +1,5 @@
 """The comparison of a replayed decision with the recorded one, bit for bit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import msgspec
@@ -9,8 +7,6 @@ import msgspec
 from aos_protocol.messages import BeliefSummary, DecisionRecord, SearchMade
 from aos_solver.child.answers import Plan
 from aos_solver.study.replaying import Remade
-
-__all__ = ["Comparison", "compared"]
 
 
 class Comparison(msgspec.Struct, frozen=True):

@@ -4,8 +4,6 @@ Between two beliefs that differ by Jeffrey's rule lies a line, and the value of 
 along it. So the margin of two actions is continuous, and where it changes its sign the choice changes.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 import time
@@ -14,8 +12,6 @@ from collections.abc import Awaitable, Callable, Iterator, Sequence
 from aos_protocol.messages import BeliefSummary, Flip
 from aos_solver.child.engine import Engine
 from aos_solver.study.valuing import Margin, Valuing
-
-__all__ = ["doubtful_values", "flip_between", "flips_of", "is_lost", "places_beside", "sampled_flip"]
 
 _PRECISION = 2e-4
 _PARTS = 4

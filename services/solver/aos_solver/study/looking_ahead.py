@@ -1,15 +1,11 @@
 """The tree below a decision: best actions, likely responses, the beliefs after them, each planned anew."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, DecisionTree, TreeBranch, TreeNode, TreeQuery
 from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.valuing import Value, Valuing
-
-__all__ = ["MOST_NODES", "tree_below"]
 
 MOST_NODES = 500
 """A larger tree is cut."""

@@ -1,7 +1,5 @@
 """The decision of a step under other circumstances: actions forbidden, other beliefs, other documents."""
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -19,8 +17,6 @@ from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.supposing import believe_all, changed_files
 from aos_solver.study.valuing import deciding_search
-
-__all__ = ["OtherDocuments", "decided_otherwise"]
 
 
 class OtherDocuments(NamedTuple):

@@ -1,7 +1,5 @@
 """The reasons for a decision: its margin, what was expected, which rewards count, where it changes."""
 
-from __future__ import annotations
-
 import math
 import time
 
@@ -15,8 +13,6 @@ from aos_solver.study.flips import flips_of
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.traced_engines import TracedEngine, TracedEngines
 from aos_solver.study.valuing import Margin, Value, Valuing, best_of, deciding_search
-
-__all__ = ["Reasons"]
 
 _SHOWN_RESPONSES = 3
 _TERM = 1e-12

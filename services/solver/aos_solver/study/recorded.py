@@ -1,7 +1,5 @@
 """The journal of a mission as what a replay needs: what began, what was decided, what came of it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any, TypeVar
 
@@ -12,8 +10,6 @@ from aos_protocol.messages import BeliefRow, DecisionRecord, MissionBegun, Model
 from aos_runtime.journal import JournalRow
 from aos_solver.mission.belief_rows import BELIEF
 from aos_solver.mission.memory import BEGUN
-
-__all__ = ["Event", "RecordedEvent", "RecordedMission", "recorded"]
 
 Event = MissionBegun | ModelAdopted | DecisionRecord | BeliefRow
 

@@ -5,8 +5,6 @@ were made for each decision, also the same values (docs/decisions/0041). A takeo
 engine and another solver are done again where they happened.
 """
 
-from __future__ import annotations
-
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -40,8 +38,6 @@ from aos_solver.mission.takeover import RunningModel, Successor
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission
-
-__all__ = ["NICENESS", "Documents", "Remade", "ReplayedMission"]
 
 NICENESS = 19
 """A study gives way to everything else on the machine."""

@@ -3,8 +3,6 @@
 Live and offline are the same code: only where journal and documents come from differs (`Source`).
 """
 
-from __future__ import annotations
-
 import asyncio
 import math
 from pathlib import Path
@@ -26,8 +24,6 @@ from aos_solver.study.reasons import Reasons
 from aos_solver.study.recorded import RecordedMission
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.traced_engines import TracedEngines
-
-__all__ = ["FLIPS_S", "Source", "Study"]
 
 FLIPS_S = 0.6
 """The whole answer about an exact decision is to take a second."""

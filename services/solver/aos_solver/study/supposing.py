@@ -1,7 +1,5 @@
 """Suppositions as text: another probability of a variable's value, another number in a document."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable
@@ -11,8 +9,6 @@ from aos_language.number_text import is_number
 from aos_protocol.errors import SkillError, StudyError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine
-
-__all__ = ["Supposition", "believe_all", "changed_files", "supposition_of"]
 
 _NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _OPERAND_BEFORE = re.compile(r"[\w)\]]\s*$")

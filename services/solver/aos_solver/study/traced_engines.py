@@ -1,7 +1,5 @@
 """Engines of traced models: they know which statement of the documents gives which part of a reward."""
 
-from __future__ import annotations
-
 import asyncio
 import math
 from pathlib import Path
@@ -14,8 +12,6 @@ from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.answers import RewardTerm
 from aos_solver.child.engine import Engine
 from aos_solver.emission.trace import traced
-
-__all__ = ["TracedEngine", "TracedEngines"]
 
 
 class TracedEngine(NamedTuple):

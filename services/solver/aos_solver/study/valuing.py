@@ -13,8 +13,6 @@ from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
 from aos_solver.study.replaying import ReplayedMission
 
-__all__ = ["Margin", "Value", "Valuing", "best_of", "deciding_search"]
-
 
 class Value(msgspec.Struct, frozen=True):
     """The value of an action and its standard error; `n` is how often a search tried it."""

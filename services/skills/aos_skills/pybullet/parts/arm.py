@@ -1,7 +1,5 @@
 """The Panda arm, moved joint by joint or by the point between its finger tips."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable
@@ -10,8 +8,6 @@ import pybullet
 
 from aos_skills.pybullet.parts.kinematics import ArmKinematics
 from aos_skills.pybullet.parts.scene import STEP_S, Scene, Vector
-
-__all__ = ["TUCKED", "Arm"]
 
 ARM_JOINTS = tuple(f"panda_joint{number}" for number in range(1, 8))
 TUCKED = (0.0, -0.9, 0.0, -2.6, 0.0, 2.2, 0.785)

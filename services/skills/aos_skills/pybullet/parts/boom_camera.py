@@ -1,7 +1,5 @@
 """A depth camera on a boom ahead of a mobile base: it looks down at a table, past the hand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
@@ -10,8 +8,6 @@ import numpy.typing as npt
 import pybullet
 
 from aos_skills.pybullet.parts.scene import Scene, Vector
-
-__all__ = ["Colors", "top_seen"]
 
 Colors = npt.NDArray[np.int16]
 """Red, green and blue of each pixel, 0 to 255."""

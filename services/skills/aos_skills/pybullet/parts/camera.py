@@ -1,7 +1,5 @@
 """Pictures of a scene, by the software renderer: no screen and no GPU needed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -11,8 +9,6 @@ import pybullet
 from PIL import Image
 
 from aos_skills.pybullet.parts.scene import Scene, Vector
-
-__all__ = ["Camera", "Pose", "photograph"]
 
 PICTURE_SIZE = (480, 360)
 CLOSE_UP_SIZE = (240, 360)

@@ -1,7 +1,5 @@
 """Connections to Bullet that leave standard output to the program."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 from collections.abc import Iterator
@@ -9,8 +7,6 @@ from contextlib import contextmanager
 
 import pybullet
 from pybullet_utils.bullet_client import BulletClient
-
-__all__ = ["connect"]
 
 
 def connect() -> BulletClient:

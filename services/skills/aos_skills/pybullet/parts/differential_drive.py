@@ -1,14 +1,10 @@
 """Two driven wheels that stand on the floor: the robot moves as far as their contacts carry it."""
 
-from __future__ import annotations
-
 import math
 
 import pybullet
 
 from aos_skills.pybullet.parts.scene import STEP_S, Scene, Vector
-
-__all__ = ["DifferentialDrive"]
 
 WHEEL_TORQUE_N_M = 0.6
 ACCELERATION_M_S2 = 0.6

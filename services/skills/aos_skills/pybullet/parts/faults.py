@@ -1,10 +1,6 @@
 """Faults that a simulator cannot produce, drawn from the mission's seed and kept for the record."""
 
-from __future__ import annotations
-
 import random
-
-__all__ = ["Faults"]
 
 
 class Faults:

@@ -11,8 +11,6 @@ from aos_skills.pybullet.parts.differential_drive import DifferentialDrive
 from aos_skills.pybullet.parts.route import Point
 from aos_skills.pybullet.parts.scene import Scene
 
-__all__ = ["Following", "follow"]
-
 EVERY_STEPS = 12
 AHEAD_M = 0.15
 ARRIVED_M = 0.04

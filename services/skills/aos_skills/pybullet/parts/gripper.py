@@ -1,12 +1,8 @@
 """The Panda's gripper: two fingers that close with a limited force."""
 
-from __future__ import annotations
-
 import pybullet
 
 from aos_skills.pybullet.parts.scene import Scene
-
-__all__ = ["MAX_GAP_M", "Gripper"]
 
 FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
 MAX_GAP_M = 0.08

@@ -3,15 +3,11 @@
 In a world of its own: in the robot's body, Bullet would also move the base to bring the hand there.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
 from aos_skills.pybullet.parts.client import connect
 from aos_skills.pybullet.parts.urdf import bare_arm_urdf, urdf_file
-
-__all__ = ["ArmKinematics"]
 
 ARM_JOINTS = 7
 ITERATIONS = 100

@@ -1,15 +1,11 @@
 """A lidar that turns level: the way that each ray goes before it meets something."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import numpy.typing as npt
 
 from aos_skills.pybullet.parts.scene import Scene
-
-__all__ = ["Lidar"]
 
 RAYS = 120
 MIN_RANGE_M = 0.12

@@ -1,12 +1,8 @@
 """The numbers of world files."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import msgspec
-
-__all__ = ["Deviation", "Length", "Share"]
 
 Share = Annotated[float, msgspec.Meta(ge=0, le=1)]
 """A probability."""

@@ -1,10 +1,6 @@
 """Places in world files."""
 
-from __future__ import annotations
-
 import msgspec
-
-__all__ = ["Place"]
 
 
 class Place(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,14 +1,10 @@
 """A base on three joints, along x, along y and about z, moved by motors of limited force."""
 
-from __future__ import annotations
-
 import math
 
 import pybullet
 
 from aos_skills.pybullet.parts.scene import STEP_S, Scene, Vector
-
-__all__ = ["BASE_JOINTS", "PlanarBase"]
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 DRIVE_SPEED_M_S = 1.0

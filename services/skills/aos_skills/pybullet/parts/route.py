@@ -9,8 +9,6 @@ import networkx as nx
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["FloorMap", "Point", "Rectangle"]
-
 CELL_M = 0.05
 NEAR_M = 0.12
 """The distance from the forbidden border within which cells cost up to NEAR_COST times as much more."""

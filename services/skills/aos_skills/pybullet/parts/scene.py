@@ -1,7 +1,5 @@
 """Simulated time and the bodies in it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,8 +7,6 @@ import pybullet
 import pybullet_data
 
 from aos_skills.pybullet.parts.client import connect
-
-__all__ = ["STEP_S", "Color", "Scene", "Vector"]
 
 STEP_S = 1 / 240
 

@@ -1,7 +1,5 @@
 """Robot descriptions: read, joined, and handed to Bullet without a file on disk."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,8 +7,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from pybullet_utils.bullet_client import BulletClient
-
-__all__ = ["bare_arm_urdf", "drop", "joints_and_links", "parts_of", "urdf_file"]
 
 
 @contextmanager

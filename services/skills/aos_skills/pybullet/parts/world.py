@@ -3,8 +3,6 @@
 A world is a folder under `worlds` whose `__init__` has a `KIND`. Nothing outside the folder knows its words.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -15,8 +13,6 @@ import msgspec
 from aos_skills.pybullet.parts.camera import Camera
 from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.scene import Scene
-
-__all__ = ["Fields", "World", "WorldKind"]
 
 Fields = dict[str, Any]
 """The fields of a request, an answer or a message, by name."""

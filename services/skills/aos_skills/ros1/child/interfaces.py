@@ -4,20 +4,6 @@ from __future__ import annotations
 
 from typing import Any, Callable, Dict, Protocol, Type
 
-__all__ = [
-    "ActionClient",
-    "ActionServer",
-    "Channel",
-    "FeedbackMessage",
-    "Fields",
-    "GoalMessage",
-    "Kept",
-    "Message",
-    "Publisher",
-    "ResultMessage",
-    "Service",
-]
-
 Fields = Dict[str, Any]
 """A message as plain data."""
 

@@ -15,8 +15,6 @@ import sys
 import threading
 from typing import Any
 
-__all__ = ["main"]
-
 BLOCKING = ("call", "run")
 
 

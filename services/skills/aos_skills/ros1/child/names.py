@@ -11,8 +11,6 @@ import rosservice
 
 from aos_skills.ros1.child.interfaces import Channel
 
-__all__ = ["Names"]
-
 POLL_S = 0.25
 CONNECT_S = 0.5
 

@@ -23,8 +23,6 @@ from aos_skills.ros1.child.interfaces import (
 from aos_skills.ros1.child.names import Names
 from aos_skills.ros1.child.types import ActionClasses, Misfit, Types, Unknown, plain
 
-__all__ = ["Robot"]
-
 QUEUE = 1000
 SERVER_S = 5.0
 

@@ -20,8 +20,6 @@ from aos_skills.ros1.child.interfaces import (
     Service,
 )
 
-__all__ = ["ActionClasses", "Misfit", "Types", "Unknown", "plain"]
-
 RULE = "=" * 80
 
 HEADER = "std_msgs/Header header\n"

@@ -6,14 +6,10 @@ step, and the robot would need a localisation system to arrive anywhere. The joi
 limited force, step by step, so that the base still has mass, gathers speed, bumps into things and stalls.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from xml.etree import ElementTree
 
 from aos_skills.pybullet.parts.urdf import drop, parts_of
-
-__all__ = ["mobile_arm_urdf"]
 
 _PLANAR_JOINTS = """
 <robot name="mobile_arm">

@@ -1,10 +1,6 @@
 """Grasping from above, which is the same for a can and a cup."""
 
-from __future__ import annotations
-
 from aos_skills.pybullet.robots.mobile_arm.robot import MobileArm
-
-__all__ = ["SHOULDER_AHEAD_M", "grasp_from_above"]
 
 SHOULDER_AHEAD_M = 0.25
 """The distance of the arm's foot from the middle of the base."""

@@ -1,7 +1,5 @@
 """The mobile manipulator: base, arm and gripper, each moved by motors while simulated time passes."""
 
-from __future__ import annotations
-
 import pybullet
 
 from aos_skills.pybullet.parts.arm import Arm
@@ -10,8 +8,6 @@ from aos_skills.pybullet.parts.planar_base import PlanarBase
 from aos_skills.pybullet.parts.scene import Scene, Vector
 from aos_skills.pybullet.parts.urdf import joints_and_links, urdf_file
 from aos_skills.pybullet.robots.mobile_arm.description import mobile_arm_urdf
-
-__all__ = ["MobileArm"]
 
 ARM_MOUNT_M = (0.25, 0.0, 0.39)
 

@@ -1,14 +1,10 @@
 """The Panda on its table, with a pen in the hand."""
 
-from __future__ import annotations
-
 import pybullet
 
 from aos_skills.pybullet.parts.arm import Arm
 from aos_skills.pybullet.parts.scene import Scene, Vector
 from aos_skills.pybullet.parts.urdf import joints_and_links
-
-__all__ = ["PEN_BELOW_GRASP_M", "PandaWithPen"]
 
 PEN_RADIUS_M = 0.005
 PEN_LENGTH_M = 0.12

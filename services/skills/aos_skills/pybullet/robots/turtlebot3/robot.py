@@ -1,7 +1,5 @@
 """The TurtleBot3: drive, lidar, and an estimate of where it is."""
 
-from __future__ import annotations
-
 import math
 import random
 from pathlib import Path
@@ -13,8 +11,6 @@ from aos_skills.pybullet.parts.differential_drive import DifferentialDrive
 from aos_skills.pybullet.parts.lidar import MAX_RANGE_M, Lidar
 from aos_skills.pybullet.parts.scene import Scene, Vector
 from aos_skills.pybullet.parts.urdf import joints_and_links
-
-__all__ = ["TurtleBot3"]
 
 WHEEL_RADIUS_M = 0.033
 SEPARATION_M = 0.160

@@ -1,13 +1,9 @@
 """The form of the Armadillo's world files."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_skills.pybullet.parts.numbers import Deviation, Length, Share
 from aos_skills.pybullet.parts.place import Place
-
-__all__ = ["ArmadilloFile", "Can", "FaultModel", "Table"]
 
 
 class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,8 +1,6 @@
 """The frequencies of a pick's outcomes: `python -m aos_skills.pybullet.worlds.armadillo.frequencies
 WORLD.yaml 60`."""
 
-from __future__ import annotations
-
 import json
 import sys
 from functools import partial

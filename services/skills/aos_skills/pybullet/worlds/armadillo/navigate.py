@@ -1,13 +1,9 @@
 """Navigate: to a place in the room."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
-
-__all__ = ["navigate"]
 
 CROSSING = (0.0, 0.0)
 """All ways between the places lead over the middle of the room."""

@@ -1,7 +1,5 @@
 """Pick: reach for the can on the table where the robot stands, close the fingers, lift, fold the arm."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -13,8 +11,6 @@ from aos_skills.pybullet.parts.boom_camera import Colors, top_seen
 from aos_skills.pybullet.robots.mobile_arm.grasp import SHOULDER_AHEAD_M, grasp_from_above
 from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
-
-__all__ = ["can_in_reach", "pick"]
 
 STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
 """Arm joint angles in radians of an arm that did not return."""

@@ -1,13 +1,9 @@
 """Retract: ask the motion planner once more for a way to fold the arm."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.worlds.armadillo.world import FOLDED_ELBOW_RAD, Armadillo
-
-__all__ = ["retract"]
 
 
 def retract(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:

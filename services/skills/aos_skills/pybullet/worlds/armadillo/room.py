@@ -1,13 +1,9 @@
 """The room: floor, walls, tables, cans, and the person with a tray."""
 
-from __future__ import annotations
-
 import pybullet
 
 from aos_skills.pybullet.parts.scene import Color, Scene, Vector
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile, Can, Table
-
-__all__ = ["TABLE_TOP_M", "TRAY_FROM_PERSON_M", "TRAY_TOP_M", "Room"]
 
 TABLE_TOP_M = 0.5
 TABLE_HALF_M = (0.5, 0.4)

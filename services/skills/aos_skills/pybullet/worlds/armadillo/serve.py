@@ -1,15 +1,11 @@
 """Serve: hold out what is in the hand over the person's tray, and let go."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.worlds.armadillo.room import TRAY_FROM_PERSON_M, TRAY_TOP_M
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
-
-__all__ = ["serve"]
 
 NEAR_M = 1.5
 APPROACH_M = 0.25

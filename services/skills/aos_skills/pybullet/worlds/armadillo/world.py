@@ -1,7 +1,5 @@
 """The Armadillo in its room: what its skills share."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -12,8 +10,6 @@ from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
 from aos_skills.pybullet.worlds.armadillo.room import Room
-
-__all__ = ["FOLDED_ELBOW_RAD", "Armadillo"]
 
 EYE_M = (4.6, -5.6, 4.0)
 FOLDED_ELBOW_RAD = -2.3

@@ -7,8 +7,6 @@ import msgspec
 from aos_skills.pybullet.parts.numbers import Deviation, Share
 from aos_skills.pybullet.parts.place import Place
 
-__all__ = ["CleanLabFile", "FaultModel"]
-
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Noise as a standard deviation in metres, faults as probabilities: a cup that glare hides, a cup that is

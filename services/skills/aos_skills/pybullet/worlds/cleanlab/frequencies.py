@@ -1,8 +1,6 @@
 """The frequencies of a pick's outcomes: `python -m aos_skills.pybullet.worlds.cleanlab.frequencies
 FILE.yaml 60`."""
 
-from __future__ import annotations
-
 import sys
 from functools import partial
 

@@ -1,13 +1,9 @@
 """Look: a picture of the table in front of the robot, and whether there is something red on it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_skills.pybullet.worlds.cleanlab.seeing import place_of_cup
 from aos_skills.pybullet.worlds.cleanlab.world import CleanLab
-
-__all__ = ["look"]
 
 LOOKING_S = 0.5
 

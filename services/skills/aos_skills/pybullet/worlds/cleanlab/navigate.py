@@ -1,13 +1,9 @@
 """Navigate: along the aisle in the middle, and up to a station or a bin."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from aos_skills.pybullet.worlds.cleanlab.world import CleanLab
-
-__all__ = ["navigate"]
 
 AISLE_Y_M = 0.0
 

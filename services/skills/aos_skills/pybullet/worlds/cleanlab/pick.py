@@ -1,7 +1,5 @@
 """Pick: grasp the cup in front of the robot from above. Whether it is in the hand, the fingers tell."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -9,8 +7,6 @@ from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.robots.mobile_arm.grasp import grasp_from_above
 from aos_skills.pybullet.worlds.cleanlab.seeing import place_of_cup
 from aos_skills.pybullet.worlds.cleanlab.world import AHEAD_M, TABLE_TOP_M, CleanLab
-
-__all__ = ["pick"]
 
 GRASP_ABOVE_CENTRE_M = 0.008
 CUP_CENTRE_M = 0.04

@@ -1,14 +1,10 @@
 """Release: hold out what is in the hand over what is in front, and let go."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.worlds.cleanlab.world import AHEAD_M, BIN_TOP_M, CleanLab
-
-__all__ = ["release"]
 
 ABOVE_BIN_M = 0.15
 SETTLING_S = 0.5

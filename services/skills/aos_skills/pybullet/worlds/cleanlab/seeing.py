@@ -1,14 +1,10 @@
 """The robot's sight of the table in front of it: something red, and where that is."""
 
-from __future__ import annotations
-
 import numpy as np
 import numpy.typing as npt
 
 from aos_skills.pybullet.parts.boom_camera import Colors, top_seen
 from aos_skills.pybullet.worlds.cleanlab.world import TABLE_TOP_M, CleanLab
-
-__all__ = ["place_of_cup"]
 
 MIN_RED = 0.005
 """Share of the picture's pixels; less is no cup."""

@@ -1,7 +1,5 @@
 """The laboratory: a station in front of each robot's place, bins at both ends, cups somewhere."""
 
-from __future__ import annotations
-
 import math
 import random
 from typing import Any
@@ -13,8 +11,6 @@ from aos_skills.pybullet.parts.scene import Scene
 from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
-
-__all__ = ["AHEAD_M", "BIN_TOP_M", "TABLE_TOP_M", "CleanLab", "filled_stations"]
 
 AHEAD_M = 0.8
 """The distance of a cup, or of a bin's middle, from the middle of the robot that stands in front of it."""

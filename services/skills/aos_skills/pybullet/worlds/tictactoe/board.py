@@ -1,7 +1,5 @@
 """The board on the table, and the ink on it."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import random
@@ -9,8 +7,6 @@ import random
 import pybullet
 
 from aos_skills.pybullet.parts.scene import Color, Scene, Vector
-
-__all__ = ["CELL_M", "TOP_M", "Board", "cell_centre", "circle"]
 
 CENTRE_M = (0.5, 0.0)
 CELL_M = 0.08

@@ -1,15 +1,11 @@
 """Draw: a circle in a cell, with the pen on the board. Whether it is there, a picture tells."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_skills.pybullet.worlds.tictactoe.board import circle
 from aos_skills.pybullet.worlds.tictactoe.reading import board_in
 from aos_skills.pybullet.worlds.tictactoe.rules import marked
 from aos_skills.pybullet.worlds.tictactoe.world import TicTacToe
-
-__all__ = ["draw"]
 
 CENTRE = 4
 PRESS_M = 0.002

@@ -1,15 +1,11 @@
 """The form of tic-tac-toe's world files."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import msgspec
 
 from aos_skills.pybullet.parts.numbers import Deviation, Share
 from aos_skills.pybullet.worlds.tictactoe.rules import Rules
-
-__all__ = ["FaultModel", "TicTacToeFile"]
 
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,13 +1,9 @@
 """Look: wait until the other one has drawn, take a picture, and read the board from it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_skills.pybullet.worlds.tictactoe.reading import board_in
 from aos_skills.pybullet.worlds.tictactoe.world import TicTacToe
-
-__all__ = ["look"]
 
 
 def look(world: TicTacToe, fields: dict[str, Any]) -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """The players against the robot: a random one, a perfect one, or a person at a terminal."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable
 
@@ -9,8 +7,6 @@ from aos_skills.pybullet.parts.scene import Scene
 from aos_skills.pybullet.worlds.tictactoe.file import TicTacToeFile
 from aos_skills.pybullet.worlds.tictactoe.person import PersonAtTerminal
 from aos_skills.pybullet.worlds.tictactoe.rules import best_moves, empty_cells
-
-__all__ = ["opponent"]
 
 
 def opponent(file: TicTacToeFile, chance: random.Random, scene: Scene) -> Callable[[str], int]:

@@ -1,15 +1,11 @@
 """A person who types: the world listens on this machine only, and `play` connects a terminal to it."""
 
-from __future__ import annotations
-
 import socket
 import time
 
 from aos_protocol.errors import DeployError
 from aos_skills.pybullet.parts.scene import Scene
 from aos_skills.pybullet.worlds.tictactoe.rules import empty_cells
-
-__all__ = ["PersonAtTerminal"]
 
 LOOK_EVERY_S = 0.05
 _ENDS = {"X": "You have won.", "O": "The robot has won.", None: "Nobody has won."}

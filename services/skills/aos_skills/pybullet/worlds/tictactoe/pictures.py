@@ -1,7 +1,5 @@
 """Boards that are read right: `python -m aos_skills.pybullet.worlds.tictactoe.pictures FILE.yaml 200`."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import random

@@ -1,7 +1,5 @@
 """Play against the robot: `python -m aos_skills.pybullet.worlds.tictactoe.play`, while `aos-up` runs."""
 
-from __future__ import annotations
-
 import argparse
 import codecs
 import socket

@@ -1,14 +1,10 @@
 """Reading the board from a picture: find its rim, look at it from straight above, tell the marks apart."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cv2
 import numpy as np
 import numpy.typing as npt
-
-__all__ = ["board_in"]
 
 Picture = npt.NDArray[np.uint8]
 

@@ -4,12 +4,8 @@ By the rules `row`, three in a row win. By the rules `corners` the board is fill
 corner and a cell beside it has a point for each such pair; more points win.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Literal
-
-__all__ = ["EMPTY_BOARD", "Rules", "best_moves", "empty_cells", "is_over", "marked", "winner"]
 
 Rules = Literal["row", "corners"]
 

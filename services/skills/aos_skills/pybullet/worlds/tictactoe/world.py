@@ -1,7 +1,5 @@
 """The Panda, its board, and who plays against it."""
 
-from __future__ import annotations
-
 import random
 from typing import Any
 
@@ -19,8 +17,6 @@ from aos_skills.pybullet.worlds.tictactoe.file import TicTacToeFile
 from aos_skills.pybullet.worlds.tictactoe.opponents import opponent
 from aos_skills.pybullet.worlds.tictactoe.person import PersonAtTerminal
 from aos_skills.pybullet.worlds.tictactoe.rules import EMPTY_BOARD, empty_cells, is_over, marked, winner
-
-__all__ = ["TicTacToe"]
 
 CAMERA_M = (1.05, 0.0, 0.55)
 PICTURE_SIZE = (480, 360)

@@ -1,7 +1,5 @@
 """Navigate: plan a way on the map, follow it, and plan again around what the lidar sees and the map lacks."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -11,8 +9,6 @@ import numpy.typing as npt
 from aos_skills.pybullet.parts.follower import Following, follow
 from aos_skills.pybullet.parts.route import Point
 from aos_skills.pybullet.worlds.turtlebot.world import Turtlebot
-
-__all__ = ["navigate"]
 
 MAX_PLANS = 12
 UNMAPPED_M = 0.12

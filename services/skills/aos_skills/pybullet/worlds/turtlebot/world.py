@@ -1,7 +1,5 @@
 """The TurtleBot in its arena: walls, obstacles, crates, and what it knows of them."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from typing import Any
@@ -16,8 +14,6 @@ from aos_skills.pybullet.parts.scene import Scene, Vector
 from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.turtlebot3 import TurtleBot3
 from aos_skills.pybullet.worlds.turtlebot.file import TurtlebotFile
-
-__all__ = ["Turtlebot"]
 
 WALL_HALF_M = 0.03
 HEIGHT_HALF_M = 0.12
