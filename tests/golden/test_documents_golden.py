@@ -4,8 +4,6 @@ Each folder in `documents` lies over `documents/base`: its files replace or join
 file REMOVED are taken away. `AOS_PROMOTE=1 pytest tests/golden` takes what is said now as what is expected.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

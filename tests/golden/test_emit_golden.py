@@ -1,7 +1,5 @@
 """The emitted C++ of our own bundles, byte for byte. `make promote` accepts it as it is now."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 `AOS_PROMOTE=1 pytest tests/golden` takes what is generated now as what is expected.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -35,7 +35,7 @@ def test_scripts_are_small_when_compressed(root: Path) -> None:
 
 
 def test_licences_of_what_is_bundled_come_along(root: Path) -> None:
-    text = (root / MADE / "licences.txt").read_text()
+    text = files_in(root / MADE)["licences.txt.gz"].decode()
     for library in ("preact", "htm", "@preact/signals"):
         assert f"\n{library} " in f"\n{text}"
 
@@ -61,7 +61,7 @@ def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path: Path
     assert other == [], "run `make page`, and commit what it makes"
 
 
-@pytest.mark.parametrize("name", ["page.js", "page.css", "index.html"])
+@pytest.mark.parametrize("name", ["page.js", "page.css", "licences.txt", "index.html"])
 def test_a_browser_gets_a_file_as_it_understands_it(name: str, root: Path) -> None:
     files = files_in(root / MADE)
     (route,) = (each for each in page_routes() if each.path == ("/" if name == "index.html" else f"/{name}"))

@@ -14,7 +14,6 @@ from aos_gateway.feed import Frame, Watches, frame_of_record, frame_of_state
 from aos_gateway.runs import Run, RunShelf
 from aos_gateway.trace import Steps
 
-EVENT_STREAM = "text/event-stream"
 _BEAT_S = 10.0
 _LIST_S = 1.0
 _LISTED = 50

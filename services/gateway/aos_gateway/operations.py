@@ -21,6 +21,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, GatewayError
 
 JSON = "application/json"
+EVENT_STREAM = "text/event-stream"
 SVG = "image/svg+xml"
 _COMPRESSED_FROM_BYTES = 1024
 _LEVEL = 5
@@ -94,7 +95,7 @@ def route_of(one: Operation, gateway: Gateway) -> Route:
                 given["body"] = _decoded(await _body(request, gateway.max_body_bytes), one.body)
             elif one.upload:
                 given["body"] = await _body(request, gateway.max_body_bytes)
-            if one.media == "text/event-stream":
+            if one.media == EVENT_STREAM:
                 given["last_event_id"] = request.headers.get("last-event-id", "")
             result = await one.do(gateway, **given)
         except _TooLargeError as error:

@@ -1,7 +1,7 @@
 """All operations of the gateway, in the order of the documentation."""
 
 from aos_gateway import documents, reading, run_files, study, writing
-from aos_gateway.operations import Operation, operation
+from aos_gateway.operations import EVENT_STREAM, Operation, operation
 from aos_gateway.state_picture import state_picture
 
 _ARCHIVE = "an archive of documents, or one document"
@@ -35,5 +35,5 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/missions/{mission}/decisions/{step}/tree", study.tree),
     operation("GET", "/v1/missions/{mission}/decisions/{step}/picture", state_picture, media="image/svg+xml"),
     operation("POST", "/v1/missions/{mission}/decisions/{step}/whatif", study.what_if),
-    operation("GET", "/v1/events", reading.events, media="text/event-stream", gives=None),
+    operation("GET", "/v1/events", reading.events, media=EVENT_STREAM, gives=None),
 )

@@ -1,5 +1,5 @@
-// Makes the page: node build.mjs [FOLDER]. Without a folder it goes to where `aos serve` finds it. Script and styles are
-// compressed, as browsers get them.
+// Makes the page: node build.mjs [FOLDER]. Without a folder it goes to where `aos serve` finds it. Script, styles and the
+// libraries' licences are compressed, as browsers get them.
 import { build } from "esbuild";
 import { copyFile, mkdir, readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
@@ -22,8 +22,9 @@ const script = await build({
   legalComments: "none",
 });
 const styles = await build({ ...common, entryPoints: { page: "src/page.css" } });
+const compress = (path, contents) => writeFile(`${path}.gz`, gzipSync(contents, { level: 9 }));
 for (const { path, contents } of [...script.outputFiles, ...styles.outputFiles]) {
-  await writeFile(`${path}.gz`, gzipSync(contents, { level: 9 }));
+  await compress(path, contents);
 }
 await copyFile(join(here, "src/index.html"), join(folder, "index.html"));
 await copyFile(join(here, "src/icon.svg"), join(folder, "icon.svg"));
@@ -34,4 +35,4 @@ for (const name of libraries) {
   const { version } = JSON.parse(await readFile(join(place, "package.json"), "utf8"));
   licences.push(`${name} ${version}\n\n${(await readFile(join(place, "LICENSE"), "utf8")).trim()}\n`);
 }
-await writeFile(join(folder, "licences.txt"), licences.join(`\n${"-".repeat(72)}\n\n`));
+await compress(join(folder, "licences.txt"), licences.join(`\n${"-".repeat(72)}\n\n`));
