@@ -7,7 +7,8 @@ import msgspec
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_protocol.messages import DecisionRecord, DriftTest, DriftTests
-from aos_solver.mission.drift import DRIFT, after_use
+from aos_protocol.mission_rows import DECISION, DRIFT
+from aos_solver.mission.drift import after_use
 
 
 class ModelTests(msgspec.Struct):
@@ -41,7 +42,7 @@ def _fold(models: dict[str, ModelTests], mission: KeptMission) -> None:
     for row in mission.rows():
         if row.kind == DRIFT:
             _begin(models, row.read_as(DriftTests))
-        if row.kind != "decision":
+        if row.kind != DECISION:
             continue
         record = row.read_as(DecisionRecord)
         if record.outcome is None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from aos_deploy.verdict import Account, Verdict, message_of_row
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import MissionBegun
+from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.journal import Journal
 
 _JOURNAL = "journal.db"
@@ -29,7 +30,7 @@ def beginning_of(run: Path) -> MissionBegun | None:
         return None
     try:
         with Journal.read(path) as journal:
-            row = next(journal.walk("begun"), None)
+            row = next(journal.walk(BEGUN), None)
             return None if row is None else row.read_as(MissionBegun)
     except StorageError:
         return None
@@ -61,7 +62,7 @@ def settled(
         account.take(stopped)
         try:
             with Journal.open(run / _JOURNAL) as journal:
-                journal.append("mission", stopped)
+                journal.append(STATE, stopped)
         except StorageError as error:
             lacking = lacking or error
     return account.verdict(), lacking

@@ -15,6 +15,7 @@ from aos_deploy.supervisor import Supervisor
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol.errors import AosError, MissionRunsError, StorageError
 from aos_protocol.messages import MissionEntry, MissionState, StartMission
+from aos_protocol.mission_rows import DECISION
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import make_folder_of_missions, mission_folder
 from aos_solver.mission.logbook import JOURNAL, entries_of, entry_of
@@ -129,7 +130,7 @@ class SystemRun(MissionRun):
 def _durations(journal: Path, begun_ns: int) -> dict[str, float | None]:
     """Returns the seconds to the first decision, and to the last row of a mission's journal."""
     with Journal.read(journal) as rows:
-        first = next(rows.walk("decision"), None)
+        first = next(rows.walk(DECISION), None)
         last = next(rows.walk(since=rows.last), None)
     first_s = None if first is None else round((first.stamp_ns - begun_ns) / 1e9, 3)
     duration_s = 0.0 if last is None else round((last.stamp_ns - begun_ns) / 1e9, 3)

@@ -11,13 +11,8 @@ import msgspec
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionState
+from aos_protocol.mission_rows import DECISION, STATE
 from aos_runtime.journal import JournalRow
-
-MISSION_KINDS: dict[str, type[DecisionRecord] | type[MissionState]] = {
-    "decision": DecisionRecord,
-    "mission": MissionState,
-}
-"""The kinds of the journal's rows that tell how a mission went, with what they hold."""
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -112,5 +107,6 @@ class Account:
 
 def message_of_row(row: JournalRow) -> DecisionRecord | MissionState | None:
     """The decision or state in a row, None in those of other kinds; StorageError AOS702 if it is damaged."""
-    kind = MISSION_KINDS.get(row.kind)
-    return None if kind is None else row.read_as(kind)
+    if row.kind == DECISION:
+        return row.read_as(DecisionRecord)
+    return row.read_as(MissionState) if row.kind == STATE else None

@@ -10,13 +10,13 @@ from scripted_missions import Surroundings, breaking
 
 from aos_deploy.history_check.replayed import Replay, replayed
 from aos_protocol.messages import DecisionRecord, Message, MissionBegun, ModelAdopted
+from aos_protocol.mission_rows import BEGUN
 from aos_registry.catalogue import Catalogue
 from aos_runtime.journal import Journal
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.settings import Settings

@@ -13,6 +13,7 @@ from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionBegun, ModelAdopted, Outcome
+from aos_protocol.mission_rows import BEGUN
 from aos_registry.catalogue import Catalogue
 from aos_runtime.clock import SystemClock
 from aos_runtime.journal import Journal, JournalRow
@@ -21,7 +22,7 @@ from aos_solver.child.search import Search
 from aos_solver.earlier_models import earlier_models
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.memory import MissionMemory, folded
 from aos_solver.mission.past import Past
 from aos_solver.mission.stretches import Stretch, after, models_before
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover

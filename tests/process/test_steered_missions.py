@@ -17,6 +17,7 @@ from aos_deploy.views.lines import decision_line
 from aos_language.load import load_bundle
 from aos_protocol.errors import SteeringError
 from aos_protocol.messages import Activate, MissionBegun, MissionState, Outcome, Steer
+from aos_protocol.mission_rows import BEGUN
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
@@ -25,7 +26,7 @@ from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, SkillRule
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.memory import MissionMemory, folded
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 

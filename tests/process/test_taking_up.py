@@ -16,13 +16,14 @@ from aos_protocol.messages import (
     MissionState,
     Outcome,
 )
+from aos_protocol.mission_rows import BEGUN
 from aos_runtime.journal import JournalRow
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, SkillRule
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.memory import MissionMemory, folded
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 

@@ -13,6 +13,7 @@ from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Activate, Message, MissionBegun, MissionState, Outcome
+from aos_protocol.mission_rows import BEGUN
 from aos_runtime.clock import SystemClock
 from aos_runtime.journal import JournalRow
 from aos_solver.building.project_build import build_project
@@ -20,7 +21,6 @@ from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN
 from aos_solver.mission.past import Past
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover

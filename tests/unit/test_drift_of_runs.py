@@ -12,8 +12,9 @@ from aos_deploy.drift_of_runs import drift_of_runs
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_record import RunRecord
 from aos_protocol.messages import ActivationId, Outcome, PredictedObservation
+from aos_protocol.mission_rows import DRIFT
 from aos_runtime.journal import Journal
-from aos_solver.mission.drift import DRIFT, begun
+from aos_solver.mission.drift import begun
 
 PREDICTED = (PredictedObservation("pressed", 0.9), PredictedObservation("stuck", 0.1))
 

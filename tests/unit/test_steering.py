@@ -9,12 +9,13 @@ from decision_records import decision_record
 
 from aos_protocol.errors import SteeringError
 from aos_protocol.messages import ActionRefused, ActivationId, Message, MissionState, Outcome, Steer
+from aos_protocol.mission_rows import REFUSED, STEERED
 from aos_runtime.journal import JournalRow
 from aos_solver.child.answers import EngineDescription, GroundedAction
 from aos_solver.mission.helm import Helm
 from aos_solver.mission.memory import folded
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.steering import REFUSED, STEERED, Steering
+from aos_solver.mission.steering import Steering
 
 MODEL = EngineDescription(
     "p",

@@ -2,34 +2,12 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from aos_protocol.messages import (
-    ActionRefused,
-    Activate,
-    DecisionRecord,
-    DriftTests,
-    MissionBegun,
-    MissionState,
-    ModelAdopted,
-    Outcome,
-    Steer,
-)
+from aos_protocol.messages import DecisionRecord
+from aos_protocol.mission_rows import DECISION
 from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import mission_folders, mission_name
-
-KINDS: dict[str, type[Any]] = {
-    "begun": MissionBegun,
-    "decision": DecisionRecord,
-    "intended": Activate,
-    "outcome": Outcome,
-    "mission": MissionState,
-    "adopted": ModelAdopted,
-    "steered": Steer,
-    "refused": ActionRefused,
-    "drift": DriftTests,
-}
-"""The kinds of a journal's rows whose messages have a type; others are exported as they are."""
 
 
 class KeptMission(NamedTuple):
@@ -46,7 +24,7 @@ class KeptMission(NamedTuple):
     def decisions(self) -> Iterator[DecisionRecord]:
         """The decision records in their order; StorageError AOS702 at a row that is damaged."""
         with Journal.read(self.journal) as journal:
-            for row in journal.walk("decision"):
+            for row in journal.walk(DECISION):
                 yield row.read_as(DecisionRecord)
 
 

@@ -14,12 +14,13 @@ from typing import Any
 
 from mcap.writer import Writer
 
-from aos_deploy.export.kept_missions import KINDS, KeptMission, kept_missions
+from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_deploy.export.pictures import Picture, pictures_of
 from aos_deploy.export.plain_schema import plain_schema, without_nulls
 from aos_deploy.export.plotted import BELIEF, VALUES, belief_of, merged_schema, values_of
 from aos_protocol import __version__
 from aos_protocol.messages import DecisionRecord
+from aos_protocol.mission_rows import MESSAGES
 from aos_runtime.journal import JournalRow
 
 PICTURE = "/aos/picture"
@@ -74,7 +75,7 @@ class _File:
 
     def add_row(self, row: JournalRow) -> None:
         """A row of a journal, and what is plotted of it."""
-        kind = KINDS.get(row.kind)
+        kind = MESSAGES.get(row.kind)
         schema = {"type": "object"} if kind is None else plain_schema(kind)
         name = "aos.Row" if kind is None else f"aos.{kind.__name__}"
         content = without_nulls(row.read_as(dict[str, Any]))

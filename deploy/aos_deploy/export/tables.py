@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_protocol.messages import QUANTILES, BeliefSummary, DecisionRecord
+from aos_protocol.mission_rows import STATE
 
 _KEY = {"run": str, "mission": str, "step": int}
 
@@ -97,7 +98,7 @@ def _ending(mission: KeptMission) -> dict[str, Any]:
     for row in mission.rows():
         ending.setdefault("first_ns", row.stamp_ns)
         ending["last_ns"] = row.stamp_ns
-        if row.kind == "mission":
+        if row.kind == STATE:
             state = json.loads(row.payload)
             ending |= {
                 "ending": state.get("ending", ""),

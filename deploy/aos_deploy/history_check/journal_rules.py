@@ -20,20 +20,11 @@ from aos_protocol.messages import (
     Outcome,
     Steer,
 )
+from aos_protocol.mission_rows import DRIFT, MESSAGES
 from aos_runtime.fence import meaning
 from aos_runtime.journal import JournalRow
-from aos_solver.mission.steering import REFUSED, STEERED
 
-KINDS: dict[str, type[Any]] = {
-    "begun": MissionBegun,
-    "adopted": ModelAdopted,
-    "decision": DecisionRecord,
-    "mission": MissionState,
-    "intended": Activate,
-    "outcome": Outcome,
-    STEERED: Steer,
-    REFUSED: ActionRefused,
-}
+KINDS = {kind: message for kind, message in MESSAGES.items() if kind != DRIFT}
 """The kinds of rows that the rules are about."""
 
 Found = Callable[[str, str], None]

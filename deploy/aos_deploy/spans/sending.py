@@ -14,6 +14,7 @@ from aos_deploy.spans.otlp import Collector
 from aos_deploy.spans.spans import Span, span_of_mission, spans_of_record
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.messages import DecisionRecord, MissionState
+from aos_protocol.mission_rows import DECISION, STATE
 from aos_runtime.journal import Journal, JournalRow
 
 _BATCH = 500
@@ -74,9 +75,9 @@ class Sender:
 
 
 def _spans_of_row(row: JournalRow, begun_ns: int) -> Iterator[Span]:
-    if row.kind == "decision":
+    if row.kind == DECISION:
         yield from spans_of_record(row.read_as(DecisionRecord))
-    elif row.kind == "mission":
+    elif row.kind == STATE:
         state = row.read_as(MissionState)
         if state.phase == "ended":
             yield span_of_mission(state, begun_ns, row.stamp_ns)

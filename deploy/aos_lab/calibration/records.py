@@ -13,6 +13,7 @@ from aos_lab.trials.trial import Trial
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
+from aos_protocol.mission_rows import DECISION
 from aos_runtime.journal import Journal
 
 _TRUTHS = ("world.jsonl", "model.jsonl")
@@ -102,7 +103,7 @@ def _of_run(run: Path) -> RecordedMission:
         return RecordedMission(name, (), "the mission did not begin with the initial belief")
     journal = Journal.read(run / "journal.db")
     try:
-        rows = [row.read_as(DecisionRecord) for row in journal.rows("decision")]
+        rows = [row.read_as(DecisionRecord) for row in journal.rows(DECISION)]
     finally:
         journal.close()
     recorded: list[tuple[str, str, dict[str, Any]]] = []

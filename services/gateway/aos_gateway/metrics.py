@@ -16,6 +16,7 @@ from aos_gateway.metric_families import Families
 from aos_gateway.runs import KeptRun, Run, RunEntry, RunShelf
 from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
+from aos_protocol.mission_rows import STATE
 from aos_runtime.journal import Journal
 from aos_solver.mission.logbook import JOURNAL
 
@@ -122,7 +123,7 @@ class Metrics:
         if not journal.exists():
             return
         with Journal.read(journal) as rows:
-            for row in rows.walk("mission", place.next_row):
+            for row in rows.walk(STATE, place.next_row):
                 place.next_row = row.seq + 1
                 state = row.read_as(MissionState)
                 is_holding = state.phase == "holding"

@@ -18,6 +18,7 @@ from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
 from aos_protocol.errors import AosError, DeployError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
+from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder, mission_folders, number_in, number_of
@@ -197,7 +198,7 @@ class KeptRun(Run):
         if not journal.exists():
             return None
         with Journal.read(journal) as rows:
-            last = next(iter(rows.rows("mission")[-1:]), None)
+            last = next(iter(rows.rows(STATE)[-1:]), None)
         message = message_of_row(last) if last is not None else None
         return message if isinstance(message, MissionState) else None
 
@@ -209,7 +210,7 @@ class KeptRun(Run):
         if not journal.exists():
             return {}
         with Journal.read(journal) as rows:
-            last = next(iter(rows.rows("begun")[-1:]), None)
+            last = next(iter(rows.rows(BEGUN)[-1:]), None)
         return {} if last is None else last.read_as(MissionBegun).mission_parameters
 
     def folder(self, mission: str) -> Path:

@@ -10,6 +10,7 @@ import msgspec
 
 from aos_protocol.errors import AosError, MissionRunsError
 from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartMission
+from aos_protocol.mission_rows import BEGUN
 from aos_runtime.registry_watch import RegistryWatch
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.search import Search
@@ -19,7 +20,7 @@ from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.logbook import Logbook, Logbooks
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN, MissionMemory
+from aos_solver.mission.memory import MissionMemory
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Past
 from aos_solver.mission.retracing import Earlier

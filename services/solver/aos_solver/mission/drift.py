@@ -14,9 +14,6 @@ import msgspec
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, DriftTest, DriftTests, ModelDrift
 
-DRIFT = "drift"
-"""The kind of the journal's row with which the tests of a model begin, or go over to another mission."""
-
 FALSE_ALARMS = 0.01
 """The probability, at most, that any test ever alarms where the model is right, all skills together."""
 

@@ -9,6 +9,7 @@ import msgspec
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery
+from aos_protocol.mission_rows import DECISION
 from aos_runtime.journal import Journal, JournalRow
 
 PAGE_BYTES = 2**20
@@ -86,9 +87,9 @@ def _rows_since(journal: Journal, sequence: int) -> Iterator[JournalRow]:
     low, high = 1, journal.last + 1
     while low < high:
         middle = (low + high) // 2
-        row = next(journal.walk("decision", middle), None)
+        row = next(journal.walk(DECISION, middle), None)
         if row is None or row.read_as(_Numbered).sequence >= sequence:
             high = middle
         else:
             low = row.seq + 1
-    return journal.walk("decision", low)
+    return journal.walk(DECISION, low)

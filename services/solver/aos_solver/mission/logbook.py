@@ -6,6 +6,7 @@ import msgspec
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Message, MissionBegun, MissionEntry, MissionState, StartMission
+from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import (
     make_mission_folder,
@@ -14,7 +15,7 @@ from aos_runtime.mission_folders import (
     mission_name,
     number_in,
 )
-from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.memory import MissionMemory, folded
 
 JOURNAL = "journal.db"
 
@@ -150,7 +151,7 @@ def _entry(path: Path, number: int) -> list[MissionEntry]:
         return []
     with Journal.read(path) as journal:
         first = next(journal.walk(BEGUN), None)
-        states = journal.rows("mission")
+        states = journal.rows(STATE)
     if first is None:
         return []
     begun = first.read_as(MissionBegun)

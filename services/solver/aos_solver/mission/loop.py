@@ -21,11 +21,12 @@ from aos_protocol.messages import (
     Outcome,
     Steer,
 )
+from aos_protocol.mission_rows import ADOPTED, DRIFT, INTENDED, OUTCOME
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
 from aos_solver.mission.choosing import Choice, Chooser, Ended, Held, Refused
-from aos_solver.mission.drift import DRIFT, after_use, drifts
+from aos_solver.mission.drift import after_use, drifts
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.helm import Helm
@@ -250,7 +251,7 @@ class Mission:
         if takeover.model.digest != before.digest:
             self._terms = msgspec.structs.replace(self._terms, search=self._terms.search.after_takeover())
             self._chooser.search = self._terms.search
-        self._ports.journal("adopted", takeover.row)
+        self._ports.journal(ADOPTED, takeover.row)
         if takeover.model.digest != before.digest:
             self.drift = takeover.model.drift_tests()
             self._ports.journal(DRIFT, self.drift)
@@ -327,9 +328,9 @@ class Mission:
             request = msgspec.structs.replace(intention, epoch=self._terms.epoch)
         else:
             request = self._request(decision)
-        self._ports.journal("intended", request)
+        self._ports.journal(INTENDED, request)
         outcome = await self._ports.activate(request, decision.action)
-        self._ports.journal("outcome", outcome)
+        self._ports.journal(OUTCOME, outcome)
         return outcome
 
     def _request(self, decision: DecisionRecord) -> Activate:

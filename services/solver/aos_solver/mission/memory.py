@@ -21,26 +21,11 @@ from aos_protocol.messages import (
     Outcome,
     Steer,
 )
+from aos_protocol.mission_rows import MESSAGES
 from aos_runtime.journal import JournalRow
-from aos_solver.mission.drift import DRIFT, after_use
-from aos_solver.mission.steering import LIFTS, REFUSED, STEERED, Steering
+from aos_solver.mission.drift import after_use
+from aos_solver.mission.steering import LIFTS, Steering
 from aos_solver.mission.stretches import Stretch, after
-
-BEGUN = "begun"
-"""The kind of the row with which each solver begins, or takes up, a mission."""
-
-_KINDS: dict[str, type[Any]] = {
-    BEGUN: MissionBegun,
-    "adopted": ModelAdopted,
-    "decision": DecisionRecord,
-    "intended": Activate,
-    "outcome": Outcome,
-    "mission": MissionState,
-    STEERED: Steer,
-    REFUSED: ActionRefused,
-    DRIFT: DriftTests,
-}
-
 
 _NO_BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 0, False)
 
@@ -107,9 +92,9 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     drift: DriftTests | None = None
     stretches: tuple[Stretch, ...] = ()
     for row in rows:
-        if row.kind not in _KINDS:
+        if row.kind not in MESSAGES:
             continue
-        said: Any = row.read_as(_KINDS[row.kind])
+        said: Any = row.read_as(MESSAGES[row.kind])
         steering = _steered(steering, said, state)
         if isinstance(said, MissionBegun | ModelAdopted):
             stretches = after(stretches, said, len(steps))

@@ -13,6 +13,7 @@ from aos_protocol.messages import (
     ModelDrift,
     Outcome,
 )
+from aos_protocol.mission_rows import DECISION, STATE
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.choosing import Choice
 from aos_solver.mission.drift import text_of
@@ -138,7 +139,7 @@ class Reports:
         )
 
     def _publish(self, record: DecisionRecord) -> None:
-        self._ports.journal("decision", record)
+        self._ports.journal(DECISION, record)
         self._sequence = record.sequence + 1
         self._goal_probability = record.belief.goal_probability
         self._ports.publish_record(record)
@@ -153,7 +154,7 @@ class Reports:
             asked=() if is_over else tuple(asked.action for asked in steering.queue),
             **changes,
         )
-        self._ports.journal("mission", self.state)
+        self._ports.journal(STATE, self.state)
         self._ports.publish_state(self.state)
 
 

@@ -11,12 +11,6 @@ import msgspec
 
 from aos_protocol.messages import ActionRefused, DecisionRecord, Steer
 
-STEERED = "steered"
-"""The kind of the row with which somebody steers."""
-
-REFUSED = "refused"
-"""The kind of the row for an action that was asked for and is not carried out."""
-
 LIFTS = frozenset({"step", "resume", "act", "script"})
 """The verbs of somebody who has looked after what a mission holds for."""
 

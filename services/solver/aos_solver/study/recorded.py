@@ -7,9 +7,9 @@ import msgspec
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import BeliefRow, DecisionRecord, MissionBegun, ModelAdopted
+from aos_protocol.mission_rows import ADOPTED, BEGUN, DECISION
 from aos_runtime.journal import JournalRow
 from aos_solver.mission.belief_rows import BELIEF
-from aos_solver.mission.memory import BEGUN
 
 Event = MissionBegun | ModelAdopted | DecisionRecord | BeliefRow
 
@@ -17,8 +17,8 @@ M = TypeVar("M", MissionBegun, ModelAdopted, DecisionRecord, BeliefRow)
 
 _KINDS: dict[str, type[Any]] = {
     BEGUN: MissionBegun,
-    "adopted": ModelAdopted,
-    "decision": DecisionRecord,
+    ADOPTED: ModelAdopted,
+    DECISION: DecisionRecord,
     BELIEF: BeliefRow,
 }
 
