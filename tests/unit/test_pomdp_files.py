@@ -85,6 +85,14 @@ def test_a_row_for_all_changes_where_a_later_line_says_so(tmp_path: Path) -> Non
     np.testing.assert_allclose(np.concatenate([chances for _, chances in rows]), [0.6, 0.4, 1, 0.3, 0.7, 1])
 
 
+def test_the_only_state_may_be_named_as_the_start(tmp_path: Path) -> None:
+    file = tmp_path / "one.pomdp"
+    for start in ("here", "1", "uniform"):
+        text = f"discount: 0.5\nstates: here\nactions: 1\nobservations: 1\nstart: {start}\n"
+        file.write_text(f"{text}T: * identity\nO: * uniform\n")
+        assert list(read_problem(file).start_distribution()) == [1.0]
+
+
 def test_a_short_file_of_a_model_that_is_too_large_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "dense.pomdp"
     file.write_text("discount: 0.9\nstates: 3000\nactions: 4\nobservations: 1\nT: * uniform\nO: * uniform\n")

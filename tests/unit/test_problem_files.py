@@ -71,6 +71,37 @@ def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path) 
     np.testing.assert_allclose(model.rewards[2:4, 2], [-10, 10])
 
 
+def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Path) -> None:
+    """Also where an edge has named that value, and beside a parent that has the same values."""
+    text = (problems / "rover.pomdpx").read_text()
+    kept = '<SubDAG type="persistent" var="{}"/>'
+    diagram = f'<Parameter type="DD"><DAG>{kept.format("twin_1")}</DAG></Parameter>'
+    start = "<Parameter><Entry><Instance>*</Instance><ProbTable>uniform</ProbTable></Entry></Parameter>"
+    parts = {
+        '<SubDAG type="deterministic" var="place_1" val="away"/></Edge>\n            </Node>': (
+            f"{kept.format('place_1')}</Edge></Node>"
+        ),
+        "<ObsVar": '<StateVar vnamePrev="twin_0" vnameCurr="twin_1">'
+        "<ValueEnum>home rock away</ValueEnum></StateVar><ObsVar",
+        "</InitialStateBelief>": f"<CondProb><Var>twin_0</Var><Parent>null</Parent>{start}</CondProb>"
+        "</InitialStateBelief>",
+        "</StateTransitionFunction>": "<CondProb><Var>twin_1</Var><Parent>place_0 twin_0</Parent>"
+        f"{diagram}</CondProb></StateTransitionFunction>",
+    }
+    for old, new in parts.items():
+        text = replaced(old, new)(text)
+    (tmp_path / "twin.pomdpx").write_text(text)
+    model, plain = read_problem(tmp_path / "twin.pomdpx"), read_problem(problems / "rover.pomdpx")
+    twins = [state.rsplit(",", 1) for state in model.states]
+    for row in range(len(model.outcomes)):
+        state, action = divmod(row, model.size.actions)
+        after, chances = model.outcomes.row(row)
+        assert {twins[each][1] for each in after} == {twins[state][1]}
+        there, expected = plain.outcomes.row(plain.states.index(twins[state][0]) * model.size.actions + action)
+        assert [twins[each][0] for each in after] == [plain.states[each] for each in there]
+        np.testing.assert_allclose(chances, expected)
+
+
 @pytest.mark.parametrize("name", ["tiger.pomdp", "costs.pomdp", "rover.pomdpx"])
 def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, name: str) -> None:
     model = read_problem(problems / name)

@@ -22,11 +22,15 @@ Outcomes = tuple[Integers, Integers, Floats]
 
 
 class Variable(msgspec.Struct, frozen=True, dict=True):
-    """A variable with its values: a state before or after the step, an action, an observation."""
+    """A variable with its values: a state before or after the step, an action, an observation.
+
+    That of a state after the step names the `earlier` one.
+    """
 
     name: str
     values: tuple[str, ...]
     line: int = 0
+    earlier: str = ""
 
     @cached_property
     def numbers(self) -> dict[str, int]:

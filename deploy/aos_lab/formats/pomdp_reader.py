@@ -136,7 +136,7 @@ class _Reader:
                 self._error("AOS122", "no state is left to start in", statement.keyword)
         elif len(words) == 1 and words[0].text == "uniform":
             self._start = self._uniform("states")
-        elif len(words) == 1 and len(self._names["states"]) > 1:
+        elif len(words) == 1 and (len(self._names["states"]) > 1 or words[0].text in self._names["states"]):
             self._start = dict.fromkeys(self._some("states", words[0]), 1.0)
         else:
             row = self._distribution("states", words, statement)

@@ -96,8 +96,8 @@ class _Reader:
             self._findings.error("AOS105", message, element.line, element.column)
         values = self._values(element, "s")
         is_seen = element.attributes.get("fullyObs", "false").strip().lower() == "true"
-        before, after = (Variable(name, values, element.line) for name in names)
-        return StateVariable(before, after, is_seen)
+        before = Variable(names[0], values, element.line)
+        return StateVariable(before, Variable(names[1], values, element.line, names[0]), is_seen)
 
     def _plain(self, element: Element, letter: str) -> Variable:
         return Variable(self._name_of(element), self._values(element, letter), element.line)

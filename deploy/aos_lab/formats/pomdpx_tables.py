@@ -150,7 +150,7 @@ class _Diagram:
             return
         for edge in element.all("Edge"):
             word = Word(edge.attributes.get("val", ""), edge.line, edge.column)
-            value = _choice(word, self._table.variables[place], self._findings)
+            value = max(_choice(word, self._table.variables[place], self._findings), ANY)
             yield from self._ways(edge, {**chosen, place: value}, depth + 1)
 
     def _sub_diagram(
@@ -173,13 +173,18 @@ class _Diagram:
             word = Word(element.attributes.get("val", ""), element.line, element.column)
             yield {**chosen, own: _choice(word, self._table.variables[own], self._findings)}, 1.0
         elif kind == "persistent":
-            before = [v for v in self._table.variables[:-1] if v.values == values]
+            parents = self._table.variables[:-1]
+            before = [v for v in parents if v.name == self._table.variables[own].earlier] or [
+                v for v in parents if v.values == values
+            ]
             if len(before) != 1:
                 message = "persistent needs one parent with the same values"
                 self._findings.error("AOS106", message, element.line, element.column)
                 return
             place = self._places[before[0].name]
-            for value, after in itertools.product(range(len(values)), repeat=2):
+            known = chosen.get(place, ANY)
+            ways = range(len(values)) if known == ANY else (known,)
+            for value, after in itertools.product(ways, range(len(values))):
                 yield {**chosen, place: value, own: after}, float(value == after)
         else:
             self._findings.error("AOS106", f"{kind} is no type of SubDAG", element.line, element.column)
