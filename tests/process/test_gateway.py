@@ -242,6 +242,7 @@ def test_strangers_are_refused(past: tuple[Gateway, str]) -> None:
         (401, "AOS903"),
         (401, "AOS903"),
     ]
+    assert refusals[-1].headers["www-authenticate"] == "Bearer"
 
 
 def test_openapi_describes_every_operation_with_schemas_that_are_there(past: tuple[Gateway, str]) -> None:

@@ -5,9 +5,10 @@ from contextlib import aclosing
 from types import SimpleNamespace
 from typing import Any, cast
 
+import pytest
 from decision_records import decision_record
 
-from aos_gateway.events import stream
+from aos_gateway.events import place_of, stream
 from aos_gateway.feed import Watches
 from aos_gateway.runs import Run, RunShelf
 from aos_protocol.messages import History
@@ -37,3 +38,9 @@ async def test_others_have_their_turn_while_a_long_past_is_told() -> None:
                     break
         other.cancel()
     assert turns >= RECORDS - 2
+
+
+@pytest.mark.parametrize("text", ["", "7", ":7", "m:", "m:-1", "m:1e3", "m:\u0667", "m:" + "9" * 5000])
+def test_what_is_no_id_of_an_event_begins_with_the_first(text: str) -> None:
+    assert place_of("a:b:7") == ("a:b", 7)
+    assert place_of(text) == ("", 0)

@@ -97,7 +97,9 @@ def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Pat
         state, action = divmod(row, model.size.actions)
         after, chances = model.outcomes.row(row)
         assert {twins[each][1] for each in after} == {twins[state][1]}
-        there, expected = plain.outcomes.row(plain.states.index(twins[state][0]) * model.size.actions + action)
+        there, expected = plain.outcomes.row(
+            plain.states.index(twins[state][0]) * model.size.actions + action
+        )
         assert [twins[each][0] for each in after] == [plain.states[each] for each in there]
         np.testing.assert_allclose(chances, expected)
 

@@ -28,9 +28,9 @@ _HEADERS = {
 }
 
 _METRICS = "/metrics"
+"""The place at which Prometheus looks."""
 _COOKIE_S = 400 * 86400
 """Browsers keep a cookie no longer. The page keeps the token for ever."""
-"""The place at which Prometheus looks."""
 
 
 def make_app(gateway: Gateway, access: Access) -> ASGIApp:

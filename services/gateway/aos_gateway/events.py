@@ -17,12 +17,14 @@ from aos_gateway.trace import Steps
 _BEAT_S = 10.0
 _LIST_S = 1.0
 _LISTED = 50
+_MOST_DIGITS = 16
 
 
 def place_of(event_id: str) -> tuple[str, int]:
     """The mission and the next sequence number in an event's id; nothing and 0 in any other text."""
     mission, _, number = event_id.rpartition(":")
-    return (mission, int(number)) if mission and number.isascii() and number.isdigit() else ("", 0)
+    is_number = number.isascii() and number.isdigit() and len(number) <= _MOST_DIGITS
+    return (mission, int(number)) if mission and is_number else ("", 0)
 
 
 async def stream(

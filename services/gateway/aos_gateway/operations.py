@@ -110,7 +110,8 @@ def route_of(one: Operation, gateway: Gateway) -> Route:
 def response_of(error: AosError, **more: Any) -> Response:
     """The error as problem details."""
     problem = problem_of(error, **more)
-    return Response(msgspec.json.encode(problem), problem.status, media_type=PROBLEM_TYPE)
+    headers = {"www-authenticate": "Bearer"} if problem.status == HTTPStatus.UNAUTHORIZED else None
+    return Response(msgspec.json.encode(problem), problem.status, headers, PROBLEM_TYPE)
 
 
 def _response(result: Any, one: Operation, *, accepts_gzip: bool) -> Response:
