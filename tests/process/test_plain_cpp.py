@@ -80,6 +80,11 @@ CODE = {
         "if (x == 2) throw 1; } catch (...) { x = 9; } __reward = x;",
         5,
     ),
+    "method": (
+        "struct Half { static int of(int n) { return n / 2; } }; static int const four = 4;"
+        "__reward = Half::of(7) * four;",
+        12,
+    ),
     "headers": (
         "std::any value = 3; std::forward_list<int> list{1, 2}; std::vector<int> sums(3);"
         "std::inclusive_scan(state.row.begin(), state.row.end(), sums.begin());"

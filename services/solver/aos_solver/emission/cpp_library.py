@@ -70,7 +70,9 @@ _UNREPEATABLE = frozenset({
     "srandom", "time", "uniform_int_distribution", "uniform_real_distribution",
 })  # fmt: skip
 _CHANGING_STATIC = re.compile(
-    r"(?<!\bconst )(?<!\bconstexpr )\b(?:static|thread_local)\b(?!\s+(?:const|constexpr)\b)(?!_)"
+    r"(?<!\bconst )(?<!\bconstexpr )\b(?:static|thread_local)\b"
+    r"(?!\s+(?:[\w:<>,]+\s+){0,3}?(?:const|constexpr)\b)"  # a constant
+    r"(?!\s[\w:<>,*&\s]+\([^()]*\)\s*(?:const\s*|noexcept\s*)*(?:->[^;{}]*)?\{)"  # a function
 )
 
 
