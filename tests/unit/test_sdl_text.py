@@ -67,6 +67,12 @@ def test_a_section_of_another_kind_of_file_is_an_error_that_names_the_kind() -> 
     assert error.hint == "It belongs in the environment file (.ef)"
 
 
+def test_a_part_in_the_wrong_section_is_an_error_that_names_its_own() -> None:
+    _, errors = sections("path: /p\nresponse: a\nresponse_rule: True\ntopic: /t\nparameter: x", ".am")
+    places = ["`module_activation:`", "`local_variable:`", "`module_activation:`"]
+    assert [error.hint for error in errors] == [f"It belongs below {place}" for place in places]
+
+
 def test_the_parts_of_a_section_are_its_own() -> None:
     text = (
         "module_activation: skill\nparameter: x\ncode:\na + b\npath: /p\n"

@@ -141,7 +141,12 @@ class _Scanner:
     ) -> None:
         self._source = source
         self._grammar = grammar
-        self._elsewhere = elsewhere
+        below: dict[str, list[str]] = {}
+        for word, entry in grammar.items():
+            for part in entry.parts:
+                below.setdefault(part, []).append(f"`{word}:`")
+        self._below = {part: f"below {' or '.join(words[:2])}" for part, words in below.items()}
+        self._elsewhere = {**elsewhere, **{part: self._below[part] for part in below if part in elsewhere}}
         self._findings = findings
         self._sections: list[Section] = []
         self._current: Part | None = None
@@ -228,7 +233,7 @@ class _Scanner:
         """The word a line that opens nothing was surely meant to be."""
         if name in _CODE_LABELS:
             return "", False
-        if name.lower() in self._elsewhere and not self._is_in_code():
+        if (name.lower() in self._elsewhere or name in self._below) and not self._is_in_code():
             return "", False
         close = nearest(name, (*inner, *self._grammar))
         if not close or (self._is_in_code() and "_" not in close and len(close) < 8):
@@ -239,9 +244,16 @@ class _Scanner:
     def _is_in_code(self) -> bool:
         return self._current is not None and self._current.body is not Body.NONE
 
+    def _is_in_rule(self) -> bool:
+        """Returns whether the lines are a Python expression, in which `word:` begins no line."""
+        current = self._current
+        return current is not None and current.body is Body.PYTHON and "code" not in current.word
+
     def _reports_elsewhere(self, name: str, at: Text) -> bool:
         """Complains about a section of another kind of file, or of none; its lines are left out."""
         place = self._elsewhere.get(name)
+        if place is None and (not self._is_in_code() or self._is_in_rule()):
+            place = self._below.get(name)
         if place is None and self._is_in_code():
             return False
         hint = f"It belongs {place}" if place else f"The sections are {', '.join(self._grammar)}"
