@@ -1,6 +1,7 @@
 """Fixtures that every kind of test may use."""
 
 import gc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -46,10 +47,13 @@ def corpus() -> Path:
     return folder
 
 
-@pytest.fixture(scope="session")
-def cache_dir() -> Path:
-    """Compiled models, kept from run to run, and the engines that setup.sh has compiled."""
-    return kept_cache()
+@pytest.fixture(scope="session", autouse=True)
+def cache_dir() -> Iterator[Path]:
+    """Compiled models kept from run to run, with the engines of setup.sh. Commands use them, too."""
+    folder = kept_cache()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AOS_CACHE_DIR", str(folder))
+        yield folder
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

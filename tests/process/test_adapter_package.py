@@ -83,12 +83,10 @@ def test_an_adapter_of_it_runs_a_mission(
     which: str,
     request: pytest.FixtureRequest,
     tmp_path: Path,
-    cache_dir: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     python = request.getfixturevalue(which)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     for words in (["new", "project", "fetch"], ["new", "adapter", "class", "--in", "fetch"]):
         subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=COMMAND_S)
     deploy = Path("fetch.yaml")

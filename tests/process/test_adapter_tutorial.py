@@ -15,9 +15,8 @@ BIN = Path(sys.executable).parent
 
 
 @pytest.fixture(autouse=True)
-def in_a_folder(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
 
 
 def run(command: str) -> str:

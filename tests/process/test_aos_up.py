@@ -46,11 +46,10 @@ def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def scratch(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+def scratch(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """The folder for temporary files of everything that is started."""
     folder = tmp_path_factory.mktemp("scratch")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("AOS_CACHE_DIR", str(cache_dir))
         patch.setenv("TMPDIR", str(folder))
         yield folder
 

@@ -133,10 +133,7 @@ def test_a_shell_completes_commands_options_and_values(
     assert run(name).stdout.split() == completed
 
 
-def test_progress_is_for_terminals_alone(
-    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def test_progress_is_for_terminals_alone(bundles: Path) -> None:
     tiger = str(bundles / "bench" / "tiger")
     simulated = run("aos", "simulate", tiger, "--runs", "2", "--simulations", "10")
     assert simulated.returncode == 0

@@ -1,7 +1,6 @@
 """`aos bench`: the baselines are of the same problems, and its report can be read."""
 
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -19,18 +18,13 @@ from aos_solver.building.compiler import find_compiler
 AOS = Path(sys.executable).parent / "aos"
 
 
-def run_bench(cache_dir: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir)}
-    return subprocess.run(
-        [AOS, "bench", *arguments], capture_output=True, text=True, timeout=COMMAND_S, env=environment
-    )
+def run_bench(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([AOS, "bench", *arguments], capture_output=True, text=True, timeout=COMMAND_S)
 
 
 @pytest.fixture(scope="module")
-def report(cache_dir: Path) -> dict[str, Any]:
-    done = run_bench(
-        cache_dir, "tiger", "--quick", "--runs", "2", "--time", "0.01", "--planner", "pomcp", "--json"
-    )
+def report() -> dict[str, Any]:
+    done = run_bench("tiger", "--quick", "--runs", "2", "--time", "0.01", "--planner", "pomcp", "--json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -53,14 +47,14 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
 
 
 def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(
-    bundles: Path, cache_dir: Path, tmp_path: Path
+    bundles: Path, tmp_path: Path
 ) -> None:
     folder = shutil.copytree(bundles / "bench" / "tiger", tmp_path / "tiger")
     listen = folder / "listen.sd"
     policy = "rollout_policy:\n__heuristicValue = 2;\n"
     listen.write_text(listen.read_text().replace("dynamic_model:", f"{policy}\ndynamic_model:"))
     one_mission = ("--metric", "return", "--runs", "1", "--time", "0.001", "--planner", "pomcp", "--json")
-    done = run_bench(cache_dir, str(folder), *one_mission)
+    done = run_bench(str(folder), *one_mission)
     assert done.returncode == 0, done.stderr
     rows = json.loads(done.stdout)["rows"]
     assert {row["problem"] for row in rows} == {"tiger"}
@@ -69,8 +63,8 @@ def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_p
 
 
 @pytest.mark.parametrize("name", ["lion", "no/such/bundle"])
-def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path, name: str) -> None:
-    done = run_bench(cache_dir, name)
+def test_an_unknown_benchmark_is_refused_with_the_known_ones(name: str) -> None:
+    done = run_bench(name)
     assert done.returncode == 2
     assert f"{name} is none of tiger, tag," in " ".join(done.stderr.split())
 

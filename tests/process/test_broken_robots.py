@@ -1,6 +1,5 @@
 """Whole systems of the tutorial's project whose robots are broken: docs/when-a-skill-fails.md."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -48,39 +47,36 @@ bind:
 
 
 @pytest.fixture
-def project(tmp_path: Path, cache_dir: Path) -> Path:
+def project(tmp_path: Path) -> Path:
     """The tutorial's project with its skill `ask`."""
-    run(["aos", "new", "project", "fetch"], tmp_path, cache_dir)
+    run(["aos", "new", "project", "fetch"], tmp_path)
     (asks,) = (step.text for step in steps_of() if step.kind == "file: fetch/ask.sd")
     (tmp_path / "fetch" / "ask.sd").write_text(asks)
     (tmp_path / "robot.py").write_text(ROBOT)
     return tmp_path
 
 
-def run(command: list[str], folder: Path, cache_dir: Path) -> int:
-    environment = os.environ | {"AOS_CACHE_DIR": str(cache_dir)}
+def run(command: list[str], folder: Path) -> int:
     program = [str(BIN / command[0]), *command[1:]]
-    return subprocess.run(
-        program, cwd=folder, env=environment, capture_output=True, timeout=COMMAND_S, check=False
-    ).returncode
+    return subprocess.run(program, cwd=folder, capture_output=True, timeout=COMMAND_S, check=False).returncode
 
 
-def mission(project: Path, cache_dir: Path, text: str = "", **functions: str) -> tuple[int, Summary]:
+def mission(project: Path, text: str = "", **functions: str) -> tuple[int, Summary]:
     """Exit code and summary of a mission in which these functions play the skills."""
     binding = "".join(
         f"  /{skill}: {{python: robot.py:{function}}}\n" for skill, function in functions.items()
     )
     (project / "fetch.yaml").write_text(DEPLOY + binding + text)
-    code = run(["aos-up", "fetch.yaml", "--plain"], project, cache_dir)
+    code = run(["aos-up", "fetch.yaml", "--plain"], project)
     summary = RunDirectory.latest(project / "runs").read_summary()
     assert summary is not None
     return code, summary
 
 
-def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path, cache_dir: Path) -> None:
+def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path) -> None:
     look = project / "fetch" / "look.sd"
     look.write_text(look.read_text().replace("__reward = -1", "__reward = -0.3"))
-    code, summary = mission(project, cache_dir, look="look", take="broken", ask="ask")
+    code, summary = mission(project, look="look", take="broken", ask="ask")
     assert (code, summary.ending, summary.goal_probability) == (9, "skills_failed", 0.0)
     why = "take is set aside for 300 s after 3 failures in a row, the last "
     assert why in summary.remark
@@ -90,19 +86,19 @@ def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path, cache_dir: P
 
 @pytest.mark.parametrize("camera", ["broken", "ending"])
 def test_beside_a_camera_that_fails_or_ends_its_adapter_in_each_call_the_robot_asks(
-    project: Path, cache_dir: Path, camera: str
+    project: Path, camera: str
 ) -> None:
     look = project / "fetch" / "look.sd"
     look.write_text(look.read_text().replace("0.85", "0.98"))
-    code, summary = mission(project, cache_dir, look=camera, take="take", ask="ask")
+    code, summary = mission(project, look=camera, take="take", ask="ask")
     assert (code, summary.ending) == (0, "goal")
     assert summary.actions == ("look", "look", "look", "ask", "take(side=left_side)")
 
 
 def test_two_skills_that_end_their_adapter_in_each_call_end_the_mission_and_not_the_run(
-    project: Path, cache_dir: Path
+    project: Path,
 ) -> None:
     limit = "mission: {stop_below_value: 0.0}\n"
-    code, summary = mission(project, cache_dir, limit, look="ending", take="ending", ask="ask")
+    code, summary = mission(project, limit, look="ending", take="ending", ask="ask")
     assert (code, summary.ending) == (9, "skills_failed")
     assert "take is set aside for 300 s after 3 failures in a row, the last unknown" in summary.remark

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 
 import msgspec
-import pytest
 from processes import COMMAND_S
 
 from aos_lab.calibration.calibrate import Calibration, calibrate
@@ -81,11 +80,6 @@ def covered(result: Calibration) -> list[bool]:
     ]
 
 
-@pytest.fixture(autouse=True)
-def _own_cache(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-
-
 def test_intervals_cover_the_numbers_that_missions_were_drawn_with(tmp_path: Path) -> None:
     held: list[bool] = []
     for first_seed in (1, 1001):
@@ -118,7 +112,7 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path:
     assert all(covered(results[1]))
 
 
-def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache_dir: Path) -> None:
+def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path) -> None:
     recorded(tmp_path / "missions", "armadillo.yaml", 1, 40)
     shutil.copytree(FINER, tmp_path / "bundle")
     pick = tmp_path / "bundle" / "pick.sd"
@@ -132,7 +126,7 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache
             capture_output=True,
             text=True,
             timeout=COMMAND_S,
-            env={**os.environ, "AOS_CACHE_DIR": str(cache_dir), "COLUMNS": "120"},
+            env={**os.environ, "COLUMNS": "120"},
         )
 
     done = run("--write", "changes.patch")

@@ -14,8 +14,7 @@ NEVER = "open_left && state.is_left"
 
 
 @pytest.fixture
-def app(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> typer.Typer:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def app() -> typer.Typer:
     return aos_app()
 
 

@@ -105,10 +105,7 @@ def test_a_picture_that_is_no_python_is_a_warning_of_lint(
     assert said in found.message
 
 
-def test_lint_tells_once_what_is_wrong_with_a_picture(
-    bundles: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: Path) -> None:
     shutil.copytree(bundles / "errand", tmp_path / "errand")
     (tmp_path / "errand" / "picture.py").write_text("def draw(state, belief, step):\n    return (\n")
     told = CliRunner().invoke(aos_app(), ["lint", str(tmp_path / "errand"), "--format", "json"])

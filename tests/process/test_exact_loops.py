@@ -292,10 +292,7 @@ __moduleResponse = yes;
         ),
     ],
 )
-def test_the_command_plans_exactly_after_a_loop(
-    loop: str, mean: Fraction, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cache_dir: Path
-) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def test_the_command_plans_exactly_after_a_loop(loop: str, mean: Fraction, tmp_path: Path) -> None:
     files = {
         "loops.ef": ISSUE.format(loop=loop),
         "turn.sd": TURN.format(reward="state.side + state_.wind"),

@@ -1,7 +1,6 @@
 """`aos experiment run`: a report of real missions, which goes on where it was."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -28,16 +27,13 @@ parts:
 """
 
 
-def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(
-    tmp_path: Path, cache_dir: Path
-) -> None:
+def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(tmp_path: Path) -> None:
     experiment, out = tmp_path / "mine.yaml", tmp_path / "out"
 
     def run(seeds: int, check: str) -> dict[str, Any]:
         experiment.write_text(EXPERIMENT.replace("CHECK", check))
         command = [AOS, "experiment", "run", experiment, "--seeds", str(seeds), "--out", out, "--json"]
-        environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir)}
-        done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, env=environment)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
         assert done.returncode == 0, done.stderr
         part: dict[str, Any] = json.loads(done.stdout)["parts"][0]
         return part

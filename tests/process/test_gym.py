@@ -58,8 +58,7 @@ for (int i = 1; i < 3; i++) __observed.echoes.push_back(AOS.SampleUniform(i, i +
 
 
 @pytest.fixture
-def kettle(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def kettle(tmp_path: Path) -> Path:
     for name, text in KETTLE.items():
         (tmp_path / name).write_text(text)
     return tmp_path

@@ -36,7 +36,7 @@ tests:
 
 
 def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
-    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    bundles: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def third_interrupted(*arguments: Any, **options: Any) -> SimulatedRun:
         if arguments[1].seed == 3:
@@ -44,7 +44,6 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
             await asyncio.Event().wait()
         return await simulate_mission(*arguments, **options)
 
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     monkeypatch.setattr(simulate, "simulate_mission", third_interrupted)
     command = ["simulate", str(bundles / "bench" / "tiger"), "--runs", "5", "--simulations", "10", "--json"]
     done = CliRunner().invoke(cli.aos_app(), command)
@@ -66,7 +65,7 @@ def test_ctrl_c_while_a_command_is_imported_is_no_traceback(monkeypatch: pytest.
 
 @pytest.mark.parametrize("keeps", [False, True], ids=["passing", "kept"])
 def test_ctrl_c_tells_after_how_many_missions_of_a_test(
-    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keeps: bool
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keeps: bool
 ) -> None:
     play = ModelPlayer.play
 
@@ -76,7 +75,6 @@ def test_ctrl_c_tells_after_how_many_missions_of_a_test(
             await asyncio.Event().wait()
         return await play(player, seed)
 
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     monkeypatch.setattr(ModelPlayer, "play", third_interrupted)
     file = tmp_path / "missions.yaml"
     file.write_text(MISSIONS)
@@ -87,9 +85,7 @@ def test_ctrl_c_tells_after_how_many_missions_of_a_test(
     assert done.stderr == f"aos: stopped in finer after 2 of its 5 missions; {after} from there\n"
 
 
-def test_ctrl_c_ends_a_calibration_while_it_computes(
-    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ctrl_c_ends_a_calibration_while_it_computes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     has_gone_on = False
 
     def interrupted(*arguments: Any) -> tuple[()]:
@@ -98,7 +94,6 @@ def test_ctrl_c_ends_a_calibration_while_it_computes(
         has_gone_on = True
         return ()
 
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     monkeypatch.setattr(records, "read_missions", lambda path: [RecordedMission("run", ())])
     monkeypatch.setattr(calibration, "estimate", interrupted)
     bundle = DEPLOY / "bundles" / "armadillo-finer"

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import pytest
 from exam.bundles import told_of_bundle
 from mappings import mapping_text
 from models import built_text, engine_of
@@ -187,11 +186,8 @@ async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much(cache_dir:
     assert "learned" not in await _why(BERRIES, cache_dir)
 
 
-async def test_what_missions_return_is_told_where_values_are_learned(
-    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_what_missions_return_is_told_where_values_are_learned(tmp_path: Path) -> None:
     """The tree promises that all is seen, some 20 more than a robot earns that has to open box after box."""
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     for name, text in COINS.items():
         (tmp_path / name).write_text(text)
     told = await told_of_bundle(tmp_path, "pomcp", missions=2, seed=1, seconds=None, simulations=300)
@@ -201,10 +197,9 @@ async def test_what_missions_return_is_told_where_values_are_learned(
 
 
 async def test_played_missions_never_take_what_everybody_knows_not_to_be_possible(
-    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cache_dir: Path, tmp_path: Path
 ) -> None:
     """A state that is left without others to choose for it takes an action whose precondition holds."""
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     assert "what states are worth is learned" in await _why(JAMMING_COINS, cache_dir)
     for name, text in JAMMING_COINS.items():
         (tmp_path / name).write_text(text)

@@ -66,9 +66,8 @@ def app() -> typer.Typer:
 
 
 @pytest.fixture
-def hall(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Path]:
+def hall(tmp_path: Path) -> Callable[..., Path]:
     """Writes a bundle with this code of the walk, this goal and this door."""
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
 
     def write(code: str, *, goal: str = "3", door: str = "2") -> Path:
         files = {

@@ -231,10 +231,7 @@ async def test_values_are_for_all_bundles_of_a_start_together(bundles: Path, cac
         await shelf.close()
 
 
-def test_commands_take_values_and_a_policy_is_for_its_own(
-    bundles: Path, cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def test_commands_take_values_and_a_policy_is_for_its_own(bundles: Path, tmp_path: Path) -> None:
     bundle, policy = str(bundles / "errand"), str(tmp_path / "bob.policy")
 
     def run(*arguments: str) -> object:
@@ -275,10 +272,9 @@ tests:
     (("--set", "target=alice"), "bob", 4),
 ])  # fmt: skip
 def test_missions_of_a_test_file_have_its_values_or_the_commands(
-    root: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch,
+    root: Path, tmp_path: Path,
     options: tuple[str, ...], person: str, status: int,
 ) -> None:  # fmt: skip
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     file = tmp_path / "missions.yaml"
     file.write_text(MISSIONS.format(deploy=root / "deploy" / "errand.yaml", person=person))
     assert CliRunner().invoke(aos_app(), ["test", str(file), *options]).exit_code == status
@@ -296,9 +292,8 @@ def give(call, to):
 
 
 def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_killed(
-    root: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    root: Path, tmp_path: Path
 ) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     (tmp_path / "robot.py").write_text(SLOW_GIVE)
     text = (root / "deploy" / "errand.yaml").read_text()
     text = text.replace("[bundles/errand]", f"[{root}/deploy/bundles/errand]")

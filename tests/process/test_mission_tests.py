@@ -1,7 +1,6 @@
 """`aos test`: real missions of users' tests, with what a continuous integration reads."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +26,7 @@ tests:
 """
 
 
-def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path, cache_dir: Path) -> None:
+def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path) -> None:
     missions, junit = tmp_path / "missions.yaml", tmp_path / "junit.xml"
     missions.write_text(MISSIONS)
 
@@ -37,7 +36,6 @@ def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path, cache_dir
             capture_output=True,
             text=True,
             timeout=COMMAND_S,
-            env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
         )
 
     first = run("--junit", str(junit))
@@ -83,9 +81,7 @@ LOSSY_CLAIMS = {
 }
 
 
-def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(
-    tmp_path: Path, cache_dir: Path
-) -> None:
+def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text(LOSSY_ROBOT)
     tests = [
         LOSSY_TEST.format(name=fault.replace(".", "-"), fault=fault, claim=claim)
@@ -97,7 +93,6 @@ def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(
         capture_output=True,
         text=True,
         timeout=COMMAND_S,
-        env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("ok     ") == 6

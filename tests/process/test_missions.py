@@ -118,8 +118,8 @@ class System:
 
 
 @contextmanager
-def up(root: Path, folder: Path, cache_dir: Path, *options: str) -> Iterator[System]:
-    environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder / "running")}
+def up(root: Path, folder: Path, *options: str) -> Iterator[System]:
+    environment = {**os.environ, "AOS_RUNNING_DIR": str(folder / "running")}
     write_slow_tiger(folder)
     (folder / "tiger.yaml").write_text(DEPLOY.format(root=root))
     (folder / "errand.yaml").write_text(ERRAND.format(root=root))
@@ -147,8 +147,8 @@ bind: {{"*": model}}
 
 
 @pytest.fixture
-def stays(root: Path, cache_dir: Path, tmp_path: Path) -> Iterator[System]:
-    with up(root, tmp_path, cache_dir) as system:
+def stays(root: Path, tmp_path: Path) -> Iterator[System]:
+    with up(root, tmp_path) as system:
         yield system
 
 
@@ -209,7 +209,7 @@ async def test_ctrl_c_in_a_mission_of_a_system_that_stays_ends_it_as_cancelled(s
 
 
 async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_has_the_same_belief(
-    root: Path, cache_dir: Path, stays: System
+    root: Path, stays: System
 ) -> None:
     stays.until("mission", phase="ended")
     kill(stays.record["pids"]["solver"])
@@ -227,7 +227,7 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
     stays.ended()
     stays.be_slow(False)
     run = stays.run
-    with up(root, stays.folder, cache_dir, "--resume") as again:
+    with up(root, stays.folder, "--resume") as again:
         assert again.until("mission", mission=mission, phase="ended")["ending"] == "step_limit"
         assert again.run == run
         assert again.interrupt() == 0
@@ -252,12 +252,10 @@ def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays
     assert stays.interrupt() == 0
 
 
-async def test_the_next_mission_has_other_parameters_and_newer_documents(
-    root: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+async def test_the_next_mission_has_other_parameters_and_newer_documents(root: Path, tmp_path: Path) -> None:
     files = {path.name: path.read_bytes() for path in (root / "deploy/bundles/errand").iterdir()}
     files["look.sd"] = files["look.sd"].replace(b"__reward = -1;", b"__reward = -2;")
-    with up(root, tmp_path, cache_dir, "errand.yaml") as system:
+    with up(root, tmp_path, "errand.yaml") as system:
         system.until("mission", phase="ended")
         code, _, error = system.aos("mission", "start", "--set", "target=bod")
         assert code == 1

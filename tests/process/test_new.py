@@ -15,9 +15,8 @@ from aos_language.load import load_bundle
 
 
 @pytest.fixture
-def aos(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
+def aos(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     return aos_app()
 
 

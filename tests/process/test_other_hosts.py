@@ -17,10 +17,9 @@ FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_
 
 
 @pytest.fixture(autouse=True)
-def project(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A new project with an adapter that is a program."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     for command in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
         subprocess.run([BIN / "aos", *command], check=True, capture_output=True)
     # The Python of the other host is the one that has Zenoh.

@@ -210,10 +210,9 @@ PROGRAMS = """programs:
 
 
 @pytest.fixture
-def project(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A robot that is a command, with a simulator that it can only be started after."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     for words in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
         subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=COMMAND_S)
     (tmp_path / "sim.py").write_text(SIMULATOR)

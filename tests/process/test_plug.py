@@ -26,10 +26,7 @@ async def test_no_engine_is_asked_after_its_end_or_left(caplog: pytest.LogCaptur
     assert faults == {}
 
 
-async def test_variables_that_come_and_change_in_mid_mission_are_believed_by_replay(
-    tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+async def test_variables_that_come_and_change_in_mid_mission_are_believed_by_replay(tmp_path: Path) -> None:
     mission = await played(
         tmp_path / "mission", 3, ("variable added", "variable retyped", "broken", "removed"), superseded=0.0
     )

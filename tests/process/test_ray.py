@@ -28,11 +28,6 @@ pytestmark = pytest.mark.filterwarnings(
 needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="ray is not installed")
 
 
-@pytest.fixture(autouse=True)
-def _cache(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-
-
 def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None = None) -> list[Trial]:
     """The missions, without how long they took; `report` gets a line for each that is played or was."""
     setting = Setting(deploy="armadillo.yaml", simulations=2000, step_limit=6)

@@ -31,11 +31,6 @@ replace = msgspec.structs.replace
 robot = breaking(jams=2, is_late=3)
 
 
-@pytest.fixture(autouse=True)
-def cache(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-
-
 async def played(tiger: BuiltModel) -> Rows:
     """The journal of a mission of the seed 3."""
     around = Surroundings(robot)

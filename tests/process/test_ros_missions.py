@@ -67,11 +67,10 @@ def master(tmp_path: Path) -> Iterator[str]:
 
 
 @contextmanager
-def up(arguments: list[str], cache_dir: Path) -> Iterator[subprocess.Popen[str]]:
+def up(arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
     """An aos-up that prints JSON events; it is stopped as by Ctrl-C."""
     with subprocess.Popen(
         [str(BIN / "aos-up"), "--json", *arguments],
-        env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
         stdout=subprocess.PIPE,
         text=True,
     ) as process:
@@ -90,7 +89,7 @@ def events_of(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
 
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
-    master: str, corpus: Path, root: Path, cache_dir: Path, tmp_path: Path
+    master: str, corpus: Path, root: Path, tmp_path: Path
 ) -> None:
     for name, text in ORIGINAL_INTERFACES.items():
         path = tmp_path / "interfaces" / name
@@ -100,12 +99,12 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
     stand_in = original_on_our_robot(root, corpus).replace("robot: iros", "robot: stand-in\nproject: iros")
     (tmp_path / "robot.yaml").write_text(stand_in + SERVED.format(**values))
     (tmp_path / "mission.yaml").write_text(MISSION.format(**values))
-    with up([str(tmp_path / "robot.yaml"), "--serve", "ros1"], cache_dir) as robot:
+    with up([str(tmp_path / "robot.yaml"), "--serve", "ros1"]) as robot:
         happened = list(events_of_until(robot, "Ctrl-C stops it"))
         assert any(
             "/pick_unknown is robotican_demos_upgrade/srv/pick_unknown" in str(one) for one in happened
         )
-        with up([str(tmp_path / "mission.yaml")], cache_dir) as mission:
+        with up([str(tmp_path / "mission.yaml")]) as mission:
             events = list(events_of(mission))
     assert_whole_mission(events, tmp_path / "runs" / "latest")
     assert mission.returncode in (0, 4, 5, 6)
@@ -113,10 +112,10 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
 
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(
-    corpus: Path, root: Path, cache_dir: Path, tmp_path: Path
+    corpus: Path, root: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "deploy.yaml").write_text(original_on_our_robot(root, corpus))
-    with up([str(tmp_path / "deploy.yaml")], cache_dir) as mission:
+    with up([str(tmp_path / "deploy.yaml")]) as mission:
         events = list(events_of(mission))
     assert_whole_mission(events, tmp_path / "runs" / "latest")
     assert mission.returncode in (0, 4, 5, 6)
@@ -143,12 +142,10 @@ def assert_whole_mission(events: list[dict[str, Any]], run: Path) -> None:
     assert summary["ending"] in ("goal", "failure", "nothing_worthwhile", "step_limit")
 
 
-def test_the_shipped_robot_serves_a_ros_2_program_of_others(
-    root: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+def test_the_shipped_robot_serves_a_ros_2_program_of_others(root: Path, tmp_path: Path) -> None:
     pytest.importorskip("zenoh_ros2_sdk", reason="needs the package zenoh-ros2-sdk")
     arguments = [str(root / "deploy" / "armadillo-robot.yaml"), "--serve", "ros2", "--runs", str(tmp_path)]
-    with up([*arguments, "--listen", "tcp/127.0.0.1:0"], cache_dir) as robot:
+    with up([*arguments, "--listen", "tcp/127.0.0.1:0"]) as robot:
         list(events_of_until(robot, "Ctrl-C stops it"))
         run = json.loads((tmp_path / "latest" / "run.json").read_text())
         program = subprocess.run(
@@ -163,14 +160,12 @@ def test_the_shipped_robot_serves_a_ros_2_program_of_others(
     assert robot.returncode == 0
 
 
-def test_the_page_about_ros_can_be_followed_to_the_first_activation(
-    root: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+def test_the_page_about_ros_can_be_followed_to_the_first_activation(root: Path, tmp_path: Path) -> None:
     page = (root / "docs" / "ros.md").read_text(encoding="utf-8")
     serve, drive = re.findall(r"^\.venv/bin/aos-up (.*)$", page, re.MULTILINE)
     block = page.partition("The first one prints what it serves:")[2].split("```")[1]
     here = ["--runs", str(tmp_path / "robot"), "--listen", "tcp/127.0.0.1:0"]
-    with up([*in_the_checkout(serve, root), *here], cache_dir) as robot:
+    with up([*in_the_checkout(serve, root), *here]) as robot:
         texts = [str(event.get("text")) for event in events_of_until(robot, "Ctrl-C stops it")]
         for line in block.strip().splitlines():
             assert line == "..." or line in texts
@@ -181,7 +176,7 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation(
         text = text.replace("bundles/", f"{root}/deploy/bundles/").replace("100_000", "1_000")
         text = text.replace("[interfaces]", f"[{root}/deploy/interfaces]").replace("../runs", "runs")
         (tmp_path / "mission.yaml").write_text(text)
-        with up([str(tmp_path / "mission.yaml")], cache_dir) as mission:
+        with up([str(tmp_path / "mission.yaml")]) as mission:
             first = next(event for event in events_of(mission) if event.get("outcome"))
             assert first["outcome"]["status"] == "observed"
 

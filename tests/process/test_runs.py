@@ -85,10 +85,10 @@ class Place:
     Missions are noted in `running`, so that those of other tests are not seen.
     """
 
-    def __init__(self, root: Path, folder: Path, endpoint: str, cache_dir: Path, running: Path) -> None:
+    def __init__(self, root: Path, folder: Path, endpoint: str, running: Path) -> None:
         self.folder = folder
         self.endpoint = endpoint
-        own = {"AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(running), "PYTHONUNBUFFERED": "1"}
+        own = {"AOS_RUNNING_DIR": str(running), "PYTHONUNBUFFERED": "1"}
         self.environment = {**os.environ, **own}
         self.deploy = folder / "tiger.yaml"
         self.deploy.write_text(TIGER.format(root=root, endpoint=endpoint))
@@ -126,9 +126,9 @@ def free_port() -> int:
 
 
 @pytest.fixture(scope="module")
-def place(root: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Place:
+def place(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Place:
     endpoint, running = f"tcp/127.0.0.1:{free_port()}", tmp_path_factory.mktemp("running")
-    return Place(root, tmp_path_factory.mktemp("place"), endpoint, cache_dir, running)
+    return Place(root, tmp_path_factory.mktemp("place"), endpoint, running)
 
 
 @pytest.fixture(scope="module")
@@ -168,11 +168,11 @@ def test_a_living_mission_is_never_pruned(place: Place, mission: Path) -> None:
 
 
 def test_of_two_living_missions_one_has_to_be_named(
-    root: Path, place: Place, mission: Path, cache_dir: Path, tmp_path: Path
+    root: Path, place: Place, mission: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "other").mkdir()
     running = Path(place.environment["AOS_RUNNING_DIR"])
-    other = Place(root, tmp_path / "other", "tcp/127.0.0.1:0", cache_dir, running)
+    other = Place(root, tmp_path / "other", "tcp/127.0.0.1:0", running)
     with other.up() as up:
         assert up.has_decided()
         anywhere = place.run("bundle", "list", folder=tmp_path)
@@ -184,8 +184,8 @@ def test_of_two_living_missions_one_has_to_be_named(
         assert up.end() == (130, "")
 
 
-def test_of_two_starts_at_once_one_runs(root: Path, cache_dir: Path, tmp_path: Path) -> None:
-    place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", cache_dir, tmp_path)
+def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path) -> None:
+    place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", tmp_path)
     with place.up() as one, place.up() as other:
         decided = {start: start.has_decided() for start in (one, other)}
         codes = {decided[start]: start.end()[0] if decided[start] else start.ended()[0] for start in decided}

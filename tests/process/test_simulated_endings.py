@@ -81,10 +81,7 @@ async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path
     assert run.total == -1
 
 
-def test_goals_are_counted_by_the_world(
-    tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def test_goals_are_counted_by_the_world(tmp_path: Path) -> None:
     for name, text in TABLE.items():
         (tmp_path / name).write_text(text)
     command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]

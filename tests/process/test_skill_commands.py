@@ -67,9 +67,8 @@ class Running:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     subprocess.run([BIN / "aos", "new", "project", "fetch"], check=True, stdout=subprocess.DEVNULL)
     look = tmp_path / "fetch" / "look.am"
     # A failure that a rule tells is an observation, at which no mission holds.

@@ -16,8 +16,7 @@ from aos_solver.offline.policy import Policy
 
 
 @pytest.fixture
-def app(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> typer.Typer:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+def app() -> typer.Typer:
     return aos_app()
 
 

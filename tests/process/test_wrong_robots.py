@@ -1,17 +1,9 @@
 """Each claim of a shipped experiment fails on a robot that does otherwise."""
 
-import os
-from pathlib import Path
-
 import pytest
 from wrong_robots import Wrong, tried_by_model, wrong_robots
 
 WRONG = list(wrong_robots())
-
-
-@pytest.fixture(autouse=True)
-def _cache(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(os.environ, "AOS_CACHE_DIR", str(cache_dir))
 
 
 def test_no_claim_is_without_a_robot_that_does_otherwise() -> None:

@@ -33,9 +33,8 @@ def test_lint_of_a_good_bundle_ends_with_zero(app: typer.Typer, bundles: Path) -
 
 
 def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(
-    app: typer.Typer, bundles: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    app: typer.Typer, bundles: Path, tmp_path: Path
 ) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
     folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
     path = folder / "pick.sd"
     path.write_text(path.read_text().replace("bool in_hand =", "bool in_hand = in_the_hand &&"))

@@ -1,7 +1,6 @@
 """A small mission on a real system, which waits in its midst until somebody has tried what he wants to."""
 
 import json
-import os
 import subprocess
 import sys
 import threading
@@ -113,16 +112,14 @@ class Cell:
 
 
 @contextmanager
-def cell(folder: Path, environment: dict[str, str] | None = None) -> Iterator[Cell]:
+def cell(folder: Path) -> Iterator[Cell]:
     """The mission in an empty folder, once it waits; it is ended with the block."""
     for name, text in _FILES.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text.replace("STEPS", str(STEPS)))
     command = [Path(sys.executable).parent / "aos-up", "cell.yaml", "--plain"]
     with (folder / "aos-up.log").open("w") as log:
-        process = subprocess.Popen(
-            command, cwd=folder, env={**os.environ, **(environment or {})}, text=True, stdout=log, stderr=log
-        )
+        process = subprocess.Popen(command, cwd=folder, text=True, stdout=log, stderr=log)
     with process:
         try:
             _until_it_waits(folder, process)
