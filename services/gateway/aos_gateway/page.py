@@ -1,6 +1,6 @@
 """The page's files, which a browser gets compressed. They are made by `make page`, and come with AOS.
 
-A file whose name ends in `.gz` is kept compressed, and is known by the name without that.
+They are kept compressed: `page.js` as `page.js.gz`.
 """
 
 import contextlib
@@ -29,8 +29,8 @@ _MEDIA = {
 def page_routes() -> list[Route]:
     """A route for each file; the page itself is at the root."""
     routes = []
-    for path in sorted(_FOLDER.iterdir()) if _FOLDER.is_dir() else ():
-        name = path.name.removesuffix(".gz")
+    for path in sorted(_FOLDER.glob("*.gz")):
+        name = path.stem
         media = _MEDIA.get(Path(name).suffix)
         if media is not None:
             place = "/" if name == "index.html" else f"/{name}"
@@ -47,10 +47,8 @@ class _Content(msgspec.Struct, frozen=True):
 
     @classmethod
     def of(cls, path: Path) -> Self:
-        kept = path.read_bytes()
-        is_packed = path.suffix == ".gz"
-        plain = gzip.decompress(kept) if is_packed else kept
-        packed = kept if is_packed else gzip.compress(plain, 9, mtime=0)
+        packed = path.read_bytes()
+        plain = gzip.decompress(packed)
         return cls(plain, packed, f'"{hashlib.sha256(plain).hexdigest()[:16]}"')
 
 

@@ -1,7 +1,7 @@
-// Makes the page: node build.mjs [FOLDER]. Without a folder it goes to where `aos serve` finds it. Script, styles and the
-// libraries' licences are compressed, as browsers get them.
+// Makes the page: node build.mjs [FOLDER]. Without a folder it goes to where `aos serve` finds it. All its files are
+// compressed, as browsers get them.
 import { build } from "esbuild";
-import { copyFile, mkdir, readFile, writeFile } from "node:fs/promises";
+import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
@@ -26,8 +26,9 @@ const compress = (path, contents) => writeFile(`${path}.gz`, gzipSync(contents, 
 for (const { path, contents } of [...script.outputFiles, ...styles.outputFiles]) {
   await compress(path, contents);
 }
-await copyFile(join(here, "src/index.html"), join(folder, "index.html"));
-await copyFile(join(here, "src/icon.svg"), join(folder, "icon.svg"));
+for (const name of ["index.html", "icon.svg"]) {
+  await compress(join(folder, name), await readFile(join(here, "src", name)));
+}
 
 const licences = [];
 for (const name of libraries) {
