@@ -13,8 +13,8 @@ from pathlib import Path
 
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import AosError
-from aos_solver.building.build import ANY_SIZE, build_engine
 from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.engine_build import ANY_SIZE, build_engine
 
 PROGRAM = "#include <vector>\nint main() { return std::vector<int>(3).size() == 3 ? 0 : 1; }\n"
 LIMIT_S = 900

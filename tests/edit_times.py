@@ -25,8 +25,9 @@ from pathlib import Path
 
 from aos_deploy.program import cache_dir
 from aos_language.load import load_bundle
-from aos_solver.building.build import build, build_engine
+from aos_solver.building.build import build
 from aos_solver.building.compiler import find_compiler
+from aos_solver.building.engine_build import build_engine
 from aos_solver.building.project_build import emitted_model
 from aos_solver.child.engine import Engine
 

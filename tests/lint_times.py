@@ -17,7 +17,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from aos_solver.building.build import ANY_SIZE, STATE_BYTES, build_engine
+from aos_solver.building.engine_build import ANY_SIZE, STATE_BYTES, build_engine
 
 HALL = """project: hall
 horizon: 4

@@ -15,9 +15,9 @@ from processes import COMMAND_S
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
-from aos_solver.building.build import SOURCES, SUPPORT
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import find_compiler
+from aos_solver.building.engine_build import SOURCES, SUPPORT
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from aos_solver.building.build import NUMBERS, SOURCES, build_engine, number_object
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.engine_build import NUMBERS, SOURCES, build_engine, number_object
 
 PATIENCE_S = 800.0
 """Another process that compiles the same is waited for."""

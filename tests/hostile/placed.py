@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 from aos_deploy.program import cache_dir
-from aos_solver.building.build import ANY_SIZE, STATE_BYTES, build_engine
+from aos_solver.building.engine_build import ANY_SIZE, STATE_BYTES, build_engine
 
 _USER = "nobody"
 

@@ -16,8 +16,8 @@ from scripted_models import bundle_project, lowered
 
 from aos_deploy.constraints import constrained, constraint_of_option
 from aos_protocol.documents import Project
-from aos_solver.building.build import NUMBERS, SOURCES
 from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.engine_build import NUMBERS, SOURCES
 from aos_solver.emission.emit import MODEL_FILE
 
 UNOPTIMIZED = ("-O0", "-DAOS_QUICK")

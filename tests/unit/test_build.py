@@ -16,9 +16,10 @@ from scripted_models import bundle_project, json_text, lowered, text_project
 
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as build_module
-from aos_solver.building.build import ANY_SIZE, SOURCES, BuiltModel, build, build_engine
+from aos_solver.building.build import BuiltModel, build
 from aos_solver.building.build_cache import BuildCache
 from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.engine_build import ANY_SIZE, SOURCES, build_engine
 from aos_solver.emission.emit import EmittedModel
 
 HOME = """project: test

@@ -1,20 +1,16 @@
 """The build of a model: from the emitted C++ to an executable, through a cache.
 
-A model is compiled by itself and linked to the engine. The engine is compiled once for all models whose
-states have up to so many bytes: it is four times as much code, and models change while a robot waits. The
-headers that models include are precompiled with the engine: to read them is a quarter of a model's build.
+A model is compiled by itself and linked to the engine (`engine_build.py`).
 
 A model has two builds, which decide alike. The quick build is there sooner. The thorough build makes faster
 steps, and hardly faster searches: most of a search is the engine.
 """
 
-import asyncio
 import re
-import resource
 import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import msgspec
 
@@ -23,26 +19,31 @@ from aos_protocol.errors import AosError, ModelError
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_messages import read_messages, without_line_directives
-from aos_solver.building.compiler_run import LIMIT_HINT, Given, internal_error, ran_out, run_compiler
+from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, ran_out, run_compiler, together
+from aos_solver.building.engine_build import (
+    ANY_SIZE,
+    ENGINE_OBJECT,
+    NUMBERS,
+    QUICK,
+    SOURCES,
+    STATE_BYTES,
+    SUPPORT,
+    build_engine,
+    circumstances,
+    engine_deadline_s,
+    engine_name,
+    engine_seconds,
+    number_object,
+)
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
-SOURCES = Path(__file__).parents[1] / "cpp"
-"""The engine, and what emitted models stand on."""
-
-STATE_BYTES = (64, 256)
-"""The sizes of states that engines are compiled for; most models fit the first."""
-ANY_SIZE = 0
-"""Stands for the engine that takes states of every size: each has memory of its own, which takes longer."""
 MAX_STATE_BYTES = 1 << 20
-
-SUPPORT = "aos/model/model_support.hpp"
-"""Every emitted model includes this file first."""
 
 BuildKind = Literal["quick", "thorough", "unoptimized"]
 """The ways to compile a model; unoptimized code keeps its order."""
 
 _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
-    "quick": ("-O1", "-DAOS_QUICK"),
+    "quick": QUICK,
     "thorough": (),
     "unoptimized": ("-O0", "-DAOS_QUICK"),
 }
@@ -54,26 +55,16 @@ LINES_PER_CPU_S = 150
 more, and a second more for `LINES_PER_CPU_S` lines. A model of 200 lines takes half a second, of 700 lines up
 to 3 s, all parts of the engine 35 s."""
 
-_ENGINE_DEADLINES = 5
-"""The engine has so many times a model's deadline: our own sources are known to end, and only a busy machine
-takes long for them."""
-
 _LIMITS = ("-ftemplate-depth=100",)
 """Models' templates need a third of this depth. Document code that recurses without end is told at once."""
 
 _COMPILE_TIME_CODE = re.compile(r"\b(?:template|constexpr|consteval|\w*(?:_constant|_sequence))\b|\]\s*<")
 
-_SECONDS = "cpu_seconds"
-"""The file in an engine's entry that says how much processor time its compilation took on this machine."""
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
-_ENGINE_OBJECT = "engine.o"
-NUMBERS = ("point_based", "numbers/exact", "numbers/observable_values", "numbers/compact_model")
-"""The parts of the engine that know models as numbers only, the same for states of any size: mostly loops."""
 _UNCOUNTED = "AOS_UNCOUNTED"
 """Leaves out the code that counts the conditions of rewards and goals (`goal_conditions.py`)."""
 
-_NUMBERS_OPTION = "-O3"
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -122,9 +113,9 @@ async def build(
     """
     compiler = compiler or await find_compiler()
     cache = BuildCache(cache_dir)
-    circumstances = _circumstances(compiler)
+    shared = circumstances(compiler)
     names = {
-        known: f"model-{digest_of([emitted.cpp, *options, circumstances])}"
+        known: f"model-{digest_of([emitted.cpp, *options, shared])}"
         for known, options in _OPTIONS.items()
     }
     for known in ("thorough", "quick") if kind == "quick" else (kind,):
@@ -151,69 +142,9 @@ async def build(
     return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=not made_here, compile_s=seconds)
 
 
-async def build_engine(
-    cache_dir: Path,
-    *,
-    compiler: Compiler | None = None,
-    on_progress: Callable[[str], None] = lambda text: None,
-    state_bytes: int = STATE_BYTES[0],
-) -> Path:
-    """The directory of the engine's object files for states of up to `state_bytes`; errors as in `build`.
-
-    What does not depend on states is only in that of the smallest size.
-    Setting up a machine calls it for the smallest and for `ANY_SIZE`, so that no model waits for its engine.
-    """
-    compiler = compiler or await find_compiler()
-
-    async def make(staging: Path) -> None:
-        on_progress(f"compiling the engine with {compiler.version}, once for all models")
-        if compiler.family == "zig":
-            on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
-        options = [f"-DAOS_STATE_BYTES={state_bytes}", *compiler.large_source]
-        commands = [_part(compiler, _ENGINE_OBJECT, "engine", *options)]
-        if state_bytes == STATE_BYTES[0]:
-            commands += [_part(compiler, number_object(part), part, _NUMBERS_OPTION) for part in NUMBERS]
-            (staging / SUPPORT).parent.mkdir(parents=True)
-            commands.append(compiler.precompilation(SUPPORT, str(SOURCES), ".", *_OPTIONS["quick"]))
-        deadline_s = _ENGINE_DEADLINES * compiler.deadline_s
-        before_s = _children_cpu_s()
-        ours: Given = {"reads": [SOURCES], "is_ours": True}
-        runs = [
-            run_compiler(compiler, command, staging, deadline_s, "the engine", **ours) for command in commands
-        ]
-        for output, status in await _together(*runs):
-            if status != 0:
-                raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
-        (staging / _SECONDS).write_text(f"{_children_cpu_s() - before_s:.1f}")
-
-    return await BuildCache(cache_dir).fill(
-        _engine_name(compiler, state_bytes),
-        make,
-        patience_s=_ENGINE_DEADLINES * compiler.deadline_s,
-        on_wait=lambda: on_progress("waiting for the engine, which another process compiles"),
-    )
-
-
 def _patience_s(compiler: Compiler, deadline_s: float) -> float:
     """Returns how long another process is waited for that makes the same model: as long as it may take."""
-    return _ENGINE_DEADLINES * compiler.deadline_s + 2 * deadline_s
-
-
-def number_object(part: str) -> str:
-    """Returns the name of the object file of one of `NUMBERS`."""
-    return f"{Path(part).name}.o"
-
-
-def _part(compiler: Compiler, made: str, source: str, *options: str) -> list[str]:
-    """The command that compiles a part of the engine."""
-    return compiler.compilation(str(SOURCES / f"{source}.cpp"), made, str(SOURCES), *options)
-
-
-def _engine_name(compiler: Compiler, state_bytes: int) -> str:
-    # Clang looks for what was precompiled by the path of the sources.
-    place = [] if compiler.family == "gcc" else [str(SOURCES)]
-    options = [_NUMBERS_OPTION, *compiler.large_source]
-    return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), *options, *place])}"
+    return engine_deadline_s(compiler) + 2 * deadline_s
 
 
 class _Build(msgspec.Struct, frozen=True):
@@ -229,14 +160,14 @@ class _Build(msgspec.Struct, frozen=True):
 
     async def make(self, staging: Path) -> None:
         self.on_progress(f"compiling {self.emitted.project} with {self.compiler.version}")
-        usual, _ = await _together(self._engine(STATE_BYTES[0]), self._compile(staging))
+        usual, _ = await together(self._engine(STATE_BYTES[0]), self._compile(staging))
         state_bytes = self._state_bytes(staging / _OBJECT)
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
         numbers = [usual / number_object(part) for part in NUMBERS]
-        await self._link(staging, [engine / _ENGINE_OBJECT, *numbers])
+        await self._link(staging, [engine / ENGINE_OBJECT, *numbers])
 
     def _ready_engine(self, state_bytes: int) -> Path | None:
-        return self.cache.find(_engine_name(self.compiler, state_bytes))
+        return self.cache.find(engine_name(self.compiler, state_bytes))
 
     async def _engine(self, state_bytes: int) -> Path:
         return await build_engine(
@@ -251,7 +182,7 @@ class _Build(msgspec.Struct, frozen=True):
         """The limit for a model that somebody waits for. Long models and slow machines have more."""
         if self.kind != "quick":
             return None
-        engine_s = _engine_seconds(self._ready_engine(STATE_BYTES[0]))
+        engine_s = engine_seconds(self._ready_engine(STATE_BYTES[0]))
         return int(max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self.emitted.cpp.count("\n") / LINES_PER_CPU_S)
 
     async def _compile(self, staging: Path) -> None:
@@ -350,35 +281,3 @@ class _Build(msgspec.Struct, frozen=True):
         kept = self.cache.directory / f"failed-{self.emitted.digest[:16]}.cpp"
         kept.write_text(self.emitted.cpp)
         return kept
-
-
-def _engine_seconds(entry: Path | None) -> float:
-    """Returns the processor time that this machine took to compile the engine; 0 where nobody has looked."""
-    try:
-        return float((entry / _SECONDS).read_text()) if entry is not None else 0.0
-    except (OSError, ValueError):
-        return 0.0
-
-
-def _children_cpu_s() -> float:
-    """The processor time of the children that have ended: while an engine is compiled, of its compilers. By
-    the wall clock, a machine with other work would let a hostile model compile ten times as long."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def _circumstances(compiler: Compiler) -> str:
-    """The digest of what decides about a result besides the model's text."""
-    files = sorted(path for path in SOURCES.rglob("*") if path.suffix in (".hpp", ".cpp"))
-    texts = [part for path in files for part in (str(path.relative_to(SOURCES)), path.read_text())]
-    return digest_of([compiler.version, *compiler.compilation("", "", ""), *texts])
-
-
-async def _together(*runs: Coroutine[Any, Any, Any]) -> list[Any]:
-    """The results of all; if one fails, the others are stopped and its error is raised."""
-    try:
-        async with asyncio.TaskGroup() as tasks:
-            started = [tasks.create_task(run) for run in runs]
-    except ExceptionGroup as errors:
-        raise errors.exceptions[0] from None
-    return [task.result() for task in started]

@@ -2,9 +2,9 @@
 
 import asyncio
 import os
-from collections.abc import Sequence
+from collections.abc import Coroutine, Sequence
 from pathlib import Path
-from typing import TypedDict, Unpack
+from typing import Any, TypedDict, Unpack
 
 from aos_protocol.errors import AosError, ModelError, StorageError
 from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
@@ -138,3 +138,13 @@ async def _read(child: Child) -> str:
     while chunk := await child.stdout.read(65536):
         kept += chunk[: _OUTPUT_LIMIT_BYTES - len(kept)]
     return kept.decode(errors="replace")
+
+
+async def together(*runs: Coroutine[Any, Any, Any]) -> list[Any]:
+    """The results of all; if one fails, the others are stopped and its error is raised."""
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            started = [tasks.create_task(run) for run in runs]
+    except ExceptionGroup as errors:
+        raise errors.exceptions[0] from None
+    return [task.result() for task in started]

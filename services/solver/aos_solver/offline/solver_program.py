@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from aos_solver.building.build import SOURCES
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import find_compiler
 from aos_solver.building.compiler_run import internal_error, run_compiler
+from aos_solver.building.engine_build import SOURCES
 
 _SOURCE = Path(__file__).parent / "cpp" / "sarsop.cpp"
 _SHARED = (*sorted((SOURCES / "aos/base").iterdir()), *sorted((SOURCES / "point_based").iterdir()))
