@@ -19,7 +19,7 @@ from aos_solver.building import build as build_module
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.building.build_cache import BuildCache
 from aos_solver.building.compiler import Compiler, find_compiler
-from aos_solver.building.engine_build import ANY_SIZE, SOURCES, build_engine
+from aos_solver.building.engine_build import ANY_SIZE, QUICK, SOURCES, SUPPORT, build_engine, engine_name
 from aos_solver.emission.emit import EmittedModel
 
 HOME = """project: test
@@ -99,7 +99,7 @@ async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
 ) -> None:
     usual = await build_engine(cache_dir)
     compiler = await find_compiler()
-    names = {build_module._engine_name(compiler, size) for size in ready}
+    names = {engine_name(compiler, size) for size in ready}
     sizes: list[int] = []
 
     async def recorded(*_: Any, state_bytes: int, **__: Any) -> Path:
@@ -220,8 +220,8 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
     engine = await build_engine(cache_dir)
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
     objects = []
-    for more in ([], compiler.precompiled(build_module.SUPPORT, str(engine))):
-        options = [*build_module._OPTIONS["quick"], *more, "-H"]
+    for more in ([], compiler.precompiled(SUPPORT, str(engine))):
+        options = [*QUICK, *more, "-H"]
         command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *options)
         done = await asyncio.to_thread(
             subprocess.run,

@@ -10,7 +10,8 @@ from decision_records import decision_record
 
 from aos_gateway.events import place_of, stream
 from aos_gateway.feed import Watches
-from aos_gateway.runs import Run, RunShelf
+from aos_gateway.run_shelf import RunShelf
+from aos_gateway.runs import Run
 from aos_protocol.messages import History
 
 RECORDS = 200

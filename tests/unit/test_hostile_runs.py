@@ -10,7 +10,7 @@ import pytest
 
 from aos_deploy.export.run_bundle import opened_bundle
 from aos_gateway import run_files
-from aos_gateway.runs import RunShelf
+from aos_gateway.run_shelf import RunShelf
 from aos_protocol.errors import DeployError, GatewayError, StorageError
 
 PIDS = {"solver": 1, "../../secret": 1}

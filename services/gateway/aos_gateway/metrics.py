@@ -13,7 +13,8 @@ from collections import Counter as Multiset
 from aos_deploy.consequence import STARTED_AGAIN
 from aos_gateway.exposition import exposition
 from aos_gateway.metric_families import Families
-from aos_gateway.runs import KeptRun, Run, RunEntry, RunShelf
+from aos_gateway.run_shelf import RunShelf
+from aos_gateway.runs import KeptRun, Run, RunEntry
 from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
 from aos_protocol.mission_rows import STATE

@@ -16,7 +16,8 @@ from aos_gateway.app import make_app
 from aos_gateway.drawings import Drawings
 from aos_gateway.feed import Watches
 from aos_gateway.metrics import Metrics
-from aos_gateway.runs import RemoteRun, RunShelf
+from aos_gateway.run_shelf import RunShelf
+from aos_gateway.runs import RemoteRun
 from aos_gateway.shared import Gateway
 from aos_gateway.trace import Traces
 from aos_protocol.errors import DeployError

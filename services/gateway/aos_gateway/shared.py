@@ -8,7 +8,7 @@ import msgspec
 from aos_gateway.drawings import Drawings
 from aos_gateway.feed import Watches
 from aos_gateway.metrics import Metrics
-from aos_gateway.runs import RunShelf
+from aos_gateway.run_shelf import RunShelf
 from aos_gateway.trace import Traces
 from aos_language.reading.files import MAX_BUNDLE_BYTES
 

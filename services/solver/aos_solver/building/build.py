@@ -115,8 +115,7 @@ async def build(
     cache = BuildCache(cache_dir)
     shared = circumstances(compiler)
     names = {
-        known: f"model-{digest_of([emitted.cpp, *options, shared])}"
-        for known, options in _OPTIONS.items()
+        known: f"model-{digest_of([emitted.cpp, *options, shared])}" for known, options in _OPTIONS.items()
     }
     for known in ("thorough", "quick") if kind == "quick" else (kind,):
         if (entry := cache.find(names[known])) is not None:
