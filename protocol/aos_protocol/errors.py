@@ -25,6 +25,7 @@ from __future__ import annotations
 import sys
 
 from aos_protocol.diagnostics import Diagnostic, render
+from aos_protocol.spelling import shortened
 
 CODES: dict[str, str] = {
     "AOS101": "the file cannot be read",
@@ -142,6 +143,8 @@ CODES: dict[str, str] = {
 
 
 _MOST_NOTES = 20
+_LONGEST_TEXT = 4000
+"""Messages and hints keep so many characters; a robot may give longer ones."""
 
 
 class AosError(Exception):
@@ -161,10 +164,10 @@ class AosError(Exception):
         hint: str = "",
         diagnostics: tuple[Diagnostic, ...] = (),
     ) -> None:
-        super().__init__(message)
+        super().__init__(message := shortened(message, _LONGEST_TEXT))
         self.code = code or type(self).code
         self.message = message
-        self.hint = hint
+        self.hint = shortened(hint, _LONGEST_TEXT)
         self.diagnostics = diagnostics
         if sys.version_info >= (3, 11):
             for diagnostic in diagnostics[:_MOST_NOTES]:

@@ -9,10 +9,13 @@ _ALIKE = 0.65
 """The share of two names that has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
 
 
+_LONGEST_NAME = 200
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """The known name that is most like `name`, or nothing where none is alike; letter case counts little."""
     by_lower = {candidate.lower(): candidate for candidate in reversed([*known])}
-    close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=_ALIKE)
+    close = difflib.get_close_matches(name[:_LONGEST_NAME].lower(), by_lower, n=1, cutoff=_ALIKE)
     return by_lower[close[0]] if close else ""
 
 
@@ -38,3 +41,8 @@ def _printable(character: str) -> str:
     if character.isprintable() or character == "\t":
         return character
     return "\n    " if character == "\n" else character.encode("unicode_escape").decode()
+
+
+def shortened(text: str, most: int) -> str:
+    """The text; of a longer one its first `most` characters and the number of all."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text):,} characters)"

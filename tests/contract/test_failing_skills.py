@@ -92,6 +92,14 @@ async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -
     assert (await waiting).status == "observed"
 
 
+async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_called(system: System) -> None:
+    waiting, is_still = await system.beside_a_motion("sense")
+    system.adapter.withdraw("/sense")
+    await system.state_when(lambda state: "sense" in state.unavailable)
+    is_still.set()
+    assert_refused(await waiting, "AOS505", "no adapter answers calls of /sense")
+
+
 async def test_an_adapter_that_cannot_be_cancelled_is_not_called_again(system: System) -> None:
     await system.adapter.serve("/sense", hang)
     assert (await system.activate("sense", 1)).status == "timed_out"

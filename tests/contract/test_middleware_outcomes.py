@@ -38,7 +38,8 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
     skill = Skill(model, derived_mapping(model, project.environment))
     system.registry.announce(msgspec.structs.replace(project, skills=(skill,)))
     await system.state(system.registry.current.revision)
-    results = iter([{"response": "seen"}, {"success": True}, {"response": "sen"}])
+    endless = "e" * 9_000_000  # The bus carries it once, and not in a text and a local variable.
+    results = iter([{"response": "seen"}, {"success": True}, {"response": "sen"}, {"response": endless}])
 
     async def answer(_: SkillCall) -> dict[str, Any]:
         return next(results)
@@ -46,11 +47,12 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
     await system.adapter.serve("/see", answer)
     await system.state_when(lambda state: "see" not in state.unavailable)
     parameters = {"place": {"place": "Corridor", "x": 4.0, "y": 0.0, "yaw": 0.5}}
-    outcomes = [await system.activate("see", step, parameters=parameters) for step in (1, 2, 3)]
+    outcomes = [await system.activate("see", step, parameters=parameters) for step in (1, 2, 3, 4)]
     assert system.adapter.calls[0].fields == parameters
     assert [(outcome.status, outcome.response) for outcome in outcomes] == [
-        ("observed", "seen"), ("unknown", ""), ("unknown", ""),
+        ("observed", "seen"), ("unknown", ""), ("unknown", ""), ("unknown", ""),
     ]  # fmt: skip
+    assert outcomes[3].local_variables["response"].endswith("e... (9,000,002 characters)")
     faults = [outcome.fault for outcome in outcomes]
     assert faults[1] is not None
     assert faults[2] is not None

@@ -213,11 +213,12 @@ class Calls:
     async def _stop(self, running: RunningCall, reason: str) -> bool:
         """Cancels a call; whether it has ended within the time that it has for that."""
         if not running.task.done():
-            _log.info("cancelling %s: %s", running.call.path, reason)
-            running.reason = running.reason or reason
-            running.tell("cancelling", reason)
-            running.call.cancel()
-            running.task.cancel()
+            if not running.call.is_cancelled:  # A second cancellation would end what stops the robot.
+                _log.info("cancelling %s: %s", running.call.path, reason)
+                running.reason = reason
+                running.tell("cancelling", reason)
+                running.call.cancel()
+                running.task.cancel()
             await asyncio.wait({running.task}, timeout=self._settings.cancel_s)
         return running.task.done()
 

@@ -21,10 +21,15 @@ from aos_middleware.observed_numbers import observed_numbers
 from aos_middleware.skill_call import Call
 from aos_middleware.stopping import Stop
 from aos_middleware.surroundings import Surroundings
+from aos_middleware.values import kept_texts
 from aos_protocol.documents import AbstractionMapping
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Activate, Fault, Outcome, SkillResult, TopicMessage
+from aos_protocol.spelling import shortened
 from aos_runtime.subscription import merged
+
+_LONGEST_RESPONSE = 1000
+"""A longer one is none that a document knows."""
 
 _log = logging.getLogger("aos.middleware")
 
@@ -70,8 +75,8 @@ async def run_activation(
         request.id,
         request.skill,
         status,
-        observation.response,
-        observation.local_variables,
+        shortened(observation.response, _LONGEST_RESPONSE),
+        kept_texts(observation.local_variables),
         started_ns=started_ns,
         ended_ns=around.clock.now_ns(),
         fault=None if cause is None else _fault_of(cause),

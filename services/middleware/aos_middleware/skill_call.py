@@ -49,10 +49,11 @@ class Call:
         if self._around.served.announced(path):
             # After the router, its clients are back within a moment.
             await self._around.served.is_back(path, GONE_S)
-        if fault := self._around.served.fault(path):
-            raise fault
         with self._around.gate.passing(path):
             await self._around.gate.confirm()
+            # Last, since an adapter that cannot stop ends its process.
+            if fault := self._around.served.fault(path):
+                raise fault
             self._stop.let_out()
             return await self._call_path(path, fields)
 

@@ -10,8 +10,11 @@ from typing import Any
 
 import msgspec
 
-from aos_protocol.spelling import nearest
+from aos_protocol.spelling import nearest, shortened
 from aos_runtime import plain_data
+
+_KEPT_TEXTS = 2_000_000
+_BEGINNING = 200
 
 
 class Message:
@@ -88,3 +91,16 @@ def text_of(value: Any) -> str:
         return msgspec.json.encode(plain_from(value)).decode()
     except (TypeError, ValueError, OverflowError):
         return repr(value)
+
+
+def kept_texts(texts: Mapping[str, str]) -> dict[str, str]:
+    """The texts of local variables for records, the shortest ones whole; the longest may be beginnings.
+
+    Together they have some two million characters at most: a picture would be too large for the bus.
+    """
+    kept: dict[str, str] = {}
+    left = _KEPT_TEXTS
+    for name, text in sorted(texts.items(), key=lambda each: len(each[1])):
+        kept[name] = text if len(text) <= left else shortened(text, _BEGINNING)
+        left -= len(kept[name])
+    return {name: kept[name] for name in texts}
