@@ -146,6 +146,8 @@ REFUSED = [
     Rule("go.json", '"eWell", "eBadly"]', '"eWell", "eDone"]', "AOS126", title="a hidden response"),
     Rule("go.json", "{ state__.at", "{{ state__.at", "AOS108"),
     Rule("go.json", "if (end", "«#include <ctime>\\nif (end", "AOS108"),
+    Rule("go.json", "__meetPrecondition =", "__meetPrecondition =«\u00a0", "AOS108", title="blank"),
+    Rule("go.json", '"PlpMain"', "«'PlpMain'", "AOS104"),
     Rule("go.json", '"DynamicModel"', '"DynamicModle"', "AOS105"),
     # Each construct used wrongly.
     Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.«SampleUnform(0, 1) < 0.5", "AOS110"),

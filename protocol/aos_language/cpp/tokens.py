@@ -5,6 +5,7 @@ digraphs, raw strings and digit separators are read as the compiler reads them, 
 """
 
 import re
+import unicodedata
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -59,6 +60,18 @@ _IN_PLACE_OF = {
 }
 """Directives that people write, with what there is in their place."""
 
+_FROM_A_PAGE = {
+    **dict.fromkeys("\u00a0\u2002\u2003\u2007\u2009\u200b\u200c\u200d\u202f\u2028\u2060\u3000\ufeff", " "),
+    **dict.fromkeys("\u201c\u201d\u201e\u00ab\u00bb", '"'),
+    **dict.fromkeys("\u2018\u2019\u2032", "'"),
+    **dict.fromkeys("\u2010\u2011\u2013\u2014\u2212", "-"),
+    "\u00d7": "*",
+    "\u00f7": "/",
+    "\u2260": "!=",
+    "\u2264": "<=",
+    "\u2265": ">=",
+}
+"""Characters of pages and word processors, with what C++ has in their place."""
 
 _PYTHON_LINE = re.compile(
     r"^[ \t]*(?P<word>if|elif|else|for|while|def)\b(?P<head>[^;{}?\n]*):[ \t]*(?://.*|#.*)?$", re.MULTILINE
@@ -74,6 +87,7 @@ class FaultKind(StrEnum):
     PREPROCESSOR = "preprocessor"
     SIZE = "size"
     PYTHON = "python"
+    CHARACTER = "character"
     SYNTAX = "syntax"
 
 
@@ -126,7 +140,7 @@ def cut(code: str) -> Tokens:
         kind = str(match.lastgroup)
         if "comment" not in kind and not match.group().isspace():
             statements.take(match.group(), match.end())
-        if kind in ("word", "other", "number", "scope"):
+        if kind in ("word", "number", "scope") or (kind == "other" and match.group() not in _FROM_A_PAGE):
             continue
         extent = lines.extent(*match.span())
         if kind == "raw":
@@ -148,6 +162,8 @@ def cut(code: str) -> Tokens:
             faults.append(_directive(match.group(), lines.extent(start, match.end())))
         elif kind == "hash":
             faults.append(_no_comment(extent))
+        elif kind == "other":
+            faults.append(_from_a_page(match.group(), extent))
         elif kind == "continuation":
             faults.append(Fault(FaultKind.PREPROCESSOR, "a backslash at the end of a line", extent))
         elif kind == "open_comment":
@@ -252,6 +268,13 @@ def _directive(text: str, extent: Extent) -> Fault:
 def _no_comment(extent: Extent) -> Fault:
     message = "`#` does not begin a comment in C++"
     return Fault(FaultKind.PREPROCESSOR, message, extent, "Write `//` instead", "//")
+
+
+def _from_a_page(character: str, extent: Extent) -> Fault:
+    instead = _FROM_A_PAGE[character]
+    name = unicodedata.name(character, f"U+{ord(character):04X}").lower()
+    hint = "Write a plain space" if instead == " " else f"Write `{instead}`"
+    return Fault(FaultKind.CHARACTER, f"a {name} is no character of C++", extent, hint, instead)
 
 
 def _python_lines(code: str, lines: Lines, elsewhere: Sequence[Extent]) -> Iterator[Fault]:

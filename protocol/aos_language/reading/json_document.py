@@ -1,5 +1,7 @@
 """A JSON file to a document: the header decides, in the paper's spelling (`GsdlMain`) or that of AOS 1.x."""
 
+import re
+
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind, check_name
 from aos_language.reading.json_environment import read_environment, read_low_level
@@ -37,7 +39,8 @@ def read_json(source: Source, findings: Findings) -> Document | None:
         hint = "Move it out of the bundle"
         findings.error("AOS107", "this is the result of a run, not a document", source.span(), hint)
         return None
-    is_document = any(f'"{word}"' in source.text for word in (*_HEADERS, *_SECTIONS))
+    has_header = re.search(rf"\b(?:{'|'.join(_HEADERS)})\b", source.text) is not None
+    is_document = has_header or any(f'"{word}"' in source.text for word in _SECTIONS)
     value = parse_json(source, findings if is_document else Findings())
     if not isinstance(value, JsonObject):
         if not is_document:
