@@ -11,7 +11,8 @@ from processes import kill
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, ServiceChanged
 from aos_deploy.program import Program
-from aos_deploy.run_directory import ProcessEnd, RunDirectory
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_summary import ProcessEnd
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock

@@ -17,9 +17,10 @@ from aos_deploy.page_address import page_address
 from aos_deploy.printing import from_here, time_text
 from aos_deploy.program import outsiders_of, programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
-from aos_deploy.run_directory import RunDirectory, Summary
+from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_end import account_of, beginning_of, settled
 from aos_deploy.run_record import record_of
+from aos_deploy.run_summary import Summary
 from aos_deploy.spans.rest import send_rest
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp, worlds_text

@@ -29,6 +29,7 @@ import msgspec
 
 from aos_deploy.bus_socket import place_of_socket, remove_socket
 from aos_deploy.run_record import RunRecord
+from aos_deploy.run_summary import Summary
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
@@ -41,57 +42,8 @@ LATEST = "latest"
 
 _TOLD_LOG_LINES = 8
 
-
 _ANEW = ("endpoint", "password_file", "dictionary", "parties", "ros2")
 """The settings that a run which goes on does not keep."""
-
-
-class ProcessEnd(msgspec.Struct, frozen=True):
-    """A process that ended though nobody stopped it: when, by which status or signal, and what followed."""
-
-    name: str
-    after_s: float
-    how: str
-    then: str
-
-
-class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file.
-
-    The ending and its probabilities are those of the last belief: nobody tells a robot how its world ended.
-    `cautious_goal_probability` is that of the goal if nothing ran that was not observed.
-    `process_ends` are the processes that ended by themselves, in this order. `mission_parameters` are the
-    values of all parts of mission parameters.
-    """
-
-    robot: str
-    deploy_file: str
-    seed: int
-    started: str
-    ending: str
-    remark: str
-    exit_code: int
-    steps: int
-    goal_probability: float
-    cautious_goal_probability: float
-    over_probability: float
-    failure_probability: float
-    actions: tuple[str, ...]
-    responses: tuple[str, ...]
-    services_ready_s: float | None
-    first_decision_s: float | None
-    duration_s: float
-    process_ends: tuple[ProcessEnd, ...] = ()
-    mission_parameters: dict[str, str] = {}
-
-
-class SystemSummary(Summary, frozen=True, kw_only=True):
-    """`summary.json` of a system that stays: the steps of all `missions`, each of which has its own summary.
-
-    The ending is `stopped`, or `cancelled` where a mission ran when the system was stopped.
-    """
-
-    missions: tuple[str, ...]
 
 
 class RunDirectory:

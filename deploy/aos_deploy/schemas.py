@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from aos_deploy.deploy_file import DeployFile
+from aos_deploy.deploy_parts import DeployFile
 from aos_language.schemas.documents import gsdl_schema, plp_schema
 
 

@@ -29,7 +29,8 @@ from aos_deploy.process_start import ROUTER_MODULE, start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
 from aos_deploy.remote import is_lost
-from aos_deploy.run_directory import ProcessEnd, RunDirectory
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_summary import ProcessEnd
 from aos_protocol.access import OPERATOR, Party
 from aos_protocol.errors import DeployError
 from aos_protocol.keys import Keys, Serving

@@ -9,8 +9,9 @@ from aos_deploy.events import Event, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.mission_run import MissionRun
 from aos_deploy.printing import time_text
-from aos_deploy.run_directory import RunDirectory, Summary, SystemSummary
+from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_end import settled
+from aos_deploy.run_summary import Summary, SystemSummary
 from aos_deploy.supervisor import Supervisor
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol.errors import AosError, MissionRunsError, StorageError

@@ -7,7 +7,8 @@ import msgspec
 from ruamel.yaml import YAML
 
 from aos_deploy.bundle_files import project_of
-from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file, without_a_robot
+from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
+from aos_deploy.deploy_parts import BusPart
 from aos_deploy.mission_values import values_of_mapping
 from aos_deploy.needed_here import check_sandbox
 from aos_deploy.played_faults import PlayedFaults

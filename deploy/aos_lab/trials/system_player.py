@@ -9,7 +9,8 @@ import msgspec
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.mission_run import MissionRun
 from aos_deploy.needed_here import check_needed_here
-from aos_deploy.run_directory import RunDirectory, Summary
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_summary import Summary
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock

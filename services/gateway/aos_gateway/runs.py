@@ -8,9 +8,10 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.run_directory import RunDirectory, Summary
+from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_end import account_of
 from aos_deploy.run_record import RunRecord
+from aos_deploy.run_summary import Summary
 from aos_deploy.verdict import message_of_row
 from aos_protocol.access import WATCHER
 from aos_protocol.errors import AosError, GatewayError
