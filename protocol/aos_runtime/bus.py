@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from typing import Any, TypeVar
@@ -18,10 +18,11 @@ import zenoh
 from zenoh.handlers import Callback
 
 from aos_protocol.access import ROUND_TRIP, Act
-from aos_protocol.codec import decode, encode, encode_fault
-from aos_protocol.errors import AosError, BusError, LostAnswerError
+from aos_protocol.codec import decode, encode
+from aos_protocol.errors import AosError, BusError
 from aos_protocol.messages import Message
 from aos_runtime.access_check import Access
+from aos_runtime.answers import Answers, Handler
 from aos_runtime.bus_config import LEASE_S, client_config, opened_session
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.closing import Closing
@@ -69,9 +70,8 @@ class Bus(Closing):
         self._loop = asyncio.get_running_loop()
         self._inbox = Inbox(self._loop)
         self._unread = Recurring(_log.warning)
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._answers = Answers(session, sender, clock)
         self._subscriptions: set[Subscription[Any]] = set()
-        self._queryables: list[zenoh.Queryable[None]] = []
         self._tokens: dict[str, zenoh.LivelinessToken] = {}
         self._presences: list[Presence] = []
         # `session.is_closed()` takes a lock of Zenoh's without letting the interpreter go, while a callback
@@ -107,11 +107,7 @@ class Bus(Closing):
         self._is_closed = True
         for token in self._tokens.values():
             token.undeclare()
-        for queryable in self._queryables:
-            queryable.undeclare()
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._answers.close()
         for subscription in tuple(self._subscriptions):
             subscription.close()
         await asyncio.to_thread(self._session.close)
@@ -158,22 +154,14 @@ class Bus(Closing):
                 watch.end()
         return question.answer()
 
-    async def answer(
-        self, key: str, request: type[M], handler: Callable[[M, str], Awaitable[Message]]
-    ) -> None:
+    async def answer(self, key: str, request: type[M], handler: Handler[M]) -> None:
         """Serves `key` until the bus closes: `handler(message, key)` runs as a task for each question.
 
         Questions may overlap. An AosError of the handler goes to the asker with its code, any other exception
         as AOS606 and into the log. On return the key can be asked from anywhere.
         """
-
         self._check("answers", key)
-
-        def on_query(query: zenoh.Query) -> None:
-            self._loop.call_soon_threadsafe(self._start_answering, query, request, handler)
-
-        queryable = self._session.declare_queryable(key, Callback(on_query, indirect=False))
-        self._queryables.append(queryable)
+        self._answers.begin(key, request, handler)
         await self._wait_for_router()
 
     def tell(self, key: str, message: Message) -> None:
@@ -332,57 +320,6 @@ class Bus(Closing):
         await asyncio.wait({answer}, timeout=_UNANSWERED_S)
         if not answer.done():
             answer.set_result(None)
-
-    def _start_answering(
-        self,
-        query: zenoh.Query,
-        request: type[M],
-        handler: Callable[[M, str], Awaitable[Message]],
-    ) -> None:
-        if self._is_closed:
-            query.drop()
-            return
-        task = self._loop.create_task(self._answer_one(query, request, handler))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
-
-    async def _answer_one(
-        self,
-        query: zenoh.Query,
-        request: type[M],
-        handler: Callable[[M, str], Awaitable[Message]],
-    ) -> None:
-        # The asker waits out its whole deadline while a query is referenced, replied or not.
-        with query:
-            key = str(query.key_expr)
-            try:
-                if query.attachment is not None:
-                    query.reply(query.key_expr, b"", attachment=RECEIPT, express=True)
-                if "*" in key:
-                    raise BusError(f"a question to {key} has no one answer", code="AOS602")
-                payload = query.payload.to_bytes() if query.payload is not None else b""
-                result = await handler(decode(payload, request), key)
-                answer = encode(result, sender=self.sender, stamp_ns=self._clock.now_ns())
-            except AosError as error:
-                self._refuse(query, error)
-            except asyncio.CancelledError:
-                self._refuse(query, LostAnswerError(f"{self.sender} stopped while it answered {key}"))
-                raise
-            except Exception as error:
-                _log.exception("the handler of %s failed", key)
-                text = f"{self.sender} failed on {key}: {type(error).__name__}: {error}"
-                self._refuse(query, BusError(text, code="AOS606", hint=f"See the log of {self.sender}"))
-            else:
-                try:
-                    query.reply(query.key_expr, answer, express=True)
-                except zenoh.ZError as error:
-                    _log.warning("the answer on %s was not delivered: %s", key, error)
-
-    def _refuse(self, query: zenoh.Query, error: AosError) -> None:
-        try:
-            query.reply_err(encode_fault(error, sender=self.sender, stamp_ns=self._clock.now_ns()))
-        except (zenoh.ZError, BusError) as failure:
-            _log.warning("the refusal on %s was not delivered: %s", query.key_expr, failure)
 
 
 def _cannot_connect(endpoint: str, credential: Credential | None) -> BusError:
