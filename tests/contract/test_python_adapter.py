@@ -84,6 +84,9 @@ async def too_far(call):
 async def says_too_much(call):
     call.publish("/scan", made_by=measure)
 
+async def says_it_to_none(call):
+    call.publish(None, x=1)
+
 async def nonsense(call):
     return Observed(3)
 
@@ -190,6 +193,7 @@ async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) 
         ("huge", {}, "AOS510", "the result of /skill has 17000005 bytes, and the bus carries 16777216"),
         ("too_far", {}, "AOS510", "the field ticks of the result of /skill cannot be sent"),
         ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
+        ("says_it_to_none", {}, "AOS510", "the topic None is no text"),
         ("nonsense", {}, "AOS510", "the observation of /skill is 3, which is no word"),
         ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),
         ("turn", {"angle": 1}, "AOS502", "The first argument is the call, and no field: write (call, angle)"),

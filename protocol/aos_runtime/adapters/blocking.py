@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import faulthandler
 import logging
 import os
 import sys
@@ -15,6 +16,10 @@ from aos_runtime.code_places import place_of
 
 _ANSWER_S = 5.0
 """The time that the loop may take to answer: after a pause of the whole process it has to catch up first."""
+
+_LONGEST_S = 1e9
+_STDERR = 2
+"""The log, also where `sys.stderr` has been replaced."""
 
 _log = logging.getLogger("aos.adapter")
 
@@ -45,7 +50,11 @@ def ends_if_blocked(what: str, after_s: float) -> Iterator[None]:
     timer = threading.Timer(after_s, end)
     timer.daemon = True
     timer.start()
+    # C code that keeps Python's lock lets no thread of Python run: this one is of C, and needs no lock.
+    at_last_s = min(after_s + _ANSWER_S + 1.0, _LONGEST_S)
+    faulthandler.dump_traceback_later(at_last_s, exit=True, file=_STDERR)
     try:
         yield
     finally:
+        faulthandler.cancel_dump_traceback_later()
         timer.cancel()

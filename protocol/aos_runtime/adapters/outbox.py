@@ -8,6 +8,7 @@ import threading
 from collections import Counter, deque
 from typing import Any
 
+from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
 from aos_runtime.adapters.sendable import sendable
@@ -40,8 +41,10 @@ class Outbox:
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
         """Sends a message on a topic. From any thread, in order.
 
-        SkillError AOS510 if a field is nothing that the bus can carry.
+        SkillError AOS510 if the topic is no text, or a field is nothing that the bus can carry.
         """
+        if not isinstance(topic, str):
+            raise SkillError(f"the topic {topic!r} is no text", code="AOS510")
         fields = sendable(fields, f"a message on {topic}")
         with self._sending:
             if len(self._unsent) == MAX_UNSENT_MESSAGES:
