@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from aos_lab.calibration.calibrate import Calibration
 from aos_lab.calibration.draws import Draw
 from aos_lab.calibration.estimation import DrawEstimate, estimate
 from aos_lab.calibration.lattice import Lattice
 from aos_lab.calibration.patch import patch_of, proposed_numbers
+from aos_lab.commands.calibrate import print_calibration
 from aos_protocol.diagnostics import Span
 
 
@@ -81,3 +83,16 @@ def test_how_many_records_would_tell_falls_with_how_far_they_are_off() -> None:
     assert near.records_to_tell == 97
     assert 4 < far.records_to_tell < near.records_to_tell
     assert counted(discrete(1.0, 0.0), 4, 0).records_to_tell == 0
+
+
+def test_a_terminal_of_any_width_shows_the_whole_table(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    result = Calibration(9, 9, (), (counted(discrete(0.5, 0.5), 5, 4),), (), "", ())
+    shown = {}
+    for width in ("30", "80", "300"):
+        monkeypatch.setenv("COLUMNS", width)
+        print_calibration(result)
+        shown[width] = capsys.readouterr().out
+    assert len({"".join(sorted(filter(str.isalnum, text))) for text in shown.values()}) == 1
+    assert "0.556 [0.254, 0.830]" in shown["80"]

@@ -84,7 +84,8 @@ def _print(models: list[ModelTests]) -> None:
             continue
         table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
         for column in ("skill", "response", "uses", "modelled", "seen", ""):
-            table.add_column(column, justify="left" if column in ("skill", "response", "") else "right")
+            is_text = column in ("skill", "response", "")
+            table.add_column(column, justify="left" if is_text else "right", overflow="fold")
         for test in used:
             place = model.begun_at.get((test.skill, test.response), "")
             numbers = (str(test.uses), f"{test.expected / test.uses:.2f}", f"{test.seen / test.uses:.2f}")

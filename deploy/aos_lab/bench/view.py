@@ -19,7 +19,8 @@ def print_report(report: Report) -> None:
         out.print(line, highlight=False, markup=False)
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for heading in _HEADINGS:
-        table.add_column(heading, justify="right" if heading in _ON_THE_RIGHT else "left", no_wrap=True)
+        is_number = heading in _ON_THE_RIGHT
+        table.add_column(heading, justify="right" if is_number else "left", overflow="fold")
     for cells in _rows(report):
         table.add_row(*cells)
     out.print(table)

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from aos_lab.calibration.estimation import DrawEstimate
 
 SHOWN_REMARKS = 5
+_NUMBERS_WHOLE_FROM = 80
+"""Columns of a terminal in which an interval keeps to its line."""
 
 
 def register(app: typer.Typer) -> None:
@@ -70,17 +72,19 @@ def calibrate(
     if as_json:
         print_json(result)
         return
-    _print(result)
+    print_calibration(result)
     if write is not None and result.patch:
         typer.echo(f"the patch is in {write}; apply it with `git apply {write}`")
 
 
-def _print(result: Calibration) -> None:
+def print_calibration(result: Calibration) -> None:
+    """The table, whole in a terminal of any width; what was left out, and the patch."""
     typer.echo(f"{count(result.missions, 'mission')}, {count(result.steps, 'step')}")
-    table = Table(box=box.SIMPLE, pad_edge=False)
+    out, table = console(is_wide=True), Table(box=box.SIMPLE, pad_edge=False)
     for name in ("place", "outcome", "count", "records", "document", ""):
         is_text = name in ("place", "outcome", "")
-        table.add_column(name, justify="left" if is_text else "right", no_wrap=True)
+        is_whole = not is_text and out.width >= _NUMBERS_WHOLE_FROM
+        table.add_column(name, justify="left" if is_text else "right", overflow="fold", no_wrap=is_whole)
     for estimate in result.estimates:
         for number, outcome in enumerate(estimate.outcomes):
             span = estimate.draw.span
@@ -95,7 +99,7 @@ def _print(result: Calibration) -> None:
                 _verdict(estimate, number, result.missions),
             )
         table.add_section()
-    console(is_wide=True).print(table)
+    out.print(table)
     for skipped in result.skipped:
         typer.echo(f"{skipped.span}: not estimated: {skipped.why}")
     for remark in result.remarks[:SHOWN_REMARKS]:
