@@ -20,8 +20,8 @@
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
-#include "aos/belief/gathering.hpp"
 #include "aos/belief/drawn_step.hpp"
+#include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/initial_paths.hpp"
 #include "aos/belief/marginals.hpp"
@@ -51,7 +51,7 @@ class Belief {
   using State = typename Model::State;
   using Particle = aos::Particle<Model>;
 
-  const std::vector<Particle>& particles() const { return particles_; }
+  const std::vector<Particle>& particles() const { return cloud_.particles; }
   // Whether it is the exact belief, but for differences that nobody would notice.
   bool is_exact() const { return error_bound_ <= negligible_error; }
   // Whether the states were drawn at random.
@@ -60,25 +60,25 @@ class Belief {
   // know; then it is enough that there are so many states.
   bool is_mostly_drawn_once() const {
     if (!is_drawn()) return false;
-    if (lineages_.empty()) return 2 * particles_.size() > particle_count;
+    if (lineages().empty()) return 2 * particles().size() > particle_count;
     std::size_t once = 0;
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
+    for (std::size_t i = 0; i < particles().size(); ++i) {
       // The squares of n samples of equal weight are an n-th of the square of their sum.
-      once += lineages_[i].squares > 0.75 * particles_[i].weight * particles_[i].weight;
+      once += lineages()[i].squares > 0.75 * particles()[i].weight * particles()[i].weight;
     }
-    return 2 * once > particles_.size();
+    return 2 * once > particles().size();
   }
   // How the particles of a drawn belief came to be, if that is known.
-  const History<Model>& history() const { return history_; }
-  const std::vector<Lineage>& lineages() const { return lineages_; }
-  bool has_traces() const { return !lineages_.empty() && lineages_.front().trace != nullptr; }
+  const History<Model>& history() const { return cloud_.history; }
+  const std::vector<Lineage>& lineages() const { return cloud_.lineages; }
+  bool has_traces() const { return cloud_.has_traces(); }
   // No event's probability is further than this from that of the exact belief. It is 1 if steps were sampled.
   double error_bound() const { return error_bound_; }
   // How many states of equal weight tell as much; for a drawn belief, how many independent samples.
   double effective_states() const {
-    if (!lineages_.empty()) return Cloud<Model>{particles_, lineages_, history_}.effective();
+    if (!lineages().empty()) return cloud_.effective();
     double squares = 0;
-    for (const auto& particle : particles_) squares += particle.weight * particle.weight;
+    for (const auto& particle : particles()) squares += particle.weight * particle.weight;
     return squares > 0 ? 1 / squares : 0;
   }
 
@@ -120,11 +120,11 @@ class Belief {
     const auto add = [&](Observation observation, double weight) { odds[observation] += weight; };
     try {
       if (is_drawn()) throw NotEnumerable{"the states were drawn"};
-      enumerate_outcomes<Model>(particles_, action, ignored_numbers, max_predicted_paths,
+      enumerate_outcomes<Model>(particles(), action, ignored_numbers, max_predicted_paths,
                                 [&](const State&, const State&, Observation seen, double weight) { add(seen, weight); });
     } catch (const NotEnumerable&) {
       odds.clear();
-      ParticleFilter<Model>{random}.draw_observations(particles_, action, add);
+      ParticleFilter<Model>{random}.draw_observations(particles(), action, add);
     }
     ObservationOdds sorted(odds.begin(), odds.end());
     std::sort(sorted.begin(), sorted.end(), [](const auto& left, const auto& right) {
@@ -160,7 +160,7 @@ class Belief {
       double gone = 0;
       std::size_t paths = 0;
       State next{};
-      for (const auto& [state, weight] : particles_) {
+      for (const auto& [state, weight] : particles()) {
         const auto run = [&](Enumerator& path) {
           if (++paths > max_enumerated_paths) throw NotEnumerable{"too many outcomes"};
           next = state;
@@ -193,7 +193,7 @@ class Belief {
   template <class Holds>
   std::pair<Belief, double> conditioned(Holds&& holds) const {
     Gathering<Model> gathering;
-    for (const auto& [state, weight] : particles_) {
+    for (const auto& [state, weight] : particles()) {
       if (holds(state)) gathering.add(state, weight);
     }
     const double probability = gathering.total() / total();
@@ -204,8 +204,8 @@ class Belief {
   // A mixture: `share` of `other` and the rest of this belief.
   Belief mixed_with(const Belief& other, double share) const {
     Gathering<Model> gathering;
-    for (const auto& [state, weight] : particles_) gathering.add(state, weight * (1 - share));
-    for (const auto& [state, weight] : other.particles_) gathering.add(state, weight * share);
+    for (const auto& [state, weight] : particles()) gathering.add(state, weight * (1 - share));
+    for (const auto& [state, weight] : other.particles()) gathering.add(state, weight * share);
     const double error_bound = (1 - share) * error_bound_ + share * other.error_bound_;
     return Belief{gathering, error_bound, std::max(source_, other.source_)};
   }
@@ -213,8 +213,8 @@ class Belief {
   const State& sample(Sampler& random) const {
     const double drawn = random.uniform() * cumulative_.back();
     const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), drawn);
-    const auto index = std::min<std::size_t>(found - cumulative_.begin(), particles_.size() - 1);
-    return particles_[index].state;
+    const auto index = std::min<std::size_t>(found - cumulative_.begin(), particles().size() - 1);
+    return particles()[index].state;
   }
 
   // The sum of the weights: 1 but for rounding.
@@ -222,8 +222,8 @@ class Belief {
 
   double probability_of(Ending ending) const {
     double sum = 0;
-    bool is_certain = !particles_.empty();
-    for (const auto& [state, weight] : particles_) {
+    bool is_certain = !particles().empty();
+    for (const auto& [state, weight] : particles()) {
       const bool has_it = Model::ending(state) == ending;
       sum += has_it ? weight : 0;
       is_certain = is_certain && has_it;
@@ -235,16 +235,16 @@ class Belief {
   // The entropy in nats.
   double entropy() const {
     double sum = 0;
-    for (const auto& particle : particles_) sum -= particle.weight * std::log(particle.weight);
+    for (const auto& particle : particles()) sum -= particle.weight * std::log(particle.weight);
     return std::max(sum, 0.0);
   }
 
   // These write members of an object: a summary for people, and the probabilities of the endings alone.
   void write_members(JsonWriter& json) const {
-    Marginals<Model>{particles_}.write(json.key("marginals"));
+    Marginals<Model>{particles()}.write(json.key("marginals"));
     json.member("entropy", entropy());
     write_endings(json);
-    json.member("states", particles_.size()).member("effective_states", effective_states());
+    json.member("states", particles().size()).member("effective_states", effective_states());
     json.member("is_exact", is_exact()).member("error_bound", error_bound_);
   }
   void write_endings(JsonWriter& json) const {
@@ -267,8 +267,8 @@ class Belief {
   // The same belief without its lineages and its history.
   Belief without_history() const {
     Belief alone = *this;
-    alone.lineages_.clear();
-    alone.history_ = {};
+    alone.cloud_.lineages.clear();
+    alone.cloud_.history = {};
     return alone;
   }
 
@@ -285,14 +285,15 @@ class Belief {
     }
   }
   explicit Belief(Cloud<Model> cloud) : Belief(cloud, cloud.total()) {}
-  Belief(Cloud<Model>& cloud, double sum) : history_(std::move(cloud.history)), error_bound_(1), source_(Source::drawing) {
+  Belief(Cloud<Model>& cloud, double sum) : error_bound_(1), source_(Source::drawing) {
+    cloud_.history = std::move(cloud.history);
     for (std::size_t i = 0; i < cloud.particles.size(); ++i) {
       add(cloud.particles[i].state, cloud.particles[i].weight / sum);
-      lineages_.push_back({cloud.lineages[i].squares / sum / sum, std::move(cloud.lineages[i].trace)});
+      cloud_.lineages.push_back({cloud.lineages[i].squares / sum / sum, std::move(cloud.lineages[i].trace)});
     }
   }
   void add(const State& state, double weight) {
-    particles_.push_back({state, weight});
+    cloud_.particles.push_back({state, weight});
     cumulative_.push_back((cumulative_.empty() ? 0 : cumulative_.back()) + weight);
   }
 
@@ -317,7 +318,7 @@ class Belief {
         gathering.add(next, weight);
         if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);
       };
-      gone += enumerate_outcomes<Model>(particles_, step.action, numbers, max_enumerated_paths, add);
+      gone += enumerate_outcomes<Model>(particles(), step.action, numbers, max_enumerated_paths, add);
       gone += gathering.reduce(limit, random);
       const double probability = gathering.total();
       const bool is_unbounded = numbers.weighs() && error_bound_ + gone > 0;
@@ -334,7 +335,7 @@ class Belief {
     Gathering<Model> gathering;
     Replay replay;
     const std::vector<double> none;
-    for (const auto& [state, weight] : particles_) {
+    for (const auto& [state, weight] : particles()) {
       const double trials = std::max(1.0, std::ceil(weight * static_cast<double>(particle_count)));
       for (double trial = 0; trial < trials; ++trial) {
         State next = state;
@@ -349,15 +350,13 @@ class Belief {
 
   std::pair<Belief, double> stepped(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
     DrawnStep<Model> drawn{max_states(Source::enumeration), random};
-    auto updated = drawn.after({particles_, lineages_, history_}, !is_drawn(), step, numbers);
+    auto updated = drawn.after(cloud_, !is_drawn(), step, numbers);
     if (updated.cloud.particles.empty()) return {Belief{}, 0};
     return {Belief{std::move(updated.cloud)}, updated.probability};
   }
 
-  std::vector<Particle> particles_;
+  Cloud<Model> cloud_;  // with lineages where it is drawn
   std::vector<double> cumulative_;
-  std::vector<Lineage> lineages_;  // of a drawn belief only
-  History<Model> history_;
   double error_bound_ = 0;
   Source source_ = Source::enumeration;
 };

@@ -80,24 +80,15 @@ class Hypotheses {
   // observations since it began are less probable under it than `refuted_below` times their probability under the belief.
   // Where it is true, the latter happens with a probability of `refuted_below` at most (Ville's inequality).
   Hypotheses given(int skill, const Report& report, Posteriors found, double refuted_below) const {
-    Hypotheses after;
-    after.discredited_ = discredited_;
     if (found.hypotheses_are_empty()) {
-      after.all_.push_back({1, {}, std::move(found.cautious->first)});
+      Hypotheses after{std::move(found.cautious->first)};
+      after.discredited_ = discredited_;
       return after;
     }
-    after.open_ = open_;
     const double total = log_probability(found);
-    for (std::size_t i = 0; i < all_.size(); ++i) {
-      auto& [posterior, log_likelihood] = found.each[i];
-      const double weight = all_.size() == 1 ? 1 : std::exp(log_weight(i) + log_likelihood - total);
-      if (posterior.particles().empty() || weight < negligible_weight) continue;
-      after.all_.push_back({weight, all_[i].ran, std::move(posterior)});
-    }
-    const auto row = std::ranges::find(open_, skill);
-    if (row != open_.end()) after.close(row - open_.begin());
+    Hypotheses after = weighed(found, total, negligible_weight);
+    after.close_row_of(skill);
     after.mix();
-    after.log_ratio_ = log_ratio_;
     if (cautious_) after.follow_cautiously(*cautious_, std::move(*found.cautious), total, refuted_below, discredited_.contains(report));
     return after;
   }
@@ -114,13 +105,9 @@ class Hypotheses {
 
   // After an observation that cannot be used, though the model may well explain it.
   Hypotheses unread(int action, Sampler& random) const {
-    Hypotheses after;
-    after.discredited_ = discredited_;
-    after.log_ratio_ = log_ratio_;
-    after.open_ = open_;
+    Hypotheses after = without_beliefs();
     for (const Hypothesis& each : all_) after.all_.push_back({each.weight, each.ran, each.belief.predicted(action, random)});
-    const auto row = std::ranges::find(open_, Model::skill_of(action));
-    if (row != open_.end()) after.close(row - open_.begin());
+    after.close_row_of(Model::skill_of(action));
     after.mix();
     if (cautious_) after.keep_cautious(cautious_->predicted(action, random));
     return after;
@@ -138,10 +125,7 @@ class Hypotheses {
 
   // After an end that nobody observed, of an action that ran with this probability.
   Hypotheses unobserved(int action, double ran_probability, Sampler& random) const {
-    Hypotheses after;
-    after.discredited_ = discredited_;
-    after.log_ratio_ = log_ratio_;
-    after.open_ = open_;
+    Hypotheses after = without_beliefs();
     const int skill = Model::skill_of(action);
     const auto row = std::ranges::find(open_, skill);
     if (row != open_.end()) {
@@ -178,19 +162,10 @@ class Hypotheses {
   // Given what somebody knows, which is possible: `found` are the posteriors by it. It closes no row. The cautious belief
   // goes as in `given`.
   Hypotheses known(Posteriors found, double refuted_below) const {
-    Hypotheses after;
-    after.discredited_ = discredited_;
-    after.open_ = open_;
-    const double log_total = log_probability(found);
-    for (std::size_t i = 0; i < all_.size(); ++i) {
-      auto& [posterior, log_likelihood] = found.each[i];
-      if (posterior.particles().empty()) continue;
-      const double weight = all_.size() == 1 ? 1 : std::exp(log_weight(i) + log_likelihood - log_total);
-      after.all_.push_back({weight, all_[i].ran, std::move(posterior)});
-    }
+    const double total = log_probability(found);
+    Hypotheses after = weighed(found, total, 0);
     after.mix();
-    after.log_ratio_ = log_ratio_;
-    if (cautious_) after.follow_cautiously(*cautious_, std::move(*found.cautious), log_total, refuted_below, false);
+    if (cautious_) after.follow_cautiously(*cautious_, std::move(*found.cautious), total, refuted_below, false);
     return after;
   }
 
@@ -280,6 +255,26 @@ class Hypotheses {
 
   Hypotheses() = default;
 
+  // What is known beside the beliefs.
+  Hypotheses without_beliefs() const {
+    Hypotheses after;
+    after.discredited_ = discredited_;
+    after.log_ratio_ = log_ratio_;
+    after.open_ = open_;
+    return after;
+  }
+
+  // The hypotheses after what was found, without those of less weight than `least`.
+  Hypotheses weighed(Posteriors& found, double log_total, double least) const {
+    Hypotheses after = without_beliefs();
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      auto& [posterior, log_likelihood] = found.each[i];
+      const double weight = all_.size() == 1 ? 1 : std::exp(log_weight(i) + log_likelihood - log_total);
+      if (!posterior.particles().empty() && weight >= least) after.all_.push_back({weight, all_[i].ran, std::move(posterior)});
+    }
+    return after;
+  }
+
   double log_weight(std::size_t number) const { return std::log(all_[number].weight); }
 
   bool is_too_large() const {
@@ -297,6 +292,11 @@ class Hypotheses {
     };
     add(true, ran_probability, std::move(ran));
     add(false, 1 - ran_probability, before.belief);
+  }
+
+  void close_row_of(int skill) {
+    const auto row = std::ranges::find(open_, skill);
+    if (row != open_.end()) close(row - open_.begin());
   }
 
   // Closes a row: hypotheses that differ in its cause alone become one.
