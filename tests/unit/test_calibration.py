@@ -95,4 +95,4 @@ def test_a_terminal_of_any_width_shows_the_whole_table(
         print_calibration(result)
         shown[width] = capsys.readouterr().out
     assert len({"".join(sorted(filter(str.isalnum, text))) for text in shown.values()}) == 1
-    assert "0.556 [0.254, 0.830]" in shown["80"]
+    assert "0.556 [0.255, 0.827]" in shown["80"]
