@@ -57,7 +57,7 @@ async def engine_of_bundle(
         engine = await Engine.start(built, seed=seed)
         try:
             yield engine
-            for finding in with_excerpts(await endless_findings(built, engine), planned.files):
+            for finding in with_excerpts(await endless_findings(engine), planned.files):
                 typer.echo(render(finding), err=True)
         finally:
             await engine.close()

@@ -34,7 +34,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
             if reach.limit:
                 await engine.rate(_DRAWN_TIME_S, seed=1, max_seconds=MAX_CPU_S)
-            endless = await endless_findings(built, engine)
+            endless = await endless_findings(engine)
         finally:
             await engine.close()
     except ModelError as error:

@@ -7,6 +7,13 @@ from mappings import mapping_text
 from models import built_text, engine_of
 
 from aos_protocol.errors import ModelError
+from aos_solver.child.search import Search
+from aos_solver.mission.choosing import Choice, Chooser
+from aos_solver.mission.failures import Failures
+from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.terms import Terms
 
 LOOPS = {
     "exit_first": ("while (AOS.Bernoulli(0.5)) rounds++;", 0.5),
@@ -142,6 +149,18 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
         assert update.summary.error_bound == 0
         (loop,) = (await engine.endless_steps()).loops
         assert "state.is_full[Left]=true, state.is_full[Right]=true" in loop.state
+
+
+async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision(cache_dir: Path) -> None:
+    files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        chooser = Chooser(
+            Terms(name="m", search=Search(simulations=100, seed=1)), Failures(), QuietPorts(), RiskBudget(())
+        )
+        model, belief = RunningModel(1, engine), await engine.summary()
+        choices = [await chooser.choose(model, step, belief) for step in (1, 2)]
+    whys = [choice.plan.why for choice in choices if isinstance(choice, Choice)]
+    assert [why.count("place.sd:9:1: this loop never ends in") for why in whys] == [1, 0]
 
 
 async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path) -> None:

@@ -144,6 +144,12 @@ class EndlessLoop(msgspec.Struct, frozen=True):
     steps: int
     state: str
 
+    @property
+    def text(self) -> str:
+        """The text for people, beside its place."""
+        steps = "1 simulated step" if self.steps == 1 else f"{self.steps:,} simulated steps"
+        return f"this loop never ends in {steps}, the first of them with {self.state}"
+
 
 class EndlessSteps(msgspec.Struct, frozen=True):
     """The loops in which steps of a child did not come to an end."""

@@ -2,7 +2,8 @@
 
 from typing import Literal
 
-from aos_solver.child.answers import EndlessSteps
+from aos_protocol.diagnostics import Span
+from aos_solver.child.answers import EndlessLoop, EndlessSteps
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
 from aos_solver.child.command_line import command_line
 from aos_solver.child.slow_code import SlowCode, slow_code
@@ -27,6 +28,14 @@ class RateQuestions(Asking):
     async def endless_steps(self) -> EndlessSteps:
         """The loops in which steps of the running child did not come to an end, whatever it was asked."""
         return await self._ask(command_line("endless_steps"), EndlessSteps)
+
+    async def endless_loops(self) -> list[tuple[EndlessLoop, Span]]:
+        """Returns these loops with their places; a model without loops that draw is not asked."""
+        emitted = self._built.emitted
+        if emitted.place_of_loop(1) is None:
+            return []
+        loops = (await self.endless_steps()).loops
+        return [(loop, place) for loop in loops if (place := emitted.place_of_loop(loop.loop)) is not None]
 
     async def slow_code(self) -> SlowCode | None:
         """The code in which random steps spend half of their time or more, of another child; None where no

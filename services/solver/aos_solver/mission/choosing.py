@@ -14,6 +14,7 @@ from aos_solver.mission.endings import (
     is_worth_nothing,
 )
 from aos_solver.mission.endings import remark_of as remark_of_ending
+from aos_solver.mission.endless_loops import EndlessLoops
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.ports import Available
 from aos_solver.mission.risk import RiskBudget
@@ -102,6 +103,7 @@ class Chooser:
         self._left_out = left_out
         self._searches: list[SearchMade] = []
         self._idle = 0  # decisions in a row
+        self._endless = EndlessLoops()
 
     @property
     def remark_of_idling(self) -> str:
@@ -210,7 +212,8 @@ class Chooser:
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
             ended = await self._ending(engine, plan, belief, without)
-            plan = _explained(plan, without.reasons, is_cautious)
+            endless = await self._endless.newly_found(engine)
+            plan = _explained(plan, without.reasons, is_cautious, endless)
             if ended is not None:
                 return ended
             chosen_by, searches = self.search.chosen_by, self._searched()
@@ -344,7 +347,7 @@ def _nothing_left(set_aside: Mapping[str, str]) -> str:
     return f"nothing is left that is worth doing: {'; '.join(set_aside.values())}"
 
 
-def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool) -> Plan:
-    """The plan, which says what it does without."""
-    reasons = [plan.why, *set_aside.values(), *([_CAUTIOUSLY] if is_cautious else [])]
+def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool, endless: list[str]) -> Plan:
+    """The plan, which says what it does without, and which loops it has found to be without an end."""
+    reasons = [plan.why, *set_aside.values(), *([_CAUTIOUSLY] if is_cautious else []), *endless]
     return msgspec.structs.replace(plan, why="; ".join(reason for reason in reasons if reason))
