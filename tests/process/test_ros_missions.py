@@ -129,7 +129,7 @@ def original_on_our_robot(root: Path, corpus: Path) -> str:
     """The deploy file of the documentation, with the places where bundle and world are."""
     text = (root / "docs" / "examples" / "armadillo-original.yaml").read_text()
     text = text.replace("[armadillo-rough]", f"[{corpus / 'armadillo-rough'}]")
-    text = text.replace("step_limit: 15", "step_limit: 8")
+    text = text.replace("step_limit: 15", "step_limit: 5")
     return text.replace("../../deploy", str(root / "deploy"))
 
 

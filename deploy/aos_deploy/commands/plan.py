@@ -30,7 +30,8 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.choosing import Choice, Chooser
+from aos_solver.mission.choices import Choice
+from aos_solver.mission.choosing import Chooser
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.risk import RiskBudget

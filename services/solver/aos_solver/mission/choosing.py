@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping
 
 import msgspec
 
-from aos_protocol.messages import BeliefSummary, ChosenBy, DecisionRecord, SearchMade
-from aos_solver.child.answers import Plan, Risks
+from aos_protocol.messages import BeliefSummary, ChosenBy, SearchMade
+from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Restriction
+from aos_solver.mission.choices import Choice, Ended, Held, Refused
 from aos_solver.mission.endings import (
     Ending,
     ending_after_planning,
@@ -16,6 +17,7 @@ from aos_solver.mission.endings import (
 from aos_solver.mission.endings import remark_of as remark_of_ending
 from aos_solver.mission.endless_loops import EndlessLoops
 from aos_solver.mission.failures import Failures
+from aos_solver.mission.made_searches import MadeSearches
 from aos_solver.mission.ports import Available
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.steering import Asked
@@ -24,43 +26,6 @@ from aos_solver.mission.terms import Terms
 
 _TOO_RISKY = "it risks more than the mission's constraints have left"
 _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
-
-
-class Choice(msgspec.Struct, frozen=True):
-    """An action, and what it was chosen without. `is_cautious` says that it is for the cautious belief.
-
-    `forbidden` are the numbers of the actions that risk too much. `set_aside` are the skills and grounded
-    actions that it was chosen without. `searches` are all that were made for it.
-    """
-
-    plan: Plan
-    risks: Risks | None
-    forbidden: frozenset[int]
-    set_aside: dict[str, str]
-    is_cautious: bool = False
-    chosen_by: ChosenBy = "planner"
-    searches: tuple[SearchMade, ...] = ()
-
-
-class Ended(msgspec.Struct, frozen=True):
-    """The mission is over."""
-
-    ending: Ending
-    remark: str
-
-
-class Held(msgspec.Struct, frozen=True):
-    """Nothing can be run until something changes; where it is `for_operator`, somebody has to change it."""
-
-    remark: str
-    for_operator: bool = False
-
-
-class Refused(msgspec.Struct, frozen=True):
-    """An action that somebody asked for and that cannot be carried out now."""
-
-    why: str
-    hint: str = ""
 
 
 class _Without(msgspec.Struct, frozen=True):
@@ -101,7 +66,7 @@ class Chooser:
         self._around = around
         self._budget = budget
         self._left_out = left_out
-        self._searches: list[SearchMade] = []
+        self._searches = MadeSearches()
         self._idle = 0  # decisions in a row
         self._endless = EndlessLoops()
 
@@ -117,12 +82,11 @@ class Chooser:
 
     def drop(self, choice: Choice) -> None:
         """The choice is not carried out; the next decision's record tells of its searches."""
-        dropped = [msgspec.structs.replace(made, is_dropped=True) for made in choice.searches]
-        self._searches = [*dropped, *self._searches]
+        self._searches.put_back(choice.searches)
 
     def forget_searches(self) -> None:
         """Another engine decides from now on, whatever was searched in the one before."""
-        self._searches.clear()
+        self._searches.forget()
 
     def is_something_available(self, engine: Engine) -> bool:
         """Returns whether any action could be carried out now."""
@@ -163,8 +127,8 @@ class Chooser:
         horizon = self.search.horizon or engine.description.horizon
         plan = Plan(index, 0, horizon, (), predicted, 0.0, why=f"{asked.by} has asked for it")
         chosen_by: ChosenBy = "script" if asked.is_script else "operator"
-        without = self._without(engine).reasons
-        return Choice(plan, risks, frozenset(), without, False, chosen_by, self._searched(are_dropped=True))
+        without, searches = self._without(engine).reasons, self._searches.told(are_dropped=True)
+        return Choice(plan, risks, frozenset(), without, False, chosen_by, searches)
 
     async def _choose(self, model: RunningModel, step: int, belief: BeliefSummary) -> Choice | Ended | Held:
         engine = model.engine
@@ -192,20 +156,10 @@ class Chooser:
                 why = "; ".join(sorted({*unavailable.values(), *without.reasons.values()}))
                 risky = ", and all others are too risky" if forbidden else ""
                 return Held(f"the mission holds, for no skill can be run: {why}{risky}")
-            retried = self._failures.to_retry
-            if retried is not None and model.digest == retried.model_digest:
-                index = [action.name for action in actions].index(retried.action)
-                if index in possible and index not in barred:
-                    again = await self._repeated(engine, retried, index)
-                    return Choice(
-                        again,
-                        risks,
-                        forbidden,
-                        without.reasons,
-                        False,
-                        "retry",
-                        self._searched(are_dropped=True),
-                    )
+            again = await self._repeated(model, set(possible) - barred.keys())
+            if again is not None:
+                searches = self._searches.told(are_dropped=True)
+                return Choice(again, risks, forbidden, without.reasons, False, "retry", searches)
             plan, is_cautious = await self._plan(engine, step, belief, barred, without)
             if actions[plan.index].skill in self._around.unavailable:
                 continue
@@ -216,15 +170,8 @@ class Chooser:
             plan = _explained(plan, without.reasons, is_cautious, endless)
             if ended is not None:
                 return ended
-            chosen_by, searches = self.search.chosen_by, self._searched()
+            chosen_by, searches = self.search.chosen_by, self._searches.told()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
-
-    def _searched(self, *, are_dropped: bool = False) -> tuple[SearchMade, ...]:
-        """The searches since the decision before, told once. None of them decided if they `are_dropped`."""
-        searches, self._searches = tuple(self._searches), []
-        if are_dropped:
-            return tuple(msgspec.structs.replace(made, is_dropped=True) for made in searches)
-        return searches
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
@@ -260,7 +207,7 @@ class Chooser:
             cautious = await self._search(engine, step, barred, without, cautious=True)
             if not is_worth_nothing(cautious.best, self._limits):
                 return cautious, True
-            self._keep_last_but_one()
+            self._searches.take_last_but_one()
         return plan, False
 
     async def _search(
@@ -273,34 +220,18 @@ class Chooser:
         cautious: bool = False,
     ) -> Plan:
         """A plan, of whose search a record is kept; those before it are dropped."""
-        within = without.restriction(list(barred), cautious=cautious)
-        plan = await self.search.run(engine, step, within)
-        self._searches = [msgspec.structs.replace(made, is_dropped=True) for made in self._searches]
-        if plan.pondered:
-            pondering = SearchMade(plan.planner, plan.pondered, is_pondering=True, engine=engine.starts)
-            self._searches.append(pondering)
-        self._searches.append(
-            SearchMade(
-                plan.planner,
-                plan.by_thread or (plan.simulations,),
-                plan.known_simulations,
-                {engine.description.actions[number].name: why for number, why in barred.items()},
-                tuple(sorted(without.reasons)),
-                cautious,
-                engine=engine.starts,
-            )
+        plan = await self.search.run(engine, step, without.restriction(list(barred), cautious=cautious))
+        made = SearchMade(
+            plan.planner,
+            plan.by_thread or (plan.simulations,),
+            plan.known_simulations,
+            {engine.description.actions[number].name: why for number, why in barred.items()},
+            tuple(sorted(without.reasons)),
+            cautious,
+            engine=engine.starts,
         )
+        self._searches.add(made, plan.pondered)
         return plan
-
-    def _keep_last_but_one(self) -> None:
-        """The last search decides nothing, but the one before it."""
-        if len(self._searches) > 1:
-            *others, decided, dropped = self._searches
-            self._searches = [
-                *others,
-                msgspec.structs.replace(decided, is_dropped=False),
-                msgspec.structs.replace(dropped, is_dropped=True),
-            ]
 
     async def _ending(
         self, engine: Engine, plan: Plan, belief: BeliefSummary, without: _Without
@@ -328,8 +259,16 @@ class Chooser:
             return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
         return Ended(ending, remark_of_ending(ending, belief, self._limits)) if ending else None
 
-    async def _repeated(self, engine: Engine, decision: DecisionRecord, index: int) -> Plan:
-        prediction = await engine.predict(index)
+    async def _repeated(self, model: RunningModel, allowed: set[int]) -> Plan | None:
+        """The action that failed, once more: where that is to be, and it is among those `allowed`."""
+        decision = self._failures.to_retry
+        if decision is None or model.digest != decision.model_digest:
+            return None
+        names = [action.name for action in model.engine.description.actions]
+        index = names.index(decision.action)
+        if index not in allowed:
+            return None
+        prediction = await model.engine.predict(index)
         return Plan(
             index,
             0,

@@ -25,7 +25,8 @@ from aos_protocol.mission_rows import ADOPTED, DRIFT, INTENDED, OUTCOME
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
-from aos_solver.mission.choosing import Choice, Chooser, Ended, Held, Refused
+from aos_solver.mission.choices import Choice, Ended, Held, Refused
+from aos_solver.mission.choosing import Chooser
 from aos_solver.mission.drift import after_use, drifts
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures

@@ -15,7 +15,7 @@ from aos_protocol.messages import (
 )
 from aos_protocol.mission_rows import DECISION, STATE
 from aos_solver.child.belief_answers import BeliefUpdate
-from aos_solver.mission.choosing import Choice
+from aos_solver.mission.choices import Choice
 from aos_solver.mission.drift import text_of
 from aos_solver.mission.endings import Ending
 from aos_solver.mission.memory import MissionMemory
