@@ -18,6 +18,7 @@ pytestmark = pytest.mark.physics
         ("armadillo", "arm_stays_out: 0.2", "arm_stays_out: 2", "$.faults.arm_stays_out"),
         ("armadillo", "pose_noise_m: 0.0036", "pose_noise_m: -1", "$.faults.pose_noise_m"),
         ("armadillo", "radius: 0.033", "radius: 0", "$.tables[...].can.radius"),
+        ("armadillo", "pose_noise_m: 0.0036", "pose_noise: 0", "unknown field `pose_noise`"),
         ("armadillo", "misplaced: 0.09", "misplaced: .nan", "$.tables[...].can.misplaced"),
     ],
 )
@@ -30,3 +31,5 @@ def test_numbers_that_cannot_be_are_told_with_their_place(
     with pytest.raises(DeployError) as told:
         load_world_file(tmp_path / "world.yaml")
     assert place in told.value.message
+    line = text[: text.index(before)].count("\n") + 1
+    assert f"world.yaml:{line}: " in told.value.message
