@@ -20,6 +20,7 @@ from aos_protocol.errors import ModelError, PlanningError
 from aos_solver.building.compiler import find_compiler
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
+from aos_solver.offline.alpha_vectors import AlphaVectors
 from aos_solver.offline.enumeration import Enumeration, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
 from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
@@ -226,6 +227,21 @@ def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PlanningError, match="is no policy of this version") as caught:
         Policy.load(tmp_path / "x.policy")
     assert caught.value.code == "AOS321"
+
+
+def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.policy"
+    header = PolicyHeader(
+        model="m", model_digest="d", discount=0.5, lower=1.0, upper=2.0, actions=("go",), states=("here",)
+    )
+    saved_one = Policy(header, AlphaVectors.of_bytes(1, (), b""))
+    saved_one.save(path)
+    whole = path.read_bytes()
+    assert Policy.load(path).header == saved_one.header
+    for place in range(len(whole)):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :])
+        with pytest.raises(PlanningError):
+            Policy.load(path)
 
 
 async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path) -> None:

@@ -1,11 +1,13 @@
 """A solved policy as a file, and a mission that follows it.
 
-A `.policy` file is a line of JSON (`PolicyHeader`), and after it the alpha vectors (`alpha_vectors.py`).
+A `.policy` file is a line of JSON (`PolicyHeader`), after it the alpha vectors (`alpha_vectors.py`), and at
+its end the CRC-32 of all that is before.
 """
 
 from __future__ import annotations
 
 import time
+import zlib
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -23,7 +25,8 @@ from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
 
-FORMAT = "aos-policy-2"
+FORMAT = "aos-policy-3"
+_CHECKSUM_BYTES = 4
 
 
 class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
@@ -59,7 +62,8 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
         """Writes the file; PlanningError AOS321 if it cannot be."""
         header = msgspec.structs.replace(self.header, regions=self.vectors.sizes)
         try:
-            path.write_bytes(msgspec.json.encode(header) + b"\n" + self.vectors.to_bytes())
+            data = msgspec.json.encode(header) + b"\n" + self.vectors.to_bytes()
+            path.write_bytes(data + _checksum(data))
         except OSError as error:
             raise PlanningError(f"cannot write {path}: {error.strerror}", code="AOS321") from error
 
@@ -67,10 +71,13 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
     def load(cls, path: Path) -> Policy:
         """Reads a file; PlanningError AOS321 if it is none."""
         try:
-            line, _, data = path.read_bytes().partition(b"\n")
+            read = path.read_bytes()
+            line, _, data = read[:-_CHECKSUM_BYTES].partition(b"\n")
             header = msgspec.json.decode(line, type=PolicyHeader)
             if header.format != FORMAT:
                 raise ValueError(f"its format is {header.format}")
+            if _checksum(read[:-_CHECKSUM_BYTES]) != read[-_CHECKSUM_BYTES:]:
+                raise ValueError("it is damaged, for its checksum does not fit")
             return cls(header, AlphaVectors.of_bytes(len(header.actions), header.regions, data))
         except OSError as error:
             raise PlanningError(f"cannot read {path}: {error.strerror}", code="AOS321") from error
@@ -116,6 +123,10 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
             message = "the policy knows no state of the belief in which the mission goes on"
             raise PlanningError(message, code="AOS322")
         return self.vectors.choose(weights)
+
+
+def _checksum(data: bytes) -> bytes:
+    return zlib.crc32(data).to_bytes(_CHECKSUM_BYTES, "little")
 
 
 class PolicySearch(Search, frozen=True, kw_only=True):
