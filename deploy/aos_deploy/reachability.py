@@ -32,7 +32,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         engine = await Engine.start(built, seed=1)
         try:
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
-            if reach.limit:
+            if not reach.is_whole:
                 await engine.rate(_DRAWN_TIME_S, seed=1, max_seconds=MAX_CPU_S)
             endless = await endless_findings(engine)
         finally:

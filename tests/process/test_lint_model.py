@@ -130,6 +130,7 @@ REACHED = [
     (STEP + "if (state.place == 2) throw 1;", "AOS215"),
     (STEP + "int i = 0; while (i >= 0) { i = state.place; state__.place = i; }", "AOS211"),
     (STEP + "std::vector<int> cells(2); cells.at(state.place + 1) = 1;", "AOS215"),
+    ("state__.place += AOS.Bernoulli(0.5) ? 1 : 10;\nif (state.place == 25) throw 1;", "AOS215"),
     (STEP + "while (true) { if (AOS.SampleUniform(0, 1) < 0.5 && state.place < 0) break; }", "AOS211"),
     (STEP + "if (AOS.SampleNormal(0, 1) > -9) throw 1;", "AOS215"),
 ]
@@ -139,7 +140,7 @@ REACHED = [
 @pytest.mark.parametrize(
     ("code", "error_code"),
     REACHED,
-    ids=["exception", "loop", "index", "draws", "drawn"],
+    ids=["exception", "loop", "index", "behind the goal", "draws", "drawn"],
 )
 def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
     app: typer.Typer,

@@ -452,3 +452,21 @@ def test_a_skill_that_observes_nothing_needs_no_response(rules: str) -> None:
     mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", rules)
     errors = found(mapping=mapping, skill=SKILL.replace("__moduleResponse = walked;\n", ""))
     assert [error.message for error in errors if error.is_error] == []
+
+
+@pytest.mark.parametrize(
+    ("code", "hint"),
+    [
+        ("steps == 1", "Compare it with the name, as in `steps == 'Right'`"),
+        ("[0.2, 0.4][steps]", "Compare it with the name, as in `steps == 'Left'`"),
+        ("3 if steps == 'Rihgt' else 4", "Did you mean 'Right'?"),
+        ("[steps for steps in (1, 2) if steps == 1]", None),
+    ],
+)
+def test_a_mapping_that_takes_an_enum_for_a_number_is_told(code: str, hint: str | None) -> None:
+    environment = ENVIRONMENT + "\ndefine_type: Side\nenum_members: Left, Right\n"
+    skill = SKILL.replace("int steps", "Side steps")
+    told = found(
+        environment=environment, skill=skill, mapping=MAPPING.replace("code:\nsteps", f"code:\n{code}")
+    )
+    assert [finding.hint for finding in told if finding.code == "AOS149"] == ([hint] if hint else [])

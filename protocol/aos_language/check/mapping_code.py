@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Iterable, Iterator
 
+from aos_language.check.enum_texts import check_enum_texts
 from aos_language.check.python_names import PythonNames, check_fields_set, check_names
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
@@ -56,6 +57,7 @@ def check_mapping(
             _check_parameter(variable, model, scope, findings)
     if model is not None:
         _check_passed_on(mapping, model, findings)
+        check_enum_texts(mapping, snippets_of_mapping(mapping), model, scope, findings)
     local_names = [variable.name for variable in mapping.local_variables]
     if mapping.response_variable and mapping.response_variable not in local_names:
         message = f"unknown local variable `{mapping.response_variable}`"

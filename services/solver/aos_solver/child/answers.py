@@ -124,10 +124,11 @@ class ReachedAction(msgspec.Struct, frozen=True):
 
 
 class Reach(msgspec.Struct, frozen=True):
-    """The states and goals that the actions can lead to. `limit` says why there may be more, and is empty
-    where there is no more.
+    """The states and goals that the actions can lead to. `limit` says why a goal may have been missed, or a
+    precondition that can be met, and is empty where none was.
 
-    The search ends early when a goal and all preconditions are met. `depth` counts actions from the start.
+    The search goes on only for a while when a goal and all preconditions are met; `is_whole` says whether it
+    saw all states. `depth` counts actions from the start.
     """
 
     has_goal: bool
@@ -135,6 +136,7 @@ class Reach(msgspec.Struct, frozen=True):
     states: int
     depth: int
     limit: str
+    is_whole: bool
 
 
 class EndlessLoop(msgspec.Struct, frozen=True):

@@ -105,7 +105,7 @@ class PlanningCommands {
       json.member("skill", Model::skill_name(Model::skill_of(action))).member("is_met", reached.is_met(action)).end_object();
     }
     json.end_array().member("states", reached.states()).member("depth", reached.depth());
-    json.member("limit", reached.limit()).end_object();
+    json.member("limit", reached.limit()).member("is_whole", reached.is_whole()).end_object();
   }
 
   void may_reach_goal(JsonWriter& json, const Command& command) const {

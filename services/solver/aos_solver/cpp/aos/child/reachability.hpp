@@ -12,7 +12,8 @@
 
 namespace aos {
 
-// The search ends early once it has found a goal and met the precondition of every action.
+// Once it has found a goal and met the precondition of every action, the search goes on only as far as `later_limits`
+// allow: code may fail behind the first goal, too.
 template <class Model>
 class Reachability {
  public:
@@ -23,7 +24,8 @@ class Reachability {
     try {
       if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
       space_.reach_within(belief, 0);
-      while (!is_done()) {
+      while (look(), !space_.is_closed()) {
+        if (is_done()) space_.limit(later_limits);
         if (processor_time() > latest) throw NotEnumerable{"it takes longer than allowed"};
         const std::size_t known = space_.size();
         space_.reach_within(belief, 1);
@@ -31,7 +33,7 @@ class Reachability {
       }
     } catch (const NotEnumerable& limit) {
       blame::at(0);
-      limit_ = limit.reason;
+      if (!is_done()) limit_ = limit.reason;
     }
   }
 
@@ -39,18 +41,21 @@ class Reachability {
   bool is_met(int action) const { return is_met_[static_cast<std::size_t>(action)]; }
   std::size_t states() const { return space_.size(); }
   int depth() const { return depth_; }
-  // Why the search may have missed something; empty if it saw everything.
+  // Why the search may have missed a goal or a precondition that can be met; empty if it has not.
   const char* limit() const { return limit_; }
+  // Whether it saw every state.
+  bool is_whole() const { return space_.is_closed(); }
 
  private:
-  // Evaluates preconditions in the new states, and tells whether the search is done.
-  bool is_done() {
+  bool is_done() const { return has_goal() && unmet_ == 0; }
+
+  // Evaluates preconditions in the new states.
+  void look() {
     for (; looked_at_ < space_.size(); ++looked_at_) {
       for (int action = 0; action < Model::action_count(); ++action) {
         if (!is_met(action)) try_precondition(looked_at_, action);
       }
     }
-    return space_.is_closed() || (has_goal() && unmet_ == 0);
   }
 
   void try_precondition(std::uint32_t number, int action) {

@@ -1,0 +1,110 @@
+"""Mappings see an enum's value as the text of its name: code that takes it for a number is told."""
+
+import ast
+from collections.abc import Iterator
+
+from aos_language.check.scope import Scope
+from aos_language.findings import Findings
+from aos_language.python_syntax import tree_of
+from aos_protocol.documents import (
+    AbstractionMapping,
+    EnumType,
+    LocalSource,
+    LocalVariable,
+    SkillModel,
+    Snippet,
+)
+from aos_protocol.spelling import nearest, quoted
+
+_OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
+_ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
+
+
+def check_enum_texts(
+    mapping: AbstractionMapping,
+    snippets: Iterator[Snippet],
+    model: SkillModel,
+    scope: Scope,
+    findings: Findings,
+) -> None:
+    """Reports AOS149 for comparisons with what no value is called, and for calculations."""
+    enums = {
+        variable.name: enum
+        for variable in mapping.local_variables
+        if (enum := _enum_of(variable, model, scope)) is not None
+    }
+    for snippet in snippets if enums else ():
+        tree, lines_above = _tree(snippet)
+        nodes = list(ast.walk(tree))
+        own = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+        own |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+        known = {name: enum for name, enum in enums.items() if name not in own}
+        for node in nodes:
+            for name, message, hint in _mistakes(node, known):
+                span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
+                findings.warning("AOS149", message, span, hint)
+
+
+def _tree(snippet: Snippet) -> tuple[ast.AST, int]:
+    """The syntax tree of an expression or of statements, and how many lines it has above the code.
+
+    What is neither is told by `mapping_code`.
+    """
+    for text, mode, lines_above in ((f"(\n{snippet.code}\n)", "eval", 1), (snippet.code, "exec", 0)):
+        try:
+            return tree_of(text, mode), lines_above
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            continue
+    return ast.Pass(), 0
+
+
+def _enum_of(variable: LocalVariable, model: SkillModel, scope: Scope) -> EnumType | None:
+    """The enum of the skill's parameter, or of a part of it, that a local variable takes."""
+    if variable.source is not LocalSource.PARAMETER:
+        return None
+    name, *fields = variable.parameter_path.split(".")
+    kind = next((parameter.type for parameter in model.parameters if parameter.name == name), "")
+    for field in fields:
+        compound = scope.compounds.get(kind)
+        types = {inner.name: inner.type for inner in compound.fields} if compound is not None else {}
+        kind = types.get(field, "")
+    return scope.enums.get(kind)
+
+
+def _mistakes(node: ast.AST, enums: dict[str, EnumType]) -> Iterator[tuple[ast.Name, str, str]]:
+    """The name, the message and the hint of each mistake in one node of the syntax tree."""
+
+    def name_of(part: ast.AST) -> ast.Name | None:
+        return part if isinstance(part, ast.Name) and part.id in enums else None
+
+    if isinstance(node, ast.Compare) and len(node.comparators) == 1:
+        sides = (node.left, node.comparators[0])
+        for name, other in ((name_of(sides[0]), sides[1]), (name_of(sides[1]), sides[0])):
+            if name is not None and isinstance(node.ops[0], _ORDERINGS):
+                yield from _compared(name, other, enums[name.id])
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _OF_NUMBERS:
+        for argument in node.args:
+            if (name := name_of(argument)) is not None:
+                yield name, *_no_number(name.id, enums[name.id])
+    elif (
+        isinstance(node, ast.Subscript)
+        and isinstance(node.value, (ast.List, ast.Tuple))
+        and (name := name_of(node.slice)) is not None
+    ):
+        yield name, *_no_number(name.id, enums[name.id])
+
+
+def _compared(name: ast.Name, other: ast.AST, enum: EnumType) -> Iterator[tuple[ast.Name, str, str]]:
+    value = other.value if isinstance(other, ast.Constant) else None
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        yield name, *_no_number(name.id, enum, value)
+    elif isinstance(value, str) and value not in enum.values:
+        close = nearest(value, enum.values)
+        hint = f"Did you mean '{close}'?" if close else f"There are {quoted(enum.values)}"
+        yield name, f"no value of {enum.name} is called {value!r}", hint
+
+
+def _no_number(name: str, enum: EnumType, number: float = 0) -> tuple[str, str]:
+    index = int(number) if 0 <= number < len(enum.values) else 0
+    message = f"`{name}` is the text of a value of {enum.name}, and no number"
+    return message, f"Compare it with the name, as in `{name} == '{enum.values[index]}'`"
