@@ -40,7 +40,15 @@ def test_a_name_that_somebody_else_has_given_to_this_machine_is_refused(loopback
 
 
 @pytest.mark.parametrize(
-    "origin", ["http://evil.example", "null", "http://localhost:8000", "http://127.0.0.1:7480"]
+    "origin",
+    [
+        "http://evil.example",
+        "null",
+        "http://[",
+        "localhost:7480",
+        "http://localhost:8000",
+        "http://127.0.0.1:7480",
+    ],
 )
 def test_a_page_of_another_origin_is_refused_also_with_the_token(loopback: Access, origin: str) -> None:
     assert refusal(loopback, "POST", OWN | BEARER | {"origin": origin}) == "AOS904"

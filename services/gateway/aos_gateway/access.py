@@ -12,7 +12,6 @@ import socket
 from collections.abc import Iterable, Mapping
 from ipaddress import ip_address
 from pathlib import Path
-from urllib.parse import urlsplit
 
 import msgspec
 
@@ -47,7 +46,7 @@ class Access(msgspec.Struct, frozen=True):
                 hint="Name it with `aos serve --host`",
             )
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc.lower() != host:
+        if origin is not None and origin.partition("://")[2].lower() != host:
             raise GatewayError(f"a page of {origin} may not ask this gateway", code="AOS904")
         scheme, _, given = headers.get("authorization", "").partition(" ")
         has_token = scheme.lower() == "bearer" and self._is_token(given)
