@@ -113,7 +113,7 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
         try:
             app(prog_name=name)
         finally:
-            if sys.stdout is not None:
+            if sys.stdout is not None and not sys.stdout.closed:
                 sys.stdout.flush()
     except AosError as error:
         _end(name, error)

@@ -18,7 +18,7 @@ from aos_language.check.blocks import (
     skill_blocks,
 )
 from aos_language.check.scope import STATE_COPIES, Scope
-from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
+from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Extent, FaultKind, Mention
 from aos_language.document_code import shared_code_of
 from aos_language.findings import Findings
@@ -100,7 +100,7 @@ class Bundle(msgspec.Struct, frozen=True):
             raise UnrenamableError("a document of the bundle cannot be read: mend it first")
         if symbol.kind is SymbolKind.VARIABLE and symbol.name in self.reported:
             raise UnrenamableError(f"a mapping's local variable reports {symbol.name} by its name")
-        if not _NAME.fullmatch(new_name) or new_name in CPP_KEYWORDS | SPECIAL_NAMES:
+        if not _NAME.fullmatch(new_name) or new_name in CPP_KEYWORDS | OUR_NAMES | SPECIAL_NAMES:
             raise UnrenamableError(f"{new_name!r} cannot be a name")
         if new_name in self.names:
             raise UnrenamableError(f"the bundle has a {new_name} already")

@@ -1,6 +1,8 @@
 """The language server, started and spoken to as an editor does."""
 
 import asyncio
+import json
+import subprocess
 import sys
 from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
@@ -8,7 +10,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from lsprotocol import types
-from processes import HANG_S
+from processes import COMMAND_S, HANG_S
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.client import LanguageClient
 
@@ -225,11 +227,21 @@ async def test_a_name_that_is_taken_is_refused_with_the_reason(editor: Editor, b
     skill = bundle / "press.sd"
     editor.open(skill)
     asked = at(skill, SKILL, "is_lit")
-    for name, reason in (("is_lit", "has a is_lit already"), ("while", "cannot be a name")):
+    no_names = [(word, "cannot be a name") for word in ("while", "state__", "__reward")]
+    for name, reason in (("is_lit", "has a is_lit already"), *no_names):
         with pytest.raises(JsonRpcException, match=reason):
             await editor.text_document_rename_async(
                 types.RenameParams(asked.text_document, asked.position, name)
             )
+
+
+def test_an_editor_that_closes_the_server_gets_exit_code_0() -> None:
+    asked = [{"id": 1, "method": "initialize", "params": {"capabilities": {}}}]
+    asked += [{"id": 2, "method": "shutdown"}, {"method": "exit"}]
+    texts = [json.dumps({"jsonrpc": "2.0", **each}) for each in asked]
+    sent = "".join(f"Content-Length: {len(text)}\r\n\r\n{text}" for text in texts).encode()
+    ended = subprocess.run([AOS, "language-server"], input=sent, capture_output=True, timeout=COMMAND_S)
+    assert (ended.returncode, ended.stderr) == (0, b"")
 
 
 async def test_words_of_both_languages_have_their_colours(editor: Editor, bundle: Path) -> None:

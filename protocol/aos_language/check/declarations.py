@@ -3,14 +3,12 @@
 from collections.abc import Iterable
 
 from aos_language.check.scope import Scope
-from aos_language.cpp.keywords import CPP_KEYWORDS
+from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES
 from aos_language.findings import Findings
 from aos_language.reading.document import array_type
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import CompoundType, Environment, SkillModel
 from aos_protocol.spelling import quoted
-
-_OURS = frozenset({"AOS", "AOSUtils", "NULL", "state", "state_", "state__", "state___"})
 
 
 def check_environment_names(environment: Environment, scope: Scope, findings: Findings) -> None:
@@ -63,7 +61,7 @@ def check_skill_declarations(model: SkillModel, scope: Scope, findings: Findings
 def _check_unique(names: Iterable[tuple[str, Span]], what: str, findings: Findings) -> None:
     first: dict[str, Span] = {}
     for name, span in names:
-        if name in CPP_KEYWORDS or name in _OURS:
+        if name in CPP_KEYWORDS or name in OUR_NAMES:
             findings.error("AOS126", f"`{name}` means something else in C++", span, "Choose another name")
         elif name in first:
             hint = f"The first is at {first[name]}"

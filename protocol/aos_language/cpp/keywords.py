@@ -15,6 +15,9 @@ CPP_KEYWORDS = frozenset({
     "wchar_t", "while", "xor", "xor_eq",
 })  # fmt: skip
 
+OUR_NAMES = frozenset({"AOS", "AOSUtils", "NULL", "state", "state_", "state__", "state___"})
+"""Names that model code has without a declaration."""
+
 SPECIAL_NAMES = frozenset({
     "__heuristicValue", "__isFailureState", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime",
     "__moduleResponse", "__moduleResponseStr", "__observed", "__possibleParameters", "__reward",
