@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import SENSE, System, answering, succeed
+from middleware_system import SENSE, System, answering, hang, succeed
 
 from aos_protocol.errors import AosError, LostAnswerError, SkillError
 from aos_protocol.messages import Outcome, SkillCall
@@ -140,6 +140,24 @@ async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
         may_end.set()
     assert (taken_up.result().status, taken_up.result().response) == result
     assert len(system.adapter.motions) == 1
+
+
+async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(
+    system: System, endpoint: str
+) -> None:
+    await system.adapter.serve("/pick", hang)
+    assert system.child is not None
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(_error_of(system.activate("pick")))
+        await system.adapter.is_called.wait()
+        system.child.kill()
+        await system.child.stop(5.0)
+    system.adapter.withdraw("/pick")
+    await system.start(endpoint)
+    await system.state(1)
+    outcome = await system.activate("pick")
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS505")
 
 
 async def test_an_id_that_stands_for_another_motion_moves_nothing_and_is_a_step_of_the_mission(

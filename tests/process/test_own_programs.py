@@ -250,6 +250,25 @@ def test_a_robot_finds_its_simulator(project: Path) -> None:
     assert set(json.loads(Path("runs/latest/run.json").read_text())["pids"]) >= {"sim", "robot", "solver"}
 
 
+KILLS_THE_MIDDLEWARE = """    CAME.acquire()
+    if not os.path.exists("killed"):
+        open("killed", "x").close()
+        os.kill(json.load(open("runs/latest/run.json"))["pids"]["middleware"], signal.SIGKILL)
+        CAME.acquire()  # The call comes again.
+    for share"""
+
+
+def test_a_call_that_comes_again_from_a_new_middleware_is_joined(project: Path) -> None:
+    robot = project / "fetch_robot.py"
+    text = robot.read_text().replace("    for share", KILLS_THE_MIDDLEWARE)
+    text = text.replace("def run(", "CAME = threading.Semaphore(0)\ndef run(")
+    robot.write_text(text.replace("first = Future()", "first = Future(); CAME.release()"))
+    done = up()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "middleware ended: killed by SIGKILL" in done.stdout
+    assert "refused" not in done.stdout
+
+
 def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Path) -> None:
     done = up("--model")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -67,7 +67,9 @@ async def run_activation(
         # A skill that was called may have done its work: its mapping has failed, not the robot.
         status = "unknown" if activation.call.was_called else "failed"
     except AosError as error:
-        fault, status = error, error.status
+        # Of one that is taken up nobody knows whether the middleware before had called the skill.
+        is_doubtful = is_taken_up and error.status == "refused"
+        fault, status = error, "unknown" if is_doubtful else error.status
     finally:
         told = await around.monitors.end(activation.stop)
     cause = fault or observation.failure
