@@ -60,7 +60,6 @@ ROUTES = (
             "rollout_repeats",
             "rollout_ends",
             "rollout_shares",
-            "certain_actions",
             *_SEARCH,
         ),
     ),

@@ -19,7 +19,7 @@ inline constexpr std::size_t max_retraced_steps = 30;
 template <class Model>
 class DrawnStep {
  public:
-  using Updated = typename ParticleFilter<Model>::Updated;
+  using Updated = UpdatedCloud<Model>;
 
   // A belief without traces has at most `limit` states.
   DrawnStep(std::size_t limit, Sampler& random) : limit_(limit), random_(random) {}
@@ -37,8 +37,7 @@ class DrawnStep {
     }
     Updated split{{}, 0};
     try {
-      auto [cloud, probability] = SplitFilter<Model>{limit_, random_}.after(before, step, numbers);
-      split = {std::move(cloud), probability};
+      split = SplitFilter<Model>{limit_, random_}.after(before, step, numbers);
       if (!step.is_observed || split.cloud.effective() >= too_few_effective) return split;
     } catch (const NotEnumerable&) {
     }

@@ -241,6 +241,13 @@ struct Cloud {
   }
 };
 
+// A cloud after a step, and the probability of what was observed.
+template <class Model>
+struct UpdatedCloud {
+  Cloud<Model> cloud;
+  double probability;
+};
+
 // Collects particles. Equal states are merged, and one of their traces is kept, drawn by weight.
 template <class Model>
 class GatheredCloud {
@@ -277,6 +284,14 @@ class GatheredCloud {
       cloud.lineages.push_back({lineages_[i].grown_squares(weight, weights[i]), lineages_[i].trace});
     }
     return cloud;
+  }
+  // The same as what a step has made of the cloud `before`.
+  UpdatedCloud<Model> updated(const Cloud<Model>& before, const HistoryStep& step, std::size_t max_particles, Sampler& random) const {
+    History<Model> history = before.history;
+    history.add(step);
+    Cloud<Model> cloud = thinned(max_particles, std::move(history), random);
+    const double probability = cloud.total() / before.total();
+    return {std::move(cloud), probability};
   }
 
  private:

@@ -50,10 +50,7 @@ template <class Model>
 class ParticleFilter {
  public:
   using State = typename Model::State;
-  struct Updated {
-    Cloud<Model> cloud;
-    double probability;  // of what was observed
-  };
+  using Updated = UpdatedCloud<Model>;
 
   explicit ParticleFilter(Sampler& random) : random_(random) {}
 
@@ -293,11 +290,7 @@ class ParticleFilter {
         draw(parent, step, gathered);
       }
     }
-    History<Model> history = before.history;
-    history.add(step);
-    Cloud<Model> cloud = gathered.thinned(particle_count, std::move(history), random_);
-    const double probability = cloud.total() / before.total();
-    return {std::move(cloud), probability};
+    return gathered.updated(before, step, particle_count, random_);
   }
 
   struct Parent {

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 #include "aos/base/random.hpp"
 #include "aos/base/split_draws.hpp"
@@ -30,12 +29,11 @@ class SplitFilter {
   // A belief has at most `limit` states. Lineages have no traces.
   SplitFilter(std::size_t limit, Sampler& random) : limit_(limit), random_(random), draws_(random) {}
 
-  // The belief after a step, and the probability of what was observed. Throws NotEnumerable for a continuous draw.
-  std::pair<Cloud<Model>, double> after(const Cloud<Model>& before, const HistoryStep& step, NumberSink& numbers) {
+  // The belief after a step. Throws NotEnumerable for a continuous draw.
+  UpdatedCloud<Model> after(const Cloud<Model>& before, const HistoryStep& step, NumberSink& numbers) {
     draws_.report_to(&numbers);
     GatheredCloud<Model> gathered;
-    const double total = before.total();
-    double threshold = total / split_paths;
+    double threshold = before.total() / split_paths;
     std::size_t work = 0;
     std::size_t most_work = max_split_work;
     for (std::size_t i = 0; i < before.particles.size(); ++i) {
@@ -56,11 +54,7 @@ class SplitFilter {
         most_work += max_split_work / 4;
       }
     }
-    History<Model> history = before.history;
-    history.add(step);
-    Cloud<Model> cloud = gathered.thinned(affordable(before.particles.size(), work), std::move(history), random_);
-    const double probability = cloud.total() / total;
-    return {std::move(cloud), probability};
+    return gathered.updated(before, step, affordable(before.particles.size(), work), random_);
   }
 
  private:
