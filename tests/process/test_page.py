@@ -322,8 +322,8 @@ def test_a_thousand_steps_are_loaded_with_little(browser: Browser, tmp_path: Pat
     name = write_long_run(tmp_path / "runs", 1000)
     with gateway(tmp_path, cache_dir) as served:
         page = opened(browser, served)
+        page.goto("about:blank")
         page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
-        page.reload()
         expect(page.locator(".stepper-place")).to_have_text("1000 of 1000")
         expect(page.locator("[aria-busy=true]")).to_have_count(0)
         sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
