@@ -4,9 +4,18 @@ import { takeToken } from "./api.js";
 
 export const VIEWS = ["overview", "why", "steps", "model", "documents", "system"];
 
+// What somebody has cut in the middle of a letter stays as it is.
+const decoded = (text) => {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
+  }
+};
+
 const parse = () => {
   const [path, query = ""] = location.hash.replace(/^#/, "").split("?");
-  const [kind = "", name = "", view = "overview"] = path.split("/").filter(Boolean).map(decodeURIComponent);
+  const [kind = "", name = "", view = "overview"] = path.split("/").filter(Boolean).map(decoded);
   const given = new URLSearchParams(query);
   const step = Number(given.get("step")) || null;
   return { kind, name, view: VIEWS.includes(view) ? view : "overview", step, token: given.get("token") };
