@@ -28,6 +28,10 @@ state_variable: int other []
 code:
 state.other = {8, 7};
 
+state_variable: int last []
+code:
+state.last = {5, 6, 5, 4};
+
 state_variable: vector<vector<int>> grid
 code:
 state.grid = {{1, 2}, {3, 4}};
@@ -79,6 +83,20 @@ CODE = {
         "int x = 0; try { while (x == 0) x = AOSUtils::SampleDiscrete(std::vector<double>{0.5, 0.25, 0.25});"
         "if (x == 2) throw 1; } catch (...) { x = 9; } __reward = x;",
         5,
+    ),
+    "either": (
+        "auto& one = amount > 2 ? state__.last : state__.row; one[0] = 8;"
+        "std::swap(state__.last, state__.row);"
+        "for (auto* list : {&state__.last, &state__.row}) __reward += (*list)[0] * list->size();"
+        "std::swap(state__.last, state__.row); state__.last = state.last;",
+        8 * 4 + 3 * 3,
+    ),
+    "taken": (
+        "vector<int> mine{7}; std::swap(mine, state__.other); state__.other.swap(mine);"
+        "std::vector<int>* all = &mine; std::erase(*all, 7);"
+        "auto copy = state.row; std::erase_if(copy, [](int n) { return n < 3; });"
+        "vector<int>* list = &state__.other; __reward = list->size() * 10 + copy.size() + all->size();",
+        21,
     ),
     "method": (
         "struct Half { static int of(int n) { return n / 2; } }; static int const four = 4;"

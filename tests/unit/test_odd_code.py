@@ -22,6 +22,7 @@ variable: string label "none"
 variable: tWeight weight
 variable: int counts[]
 variable: bool done false
+variable: unsigned long long rank 7
 
 state_variable: tItem item1
 code:
@@ -105,6 +106,7 @@ state__.item1.counts.push_back(1);
 if (state__.item1.counts.size() > 5) state__.item1.counts.pop_back();
 int sum = std::accumulate(state.item1.counts.begin(), state.item1.counts.end(), 0);
 state__.small = sum % 7;
+target->rank <<= 33;
 state__.letter = 'a' + (sum % 3);
 for (size_t i = 0; i < state__.ratios.size(); i++) state__.ratios[i] = std::round(state__.ratios[i] * 4) / 4;
 std::sort(state__.names.begin(), state__.names.end());
@@ -142,6 +144,7 @@ def test_code_of_many_kinds_does_what_it_says(cache_dir: Path) -> None:
     assert played.initial["state"]["item1.weight.of"] == "kPlate"
     assert [state[f"item1.counts[{index}]"] for index in range(4)] == [str(8 + 1 - 5), "2", "3", "1"]
     assert [state["small"], state["letter"], state["ratios[1]"]] == ["6", str(ord("a")), "0.25"]
+    assert state["item1.rank"] == str(7 << 33)
     assert [state["names[0]"], state["mask"], state["grid[1][0]"]] == ["y", str((1 << 40) + 1), "2"]
     assert [state["left"], state["shaken"], state["item1.done"]] == [str(3 + 20 + 400 + 1000), "0", "true"]
     assert (played.rewards, played.observations) == ([-1 - 4 - 5], ["yes"])

@@ -10,7 +10,8 @@ from aos_language.reading.sdl_text import Part
 from aos_language.reading.source import Text
 
 _DECLARATION = re.compile(
-    r"((?:(?:unsigned|signed|long|short)\s+)*[A-Za-z_][\w:]*(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[]+)(\s*)"
+    r"((?:(?:unsigned|signed|long|short)(?:\s+(?:unsigned|signed|long|short|int|char|double)\b)*(?=\s)"
+    r"|[A-Za-z_][\w:]*)(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[]+)(\s*)"
 )
 _TRUTHS = {"true": True, "false": False}
 

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 
 import msgspec
 
@@ -15,6 +16,7 @@ REPORTED_CAPACITY = 1024
 """A vector that the robot's data fill gets this capacity, if the documents give it no length at the start."""
 
 _MAX_CAPACITY = 16384
+_MAX_NESTING = 4
 _GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
 _SIZING = frozenset({"assign", "resize"})
 _NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
@@ -23,6 +25,9 @@ _CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]"
 _COPIED = re.compile(r"state_*\.(?:\w+\.)*(\w+)\s*;")
 _SIZED = re.compile(rf"\.\s*\w+\s*\({_NUMBER}[,)]")
 _LOOP_COLON = re.compile(r"\s*:\s*")
+_IN_PLACE = re.compile(r"\s*([:,])\s*(&?)\s*")
+_BEFORE_FIRST = re.compile(r"(?:(swap\s*\(\s*)|(&\s*))\Z")
+_STATEMENT = re.compile(r"[^;{}]*\Z")
 _LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
 
 
@@ -45,10 +50,13 @@ class Capacities:
         self._known: dict[tuple[str, int], int] = {}
         self._grows: dict[tuple[str, int], int] = {}
         self._reported: set[tuple[str, int]] = set()
+        self._alike: dict[tuple[str, int], set[tuple[str, int]]] = {}
 
     def capacity(self, name: str, level: int = 0) -> int:
         """The capacity of `name` at a level: 0 for the vector, 1 for the vectors in it."""
-        key = (name, level)
+        return max(map(self._own_capacity, self._alike.get((name, level), {(name, level)})))
+
+    def _own_capacity(self, key: tuple[str, int]) -> int:
         known = self._known.get(key, 0)
         if key in self._reported and known <= 1:  # An empty list at the start says nothing.
             return REPORTED_CAPACITY
@@ -72,6 +80,8 @@ class Capacities:
             aliases: dict[str, list[tuple[str, ...]]] = {}
             for name, path in _aliases(cpp):
                 aliases.setdefault(name, []).append(path)
+            for one, other in _in_place_of_each_other(cpp, code):
+                self._join(_key(one.path), _key(other.path))
             filled = [argument for call in cpp.calls if self._fills(call) for argument in call.arguments]
             for mention in cpp.mentions:
                 is_filled = any(argument.start <= mention.extent.start < argument.end for argument in filled)
@@ -79,7 +89,14 @@ class Capacities:
                     path = (*start, *mention.path[1:])
                     self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
                     if is_filled:
-                        self._grow((path[_last_name(path)], path[_last_name(path) + 1 :].count("[]")), loops)
+                        self._grow(_key(path), loops)
+
+    def _join(self, one: tuple[str, int], other: tuple[str, int]) -> None:
+        """Notes that two vectors, and those in them, are of one type, since code takes either."""
+        for level in range(_MAX_NESTING):
+            pair = ((one[0], one[1] + level), (other[0], other[1] + level))
+            joined = {key for part in pair for key in self._alike.get(part, {part})}
+            self._alike.update(dict.fromkeys(joined, joined))
 
     def _in_numbers(self, code: str) -> str:
         """The code with the constants' values in place of their names."""
@@ -89,9 +106,7 @@ class Capacities:
         return len(call.name) == 1 and call.name[0] in self._filling
 
     def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
-        names = [part for part in mention.path if part != "[]"]
-        level = len(mention.path) - len(mention.path[: _last_name(mention.path) + 1])
-        key = (names[-1], level)
+        key = _key(mention.path)
         rest = self._in_numbers(code[mention.extent.end :].lstrip())
         if mention.access is Access.WRITE and rest.startswith("="):
             self._take_value(key, rest[1:].lstrip(), loops)
@@ -147,6 +162,25 @@ def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
                 yield declaration.name, mention.path
             elif loop is not None and at == loop.end():
                 yield declaration.name, (*mention.path, "[]")
+
+
+def _in_place_of_each_other(cpp: Cpp, code: str) -> Iterator[tuple[Mention, Mention]]:
+    """Pairs as in `c ? state.a : state.b`, `{&state.a, &state.b}` and `swap(state.a, state.b)`."""
+    for one, other in pairwise(cpp.mentions):
+        between = _IN_PLACE.fullmatch(code, one.extent.end, other.extent.start)
+        if between is None:
+            continue
+        statement = _STATEMENT.search(code, 0, one.extent.start)
+        before = _BEFORE_FIRST.search(code, 0, one.extent.start)
+        is_choice = between[1] == ":" and statement is not None and "?" in statement[0]
+        if is_choice or (between[1] == "," and before is not None and bool(before[2]) == bool(between[2])):
+            yield one, other
+
+
+def _key(path: tuple[str, ...]) -> tuple[str, int]:
+    """The name of a variable or field at the end of a path, and the level of what is indexed there."""
+    last = _last_name(path)
+    return path[last], len(path) - last - 1
 
 
 def _last_name(path: tuple[str, ...]) -> int:

@@ -13,6 +13,9 @@ from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
 )
+_CONTAINER_POINTER = re.compile(_CONTAINER_REFERENCE.pattern.replace("&", r"\*"))
+_STD = re.compile(r"std\s*::\s*")
+_OF_VECTORS = frozenset({"erase", "erase_if", "swap"})
 _ITERATOR = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
 )
@@ -27,8 +30,15 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
 
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
+    - `vector<int>* row = &state__.row;` becomes `auto* row`
+    - `std::swap`, `std::erase` and `std::erase_if` lose their `std::`: those of state variables are not there
     - a vector of constants that is only read becomes `static const`
     """
+    own = {declaration.name for declaration in cpp.declarations}
+    for call in cpp.calls:
+        prefix = _STD.match(cpp.code, call.extent.start)
+        if prefix is not None and call.name[-1] in _OF_VECTORS - own:
+            yield prefix.start(), prefix.end(), ""
     for declaration in cpp.declarations:
         before = cpp.code[: declaration.extent.start]
         if declaration.type.endswith("iterator") and _mentions_state(cpp, declaration):
@@ -38,6 +48,10 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
             reference = _CONTAINER_REFERENCE.search(before)
             if reference is not None and _may_bind_state(cpp, declaration, before):
                 yield reference.start(1), reference.end(1), "auto"
+        elif declaration.type.endswith("*"):
+            pointer = _CONTAINER_POINTER.search(before)
+            if pointer is not None and _mentions_state(cpp, declaration):
+                yield pointer.start(1), pointer.end(1), "auto"
         elif declaration.kind is DeclarationKind.VARIABLE and declaration.initial is not None:
             vector = _VECTOR.search(before)
             if vector is not None and _is_constant_table(cpp, declaration, values):

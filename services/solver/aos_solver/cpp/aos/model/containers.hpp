@@ -159,6 +159,11 @@ class Vector {
   }
   void fill(const T& value) { assign(size_, value); }
   void swap(Vector& other) { std::swap(*this, other); }
+  void swap(std::vector<T>& other) {
+    std::vector<T> mine = *this;
+    *this = Vector{other};
+    other = std::move(mine);
+  }
 
   template <std::size_t OtherCapacity>
   friend bool operator==(const Vector& left, const Vector<T, OtherCapacity>& right) {
@@ -192,5 +197,25 @@ class Vector {
   T values_[Capacity] = {};
   std::uint32_t size_ = 0;
 };
+
+template <class T, std::size_t Capacity, class Predicate>
+std::size_t erase_if(Vector<T, Capacity>& values, Predicate is_erased) {
+  const std::size_t before = values.size();
+  values.erase(std::remove_if(values.begin(), values.end(), is_erased), values.end());
+  return before - values.size();
+}
+template <class T, std::size_t Capacity, class Value>
+std::size_t erase(Vector<T, Capacity>& values, const Value& value) {
+  const Value erased = value;  // it may be an element
+  return erase_if(values, [&](const T& other) { return other == erased; });
+}
+template <class T, std::size_t Capacity>
+void swap(Vector<T, Capacity>& left, std::vector<T>& right) {
+  left.swap(right);
+}
+template <class T, std::size_t Capacity>
+void swap(std::vector<T>& left, Vector<T, Capacity>& right) {
+  right.swap(left);
+}
 
 }  // namespace aos
