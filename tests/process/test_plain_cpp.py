@@ -13,6 +13,9 @@ discount: 0.9
 define_type: Colour
 enum_members: Red, Blue
 
+define_type: Response
+enum_members: Missed, Observed
+
 define_type: Box
 variable: int weight 2
 
@@ -84,6 +87,7 @@ CODE = {
         "if (x == 2) throw 1; } catch (...) { x = 9; } __reward = x;",
         5,
     ),
+    "names": ("Response seen = Observed; __reward = 5 + seen;", 6),
     "either": (
         "auto& one = amount > 2 ? state__.last : state__.row; one[0] = 8;"
         "std::swap(state__.last, state__.row);"

@@ -123,7 +123,7 @@ inline void default_values(Draft& state) {
 // From navigate.sd.
 struct aos_skill_navigate : aos::SkillDefaults {
   static constexpr const char* aos_name = "navigate";
-  enum Response : int { arrived = 1, failed };
+  enum aos_Response : int { arrived = 1, failed };
   static constexpr std::array<const char*, 2> response_names{"arrived", "failed"};
   static constexpr double violation_penalty = -10.0;
 
@@ -173,7 +173,7 @@ struct aos_skill_navigate : aos::SkillDefaults {
 // From observe_arm_outstretched.sd.
 struct aos_skill_observe_arm_outstretched : aos::SkillDefaults {
   static constexpr const char* aos_name = "observe_arm_outstretched";
-  enum Response : int { outstretched = 1, not_outstretched };
+  enum aos_Response : int { outstretched = 1, not_outstretched };
   static constexpr std::array<const char*, 2> response_names{"outstretched", "not_outstretched"};
   static constexpr bool has_certain_rewards = true;
 
@@ -193,7 +193,7 @@ struct aos_skill_observe_arm_outstretched : aos::SkillDefaults {
 // From observe_holding.sd.
 struct aos_skill_observe_holding : aos::SkillDefaults {
   static constexpr const char* aos_name = "observe_holding";
-  enum Response : int { holding = 1, not_holding };
+  enum aos_Response : int { holding = 1, not_holding };
   static constexpr std::array<const char*, 2> response_names{"holding", "not_holding"};
   static constexpr bool has_certain_rewards = true;
 
@@ -214,7 +214,7 @@ struct aos_skill_observe_holding : aos::SkillDefaults {
 // From pick.sd.
 struct aos_skill_pick : aos::SkillDefaults {
   static constexpr const char* aos_name = "pick";
-  enum Response : int { pick_succeeded = 1, pick_failed };
+  enum aos_Response : int { pick_succeeded = 1, pick_failed };
   static constexpr std::array<const char*, 2> response_names{"pick_succeeded", "pick_failed"};
   static constexpr double violation_penalty = -10.0;
 
@@ -261,7 +261,7 @@ struct aos_skill_pick : aos::SkillDefaults {
 // From serve.sd.
 struct aos_skill_serve : aos::SkillDefaults {
   static constexpr const char* aos_name = "serve";
-  enum Response : int { delivered = 1, not_delivered };
+  enum aos_Response : int { delivered = 1, not_delivered };
   static constexpr std::array<const char*, 2> response_names{"delivered", "not_delivered"};
   static constexpr bool has_certain_rewards = true;
   static constexpr double violation_penalty = -12.0;

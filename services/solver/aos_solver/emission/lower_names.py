@@ -16,7 +16,7 @@ _OF_THE_LANGUAGE = frozenset({
 _OF_NAMESPACES = frozenset({"model"})
 """No type can have these names, and everything else can."""
 _OF_EMITTED_SKILLS = frozenset({
-    "Locals", "Observed", "Parameters", "Response", "execution_time", "given_observation",
+    "Locals", "Parameters", "execution_time", "given_observation",
     "has_alike_groundings", "has_certain_rewards", "has_text_response", "locals", "make_groundings",
     "is_monitor", "next_state", "number_count",
     "possible_parameters", "precondition", "read_locals", "respond", "response_names", "rollout_policy",
