@@ -13,7 +13,8 @@ _PLAIN = frozenset({
     "anyValue", "bool", "char", "double", "float", "int", "int16_t", "int32_t", "int64_t", "int8_t", "long",
     "long int", "long long", "long long int", "short", "short int", "signed char", "size_t", "uint16_t",
     "uint32_t", "uint64_t", "uint8_t", "unsigned", "unsigned char", "unsigned int", "unsigned long",
-    "unsigned long int", "unsigned long long", "unsigned long long int", "unsigned short", "unsigned short int",
+    "unsigned long int", "unsigned long long", "unsigned long long int", "unsigned short",
+    "unsigned short int",
 })  # fmt: skip
 _OVER_ENUM = re.compile(r"(.+)\[([A-Za-z_]\w*)\]")
 _RANGE = re.compile(r"\(\s*(-?\d+)\s*,\s*(-?\d+)\s*,\s*([1-9]\d*)\s*\)")
