@@ -283,11 +283,11 @@ _STATUS = {
     "AOS503": "timed_out",
     "AOS504": "unknown",
     "AOS507": "cancelled",
-    "AOS606": "unknown",
+    **dict.fromkeys(("AOS602", "AOS603", "AOS606"), "unknown"),
     **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512", "AOS514"), "refused"),
 }
 """The status of the skill by the code of an error; AOS606 is a defect of the adapter, in the middle of
-anything."""
+anything, and a reply that cannot be read (AOS602, AOS603) says nothing of the skill."""
 
 _BY_HUNDRED: dict[str, type[AosError]] = {
     "1": DocumentError,

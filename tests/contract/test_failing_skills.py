@@ -9,7 +9,7 @@ from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang
 
 from aos_protocol.errors import SkillError
-from aos_protocol.messages import Outcome, SkillCall, SkillResult, Stray
+from aos_protocol.messages import Cancelled, Outcome, SkillCall, SkillResult, Stray
 from aos_runtime.journal import Journal
 
 JAMMED = """\
@@ -132,6 +132,13 @@ async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system:
     with Journal.read(system.run_dir / "middleware.db") as journal:
         (stray,) = [msgspec.json.decode(row.payload, type=Stray) for row in journal.rows("stray")]
     assert (stray.id, stray.kind, stray.path) == (outcome.id, kind, "/sense")
+
+
+async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: System) -> None:
+    await system.adapter.serve("/sense", answering({}), lambda _: Cancelled())  # type: ignore[arg-type, return-value]
+    outcome = await system.activate("sense", 1)
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS602")
 
 
 def assert_refused(outcome: Outcome, code: str, text: str) -> None:

@@ -128,6 +128,8 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
     assert {record.skill for record in around.records} <= ANSWERS.keys() - {"navigate"}
     # All actions are valued all the same: the belief and the model have not changed.
     assert "navigate(destination=easy_table)" in {action.action for action in around.records[0].actions}
+    why = "navigate(destination=easy_table) cannot be chosen now: its adapter has left"
+    assert why in around.records[0].why
 
     def come_back() -> None:
         around.unavailable = {}

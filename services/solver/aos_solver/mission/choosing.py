@@ -166,8 +166,9 @@ class Chooser:
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
             ended = await self._ending(engine, plan, belief, without)
-            endless = await self._endless.newly_found(engine)
-            plan = _explained(plan, without.reasons, is_cautious, endless)
+            told = await self._endless.newly_found(engine)
+            told += _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
+            plan = _explained(plan, without.reasons, is_cautious, told)
             if ended is not None:
                 return ended
             chosen_by, searches = self.search.chosen_by, self._searches.told()
@@ -286,7 +287,13 @@ def _nothing_left(set_aside: Mapping[str, str]) -> str:
     return f"nothing is left that is worth doing: {'; '.join(set_aside.values())}"
 
 
-def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool, endless: list[str]) -> Plan:
-    """The plan, which says what it does without, and which loops it has found to be without an end."""
-    reasons = [plan.why, *set_aside.values(), *([_CAUTIOUSLY] if is_cautious else []), *endless]
+def _kept_back(plan: Plan, barred: Mapping[str, str]) -> list[str]:
+    """The actions that are worth more than the choice and cannot be carried out now, with the reasons."""
+    better = [value.action for value in plan.actions if value.q > plan.best.q and value.action in barred]
+    return [f"{action} cannot be chosen now: {barred[action]}" for action in better]
+
+
+def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:
+    """The plan, which says what it does without, and what else was `told`."""
+    reasons = [plan.why, *set_aside.values(), *([_CAUTIOUSLY] if is_cautious else []), *told]
     return msgspec.structs.replace(plan, why="; ".join(reason for reason in reasons if reason))
