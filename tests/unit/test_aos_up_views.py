@@ -276,6 +276,13 @@ def test_the_screen_keeps_to_the_terminal(width: int, height: int) -> None:
     assert max(map(len, lines)) <= width
 
 
+def test_actions_that_differ_in_their_middle_are_told_apart_in_a_narrow_terminal() -> None:
+    actions = tuple(ActionValue(f"take(side={side}_side)", 1.0, 10, 0.1) for side in ("left", "right"))
+    screen = small_screen()
+    screen.take(msgspec.structs.replace(MANY, actions=actions))
+    assert {"take(l…de)", "take(r…de)"} <= set(shown(screen, 40, 24).split())
+
+
 def test_the_screen_shows_the_skill_while_it_runs() -> None:
     screen = small_screen()
     screen.take(msgspec.structs.replace(REFUSED, is_accepted=True, diagnostics=(), source="finer"))

@@ -148,15 +148,14 @@ def _fitting(actions: list[str], width: int) -> list[str]:
     """The actions as they are, or without their parameters' names, or with their middle left out."""
     if max(map(len, actions), default=0) > width:
         actions = [brief_action(action) for action in actions]
-    return [_without_middle(action, max(width, 8)) for action in actions]
+    width = max(width, 8)
+    heads = sorted(range(width), key=lambda head: abs(head - width // 2))
+    cuts = ([_without_middle(action, width, head) for action in actions] for head in heads)
+    return max(cuts, key=lambda names: len(set(names)))  # The first one in which the most can be told apart.
 
 
-def _without_middle(text: str, width: int) -> str:
-    """Actions often differ in their last letters only."""
-    if len(text) <= width:
-        return text
-    head = width // 2
-    return f"{text[:head]}…{text[len(text) - (width - head - 1) :]}"
+def _without_middle(text: str, width: int, head: int) -> str:
+    return text if len(text) <= width else f"{text[:head]}…{text[len(text) - (width - head - 1) :]}"
 
 
 def _observation(record: DecisionRecord) -> Text:
