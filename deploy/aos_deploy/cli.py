@@ -3,7 +3,7 @@
 import errno
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -58,11 +58,7 @@ _STYLE: dict[str, Any] = {
 
 def main() -> NoReturn:
     """`aos`."""
-    try:
-        app = aos_app(sys.argv[1:])
-    except KeyboardInterrupt:  # Its imports can take a second.
-        sys.exit(ExitCode.INTERRUPTED)
-    _run(app, "aos")
+    _run(lambda: aos_app(sys.argv[1:]), "aos")
 
 
 def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
@@ -83,9 +79,13 @@ def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
 
 def up_main() -> NoReturn:
     """`aos-up`."""
+    _run(_up_app, "aos-up")
+
+
+def _up_app() -> typer.Typer:
     app = typer.Typer(**_STYLE)
     import_module("aos_deploy.commands.up").register(app)
-    _run(app, "aos-up")
+    return app
 
 
 def _needed_modules(arguments: Sequence[str]) -> list[str]:
@@ -106,9 +106,13 @@ def _own_options(version: Version = False) -> None:
     program."""
 
 
-def _run(app: typer.Typer, name: str) -> NoReturn:
+def _run(make_app: Callable[[], typer.Typer], name: str) -> NoReturn:
     """Runs the command and ends the process: an AosError as its diagnostics and one line on stderr."""
     write_what_fits(sys.stdout)
+    try:
+        app = make_app()
+    except KeyboardInterrupt:  # Its imports can take a second.
+        sys.exit(ExitCode.INTERRUPTED)
     try:
         try:
             app(prog_name=name)

@@ -39,7 +39,7 @@ def console(*, stderr: bool = False, is_wide: bool = False) -> Console:
 def write_what_fits(stream: object) -> None:
     """Has a stream write a question mark for each letter that its encoding does not have, as Latin-1 and
     the lines of tables."""
-    if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+    if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
         is_unicode = stream.encoding.lower().startswith("utf")
         stream.reconfigure(errors="backslashreplace" if is_unicode else "replace")
 

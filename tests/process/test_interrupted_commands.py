@@ -5,8 +5,9 @@ import json
 import os
 import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 from typer.testing import CliRunner
@@ -52,14 +53,17 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
     assert "stopped after 2 of 5 missions" in done.stderr
 
 
-def test_ctrl_c_while_a_command_is_imported_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("main", [cli.main, cli.up_main])
+def test_ctrl_c_while_a_command_is_imported_is_no_traceback(
+    monkeypatch: pytest.MonkeyPatch, main: Callable[[], NoReturn]
+) -> None:
     def interrupted(_: str) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(cli, "import_module", interrupted)
     monkeypatch.setattr(sys, "argv", ["aos", "lint"])
     with pytest.raises(SystemExit) as end:
-        cli.main()
+        main()
     assert end.value.code == 130
 
 

@@ -21,11 +21,16 @@ def test_long_work_tells_a_log_now_and_then_how_far_it_is(
 
 
 @pytest.mark.parametrize(
-    ("encoding", "written"), [("latin-1", b"\xe9 ??"), ("utf-8", b"\xc3\xa9 \xe2\x94\x83\\udcff")]
+    ("encoding", "written"),
+    [("latin-1", b"\xe9 ??"), ("ascii", b"? ??"), ("utf-8", b"\xc3\xa9 \xe2\x94\x83\\udcff")],
 )
-def test_what_an_output_cannot_write_does_not_end_the_command(encoding: str, written: bytes) -> None:
+@pytest.mark.parametrize("errors", ["strict", "surrogateescape"])
+def test_what_an_output_cannot_write_does_not_end_the_command(
+    encoding: str, written: bytes, errors: str
+) -> None:
+    """Python escapes surrogates where the locale is C."""
     raw = io.BytesIO()
-    stream = io.TextIOWrapper(raw, encoding=encoding)
+    stream = io.TextIOWrapper(raw, encoding=encoding, errors=errors)
     terminal.write_what_fits(stream)
     stream.write("\u00e9 \u2503\udcff")
     stream.flush()
