@@ -70,7 +70,7 @@ def test_values_margins_and_changes_of_the_choice_are_within_the_errors_that_are
     executable: Path,
 ) -> None:
     found = Intervals()
-    options = {"seed": 5, "simulations": 2000, "truth": 0.3}
+    options = {"seed": 5, "simulations": 2000, "truth": 0.1}
     for problem, answer in reports(
         executable, "intervals", options, problems(list(FAMILIES), 22, 3000, False, 100)
     ):

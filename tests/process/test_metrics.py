@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from gateway import Gateway, gateway, played, running, slow_system
+from long_run import write_long_run
 
 
 def samples(served: Gateway) -> dict[str, float]:
@@ -76,7 +77,7 @@ def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path
 def test_metrics_are_off_count_nothing_of_before_and_are_as_private_as_the_rest(
     tmp_path: Path, cache_dir: Path
 ) -> None:
-    played(tmp_path, cache_dir)
+    write_long_run(tmp_path / "runs", 2)
     with gateway(tmp_path, cache_dir) as served:
         assert served.ask("/metrics").status == 404
     with gateway(tmp_path, cache_dir, "--metrics") as served:
@@ -85,3 +86,4 @@ def test_metrics_are_off_count_nothing_of_before_and_are_as_private_as_the_rest(
         played(tmp_path, cache_dir)
         text = served.ask("/metrics").body.decode()
     assert 'aos_missions_total{robot="errand",ending="goal"} 1\n' in text
+    assert "marathon" not in text
