@@ -14,7 +14,7 @@ from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.living_runs import noted
 from aos_deploy.page_address import page_address
-from aos_deploy.printing import from_here, time_text
+from aos_deploy.printing import count, from_here, time_text
 from aos_deploy.program import outsiders_of, programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory
@@ -119,7 +119,7 @@ class MissionRun:
             self.error = self.error or error
         await send_rest(run, is_wanted=bool(self._deployment.file.spans.otlp))
         run.close()
-        took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
+        took = f"{count(summary.steps, 'step')} in {summary.duration_s:.1f} s"
         self._report(Told(f"{summary.ending} after {took}; everything is kept in {from_here(run.path)}"))
         return summary
 

@@ -8,7 +8,7 @@ import msgspec
 from aos_deploy.events import Event, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.mission_run import MissionRun
-from aos_deploy.printing import time_text
+from aos_deploy.printing import count, time_text
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_end import settled
 from aos_deploy.run_summary import Summary, SystemSummary
@@ -60,7 +60,8 @@ class SystemRun(MissionRun):
         if entry is None or self._run.read_summary(entry.number) is not None:
             return
         summary = self._keep(entry, was_interrupted=False)
-        what = f"{entry.mission}: {summary.ending} after {summary.steps} steps in {summary.duration_s:.1f} s"
+        took = f"{count(summary.steps, 'step')} in {summary.duration_s:.1f} s"
+        what = f"{entry.mission}: {summary.ending} after {took}"
         self._report(Told(f"{what}; `aos mission start` begins the next, Ctrl-C stops the system"))
 
     def _keep(self, entry: MissionEntry, *, was_interrupted: bool) -> Summary:

@@ -161,7 +161,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> 
     assert code == 3
     assert f"AOS515: the mission {first} runs" in error
 
-    assert stays.aos("mission", "stop")[1] == f"{first}: cancelled after 1 steps\n"
+    assert stays.aos("mission", "stop")[1] == f"{first}: cancelled after 1 step\n"
     assert stays.aos("mission", "stop")[1] == f"no mission runs: {first} has ended, cancelled\n"
     stays.be_slow(False)
     assert stays.aos("mission", "start", "--wait")[0] == 6

@@ -328,9 +328,9 @@ def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.Monkey
         view(DECISION)
         view(ServiceChanged("solver", "stopping", 2.0))
         assert "⠋ stopping solver ... 0 s" in text.getvalue()
-        view(Told("cancelled after 1 steps"))
+        view(Told("cancelled after 1 step"))
     rest = text.getvalue().rpartition("pick")[2]
-    assert "cancelled after 1 steps" in rest
+    assert "cancelled after 1 step" in rest
     assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(rest)
 
 

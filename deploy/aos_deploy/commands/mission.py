@@ -13,7 +13,7 @@ from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
 from aos_deploy.living_runs import chosen_run
 from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson
-from aos_deploy.printing import print_json
+from aos_deploy.printing import count, print_json
 from aos_deploy.running_system import System, on_system
 from aos_protocol.messages import MissionEntry, MissionState
 
@@ -83,7 +83,9 @@ def start(
     if as_json:
         print_json(outcome)
     elif isinstance(outcome, MissionEntry):
-        typer.echo(f"{outcome.mission}: {outcome.ending} after {outcome.steps} steps, {outcome.remark}")
+        typer.echo(
+            f"{outcome.mission}: {outcome.ending} after {count(outcome.steps, 'step')}, {outcome.remark}"
+        )
     else:
         typer.echo(f"{outcome.mission} has begun")
     if isinstance(outcome, MissionEntry):
@@ -109,7 +111,7 @@ def stop(system: System, as_json: AsJson = False) -> None:
     elif before.phase == "ended":
         typer.echo(f"no mission runs: {after.mission} has ended, {after.ending}")
     else:
-        typer.echo(f"{after.mission}: {after.ending} after {after.step} steps")
+        typer.echo(f"{after.mission}: {after.ending} after {count(after.step, 'step')}")
 
 
 @mission_app.command("list", epilog="Example: aos mission list --json")
@@ -149,8 +151,7 @@ def _line(entry: MissionEntry) -> str:
     began = [entry.belief, *(f"given {text}" for text in entry.given)]
     began += [f"{name} = {text}" for name, text in entry.values.items()]
     if entry.idle:
-        began.append(f"after {entry.idle} idle steps")
+        began.append(f"after {count(entry.idle, 'idle step')}")
     ending = entry.ending or "running"
-    return (
-        f"{ending:18} {entry.steps:3} steps  {begun}  {entry.mission}  seed {entry.seed}, {', '.join(began)}"
-    )
+    steps = count(entry.steps, "step")
+    return f"{ending:18} {steps:>9}  {begun}  {entry.mission}  seed {entry.seed}, {', '.join(began)}"

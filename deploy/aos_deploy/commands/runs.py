@@ -69,7 +69,7 @@ def runs(
         print_json(entries)
         return
     for entry in (each for listed in entries for each in (listed, *listed.missions)):
-        steps = "" if entry.steps is None else f"{entry.steps:3} steps"
+        steps = "" if entry.steps is None else count(entry.steps, "step")
         took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
         values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
         typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")

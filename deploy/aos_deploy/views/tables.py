@@ -7,6 +7,7 @@ from rich.bar import Bar
 from rich.table import Table
 from rich.text import Text
 
+from aos_deploy.printing import count
 from aos_deploy.terminal import console
 from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
 from aos_protocol.messages import ActionValue
@@ -121,7 +122,7 @@ def _story(run: SimulatedRun) -> list[str]:
     ]
     between = len(steps) - FIRST_STEPS - LAST_STEPS
     if between > 1:
-        steps[FIRST_STEPS:-LAST_STEPS] = [f"… {between} steps more …"]
+        steps[FIRST_STEPS:-LAST_STEPS] = [f"… {count(between, 'more step')} …"]
     return steps
 
 
