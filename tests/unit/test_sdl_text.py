@@ -67,6 +67,18 @@ def test_a_section_of_another_kind_of_file_is_an_error_that_names_the_kind() -> 
     assert error.hint == "It belongs in the environment file (.ef)"
 
 
+def test_words_within_a_block_comment_open_nothing() -> None:
+    text = (
+        "/* don't\nprecondition:\n*/\ndynamic_model: /* so\nprecondition: */ x = '\"';  // no /*\n"
+        'y = "/*";\nviolate_penalty: -1 /* euros */\n/* one */'
+    )
+    (model, penalty), findings = sections(text)
+    assert code_of(model) == '/* so\nprecondition: */ x = \'"\';  // no /*\ny = "/*";'
+    assert (penalty.value.text, findings) == ("-1", ())
+    _, (error,) = sections("/* open\nprecondition: x", ".sd")
+    assert (error.code, error.message) == ("AOS104", "this comment is never closed")
+
+
 def test_a_part_in_the_wrong_section_is_an_error_that_names_its_own() -> None:
     _, errors = sections("path: /p\nresponse: a\nresponse_rule: True\ntopic: /t\nparameter: x", ".am")
     places = ["`module_activation:`", "`local_variable:`", "`module_activation:`"]

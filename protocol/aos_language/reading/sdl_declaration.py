@@ -11,7 +11,7 @@ from aos_language.reading.source import Text
 
 _DECLARATION = re.compile(
     r"((?:(?:unsigned|signed|long|short)(?:\s+(?:unsigned|signed|long|short|int|char|double)\b)*(?=\s)"
-    r"|[A-Za-z_][\w:]*)(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[]+)(\s*)"
+    r"|[A-Za-z_][\w:]*)(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[=]+)(\s*)"
 )
 _TRUTHS = {"true": True, "false": False}
 

@@ -24,8 +24,8 @@ from aos_protocol.spelling import nearest
 _OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
 _WORD_ALONE = re.compile(r"[ \t]*(?P<word>[a-z]+(?:_[a-z]+)*)(?:[ \t]+(?P<rest>\S.*?))?[ \t]*$")
 _BETWEEN_NAMES = frozenset({"and", "else", "for", "if", "in", "is", "not", "or"})
-_COMMENT = re.compile(r"\s*(//|#)")
-_COMMENT_AFTER_VALUE = re.compile(r'(?:[^"\n]|"[^"\n]*")*?(?=\s(?://|#)(?:\s|$))')
+_COMMENT = re.compile(r"\s*(?://|#|/\*(?:(?!\*/).)*(?:\*/\s*)?$)")
+_COMMENT_AFTER_VALUE = re.compile(r'(?:[^"\n]|"[^"\n]*")*?(?=\s(?://|#|/\*)(?:\s|$))')
 _CODE_LABELS = frozenset({
     "case", "class", "def", "default", "elif", "else", "except", "finally", "for", "if", "lambda", "match",
     "private", "protected", "public", "try", "while", "with",
@@ -135,6 +135,11 @@ def parse_sdl(
     return _Scanner(source, grammar, elsewhere, findings).sections()
 
 
+_MARKS = re.compile(
+    r"""(?P<opens>/\*)|//|(?:^|\s)#|"(?:[^"\\]|\\.|\\$)*(?:"|$)|'(?:[^'\\]|\\.|\\$)*(?:'|$)"""
+)
+
+
 class _Scanner:
     def __init__(
         self, source: Source, grammar: Grammar, elsewhere: Mapping[str, str], findings: Findings
@@ -150,11 +155,35 @@ class _Scanner:
         self._findings = findings
         self._sections: list[Section] = []
         self._current: Part | None = None
+        self._comment: Span | None = None
+        self._has_cpp = any(entry.body is Body.CPP for entry in grammar.values())
 
     def sections(self) -> list[Section]:
         for number, line in enumerate(self._source.lines, start=1):
-            self._take(Text(line, Span(self._source.name, number, 1)))
+            text = Text(line, Span(self._source.name, number, 1))
+            if self._comment is None:
+                self._take(text)
+            elif self._is_in_code():
+                self._add_to_body(text)
+            self._note_comment(text)
+        if self._comment is not None and not self._is_in_code():
+            self._findings.error("AOS104", "this comment is never closed", self._comment)
         return self._sections
+
+    def _note_comment(self, line: Text) -> None:
+        """Notes whether a line ends within `/* ... */`, of which no line opens a section."""
+        if not self._has_cpp or (self._current is not None and self._current.body is Body.PYTHON):
+            return
+        at = 0
+        while at >= 0:
+            if self._comment is None:
+                marks = _MARKS.finditer(line.text, at)
+                mark = next((mark for mark in marks if mark.group()[:1] not in ("'", '"')), None)
+                if mark is None or not mark["opens"]:
+                    return
+                self._comment, at = line.after(mark.start()).span, mark.end()
+            end = line.text.find("*/", at)
+            self._comment, at = (self._comment, -1) if end < 0 else (None, end + 2)
 
     def _take(self, line: Text) -> None:
         match = _OPENING.match(line.text)
