@@ -259,7 +259,11 @@ class MissionRun:
                         return
 
     def _has_journaled(self, state: MissionState) -> bool:
-        """Says whether the journal has the end that somebody tells. One that cannot be read says nothing."""
+        """Says whether the journal has the end that somebody tells. One that is gone, or cannot be read, says
+        nothing.
+        """
+        if not (self._run.path / "journal.db").exists():
+            return True
         try:
             account = account_of(self._run.path)
         except StorageError:

@@ -53,6 +53,10 @@ def settled(
     lacking: StorageError | None = None
     try:
         account = account_of(run)
+        if heard.has_ended and not (run / _JOURNAL).exists():
+            raise StorageError(
+                f"the journal {run / _JOURNAL} was removed while it was written", code="AOS702"
+            )
     except StorageError as error:
         account, lacking = heard, error
     stopped = None

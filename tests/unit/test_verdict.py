@@ -119,10 +119,15 @@ def test_without_space_for_the_end_the_verdict_is_the_same(run: Path) -> None:
     assert lacking.code == "AOS701"
 
 
-def test_where_the_journal_is_damaged_the_verdict_is_on_what_was_seen(run: Path) -> None:
+@pytest.mark.parametrize("is_gone", [False, True])
+def test_where_the_journal_is_damaged_or_gone_the_verdict_is_on_what_was_seen(
+    run: Path, is_gone: bool
+) -> None:
     write(run, decided(1), observed(1), ended("goal"))
     damaged = (run / "journal.db").read_bytes().replace(b'"look"', b'"loo\xff"')
     (run / "journal.db").write_bytes(damaged)
+    if is_gone:
+        (run / "journal.db").unlink()
     account = Account((decided(1), observed(1), ended("goal")))
     verdict, lacking = settled(run, account, stopped_by=None, was_interrupted=False)
     assert (verdict.ending, verdict.exit_code) == ("goal", 0)
