@@ -176,6 +176,9 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("tiger.pomdp", replaced("# A tiger", "A tiger"), "1:1 AOS102 A is no keyword"),
         ("tiger.pomdp", replaced("values: reward", "vaules: reward"), "3:1 AOS102 vaules is no keyword"),
         ("tiger.pomdp", replaced("start:", "start"), "7:1 AOS102 start begins a line without a colon"),
+        ("tiger.pomdp", replaced("left right", "9" * 5000), "4:9 AOS106 1000000000000000000 is no number of"),
+        ("tiger.pomdp", replaced("R: 1 : left", f"R: 1 : {'9' * 5000}"), "21:8 AOS110 there is no state 99"),
+        ("rover.pomdpx", replaced("<NumValues>2", f"<NumValues>{'9' * 5000}"), "11:5 AOS105 StateVar has no"),
         ("tiger.pomdp", replaced("T: * : *", "T: * : * : * "), "9:1 AOS106 `T:` has 4 fields"),
         (
             "rover.pomdpx",
@@ -214,7 +217,12 @@ def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(
         read_problem(broken)
 
 
-def test_too_many_states_are_told(problems: Path) -> None:
+def test_too_many_states_are_told(problems: Path, tmp_path: Path) -> None:
+    (tmp_path / "wide.pomdpx").write_text(
+        (problems / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>9999999<")
+    )
+    with pytest.raises(ModelError, match="too large once it is written out"):
+        read_problem(tmp_path / "wide.pomdpx")
     with pytest.raises(ModelError, match="more than 3 states") as caught:
         read_problem(problems / "rover.pomdpx", max_states=3)
     assert caught.value.code == "AOS220"

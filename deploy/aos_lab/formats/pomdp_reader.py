@@ -112,8 +112,7 @@ class _Reader:
         for before, word in pairwise(words):
             if word.text in KEYWORDS and word.line > before.line:
                 self._error("AOS102", f"{word.text} begins a line without a colon", word)
-        if len(words) == 1 and words[0].text.isdecimal():
-            count = int(words[0].text)
+        if len(words) == 1 and (count := words[0].count) is not None:
             if not 0 < count <= _MAX_NAMES:
                 self._error("AOS106", f"{count} is no number of {kind}", words[0])
                 return
@@ -274,8 +273,8 @@ class _Reader:
         if word.text == "*":
             return self._all(kind)
         number = self._numbers[kind].get(word.text)
-        if number is None and word.text.isdecimal() and int(word.text) < len(self._names[kind]):
-            number = int(word.text)
+        if number is None and (count := word.count) is not None and count < len(self._names[kind]):
+            number = count
         if number is None:
             self._findings.unknown(kind.rstrip("s"), word, self._names[kind])
             return ()

@@ -121,8 +121,9 @@ class _Reader:
                 return values
         elif counted is not None:
             words = counted.words()
-            if len(words) == 1 and words[0].text.isdecimal() and 0 < int(words[0].text) <= 10_000_000:
-                return tuple(f"{letter}{number}" for number in range(int(words[0].text)))
+            count = words[0].count if len(words) == 1 else None
+            if count is not None and 0 < count <= 10_000_000:
+                return tuple(f"{letter}{number}" for number in range(count))
         where = listed or counted or element
         self._findings.error(
             "AOS105",

@@ -22,7 +22,11 @@ def read_problem(
     except OSError as error:
         raise DocumentError(f"cannot read {path}: {error.strerror}", code="AOS101") from error
     if path.suffix == ".pomdpx":
-        return flatten(read_pomdpx(str(path), data), max_states=max_states, on_progress=on_progress)
+        try:
+            factored = read_pomdpx(str(path), data)
+        except MemoryError:
+            raise IntractableError(f"a table of {path} is too large once it is written out") from None
+        return flatten(factored, max_states=max_states, on_progress=on_progress)
     model = read_pomdp(str(path), data)
     if model.size.states > max_states:
         raise IntractableError(f"{path} has {model.size.states} states, more than {max_states}")

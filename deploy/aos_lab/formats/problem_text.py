@@ -11,6 +11,7 @@ from aos_protocol.errors import DocumentError
 _WORD = re.compile(r"\S+")
 _MAX_FINDINGS = 50
 _EXCERPT_LENGTH = 200
+_MAX_DIGITS = 18
 
 
 class TooManyFindingsError(Exception):
@@ -23,6 +24,13 @@ class Word(msgspec.Struct, frozen=True, gc=False):
     text: str
     line: int
     column: int
+
+    @property
+    def count(self) -> int | None:
+        """The whole number that the word is; None for another word. One with too many digits is 10^18."""
+        if not self.text.isdecimal():
+            return None
+        return int(self.text) if len(self.text) <= _MAX_DIGITS else 10**_MAX_DIGITS
 
 
 def words_of(text: str, line: int = 1, column: int = 1) -> Iterator[Word]:
