@@ -13,6 +13,7 @@ from typing import Any
 
 from tests.wide.leaving import LEAVING, LEAVING_SIZES
 from tests.wide.lock import lock
+from tests.wide.photo import photo
 from tests.wide.problems import PROBLEMS, SIZES
 from tests.wide.rescue import rescue
 from tests.wide.together import TOGETHER, TOGETHER_SIZES
@@ -21,6 +22,9 @@ from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 
 from .losses import error_of_mean
 from .mechanisms import BUNDLES, BundleRoute
+
+_SINGLE = {"rescue": rescue, "lock": lock, "towers": towers, "photo": photo}
+_SINGLE_SIZES = {"rescue": 3, "lock": 5, "towers": 10, "photo": 12}
 
 _HERE = Path(__file__).parents[2] / "deploy" / "bundles" / "bench"
 
@@ -57,8 +61,8 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | {"rescue": rescue, "lock": lock, "towers": towers}
-    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | {"rescue": 3, "lock": 5, "towers": 10}
+    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | _SINGLE
+    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | _SINGLE_SIZES
     if name not in problems:
         return None
     written = scratch / name

@@ -119,6 +119,7 @@ BUNDLES = (
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("harbour", 1000, 60, ("options", "learned_values")),
     BundleRoute("rescue", 1000, 40, ("options", "tests_first")),
+    BundleRoute("photo", 1000, 80, ("priced_information", "wide_values", "first_state")),
     BundleRoute("shelf", 1000, 60, ("estimated_draws",)),
     BundleRoute(
         "pocman", 1000, 60, ("rollout_shares", "max_backup", "turns", "own_spread", "learned_values")

@@ -24,6 +24,7 @@ from .inspection import inspection, inspection_rule
 from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
 from .lock import Lock, lock, lock_rule
 from .missions import Played, played
+from .photo import Photo, photo, photo_rule
 from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
@@ -42,6 +43,7 @@ _SINGLE = {
     "tabletop": tabletop,
     "lock": lock,
     "towers": towers,
+    "photo": photo,
 }
 _BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
 _SIZES = (
@@ -50,7 +52,7 @@ _SIZES = (
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
-    | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5, "towers": 10}
+    | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5, "towers": 10, "photo": 12}
 )
 _RULES = (
     RULES
@@ -65,12 +67,20 @@ _RULES = (
         "tabletop": tabletop_rule,
         "lock": lock_rule,
         "towers": towers_rule,
+        "photo": photo_rule,
     }
 )
 _WORLDS = (
     TOGETHER_WORLDS
     | LEAVING_WORLDS
-    | {"screws": Screws, "rescue": Rescue, "tabletop": Tabletop, "lock": Lock, "towers": Towers}
+    | {
+        "screws": Screws,
+        "rescue": Rescue,
+        "tabletop": Tabletop,
+        "lock": Lock,
+        "towers": Towers,
+        "photo": Photo,
+    }
 )
 
 

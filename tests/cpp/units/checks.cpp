@@ -24,6 +24,7 @@
 #include "loops.cpp"
 #include "number_cells.cpp"
 #include "number_index.cpp"
+#include "observation_doubts.cpp"
 #include "option_policy.cpp"
 #include "option_search.cpp"
 #include "particles.cpp"

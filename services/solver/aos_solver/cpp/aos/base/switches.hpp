@@ -18,7 +18,7 @@
 // SARSOP:
 //   endless, certainty_equivalent, repeated_trials, lower_trials, simple_policies
 // POMCP's values of states, and its prior:
-//   listed_values, wide_values, learned_values, prior, prior_draw, asked_leaves, first_state, step_table, expected_rewards
+//   listed_values, wide_values, learned_values, prior, prior_draw, asked_leaves, first_state, priced_information, step_table, expected_rewards
 // POMCP's search:
 //   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, sooner, observation_cells,
 //   kept_tree
@@ -27,7 +27,7 @@
   of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways)                                                          \
   of(saving_lookahead)                                                                                         \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
-  of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state)  \
+  of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information)  \
   of(step_table) of(expected_rewards)                                                                           \
   of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns)              \
   of(sooner) of(observation_cells) of(kept_tree)

@@ -22,6 +22,7 @@
 #include "aos/planning/listed/step_table.hpp"
 #include "aos/planning/pomcp/best_action.hpp"
 #include "aos/planning/pomcp/exploration.hpp"
+#include "aos/planning/pomcp/information_price.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/search_threads.hpp"
 #include "aos/planning/pomcp/tree_search.hpp"
@@ -100,6 +101,10 @@ class Pomcp final : public TreePlanner<Model> {
   void advance(int action, Observation observation) override {
     for (const auto& tree : threads_.trees()) tree->move_to(action, observation);
   }
+  void start_over() override {
+    forget();
+    price_.start_over();
+  }
   void forget() override {
     for (const auto& tree : threads_.trees()) tree->forget();
   }
@@ -110,6 +115,7 @@ class Pomcp final : public TreePlanner<Model> {
     if (source_ == ValueSource::learned) why += "; what states are worth is learned from simulations";
     if (source_ == ValueSource::wide) {
       why += "; without observations all " + std::to_string(wide_values_.states()) + " can be, and their values are computed";
+      if (price_of_nat_ > 0) why += "; information has a price";
     }
     return simulations;
   }
@@ -152,7 +158,9 @@ class Pomcp final : public TreePlanner<Model> {
     mdp_value_ = state_values_ != nullptr ? mean_value(belief, worth) : 0;
     prior_.clear();
     has_table_ = false;
+    price_of_nat_ = 0;
     if (belief.probability_of(Ending::running) <= 0) return;
+    if (switches::priced_information && source_ == ValueSource::wide) price_of_nat_ = price_.of(belief, wide_values_, horizon);
     has_table_ = switches::step_table && source_ == ValueSource::listed && steps_.prepare(space_, belief);
     if (!switches::prior) return;
     if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
@@ -182,6 +190,7 @@ class Pomcp final : public TreePlanner<Model> {
     const Operations worth_cost = source_ == ValueSource::listed ? cost_of_listed_worth : step_cost;
     for (const auto& tree : threads_.trees()) {
       tree->begin(horizon, prior_, source_ == ValueSource::wide && switches::first_state, barred, step_cost, worth_cost);
+      tree->pay_for_information(price_of_nat_);
     }
     threads_.count_by(rolls_out() ? 0 : Budget::operations_of_simulation(horizon));
     if (has_table_) {
@@ -243,6 +252,7 @@ class Pomcp final : public TreePlanner<Model> {
   StepTable<Model> steps_;
   Operations step_cost_ = 0;  // 0: not known yet
   WideValues<Model> wide_values_;
+  InformationPrice<Model> price_;
   LearnedValues<Model> estimates_;
   // Of the last preparation:
   ValueSource source_ = ValueSource::none;
@@ -250,6 +260,7 @@ class Pomcp final : public TreePlanner<Model> {
   bool has_table_ = false;  // of steps
   std::vector<double> prior_;
   double mdp_value_ = 0;
+  double price_of_nat_ = 0;  // of information
   double rolled_out_ = 0;  // what rollouts return from the belief, where they value new histories
 };
 

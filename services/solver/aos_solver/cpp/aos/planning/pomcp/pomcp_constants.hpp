@@ -47,6 +47,15 @@ inline constexpr double cells_of_one_visit = 4;
 inline constexpr double cell_widening = 0.05;
 inline constexpr std::size_t max_observation_cells = 4'000'000;
 
+// Of the loss for each nat of entropy: the prices of a nat that are tried, and the price that a search pays of what is lost by the
+// best of them (docs/lab/information.md). Missions by each, the states
+// that their robot knows, and steps of the model for all of them.
+inline constexpr double priced_shares[] = {0.2, 0.5};
+inline constexpr double price_of_rest = 0.5;
+inline constexpr std::size_t priced_missions = 24;
+inline constexpr std::size_t priced_particles = 48;
+inline constexpr std::size_t most_priced_steps = 15'000'000;
+
 // --- limits ------------------------------------------------------------------------------------------
 
 inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // of the trees of all threads

@@ -44,6 +44,8 @@ struct ActionNode {
   double continuations = 0;  // sum over children of n * v
   double mean = 0;           // of the sampled returns
   double squares = 0;        // sum of the returns' squared deviations from their mean
+  double doubt = 0;          // sum over visits of what the observation leaves open in a known state, in nats
+  double information = 0;    // of the observation, in nats
   double share = 1;          // of the exploration; 1 is an even share
   std::uint32_t n = 0;
   std::uint32_t first_child = no_node;

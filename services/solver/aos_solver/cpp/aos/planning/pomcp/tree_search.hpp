@@ -23,6 +23,7 @@
 #include "aos/planning/pomcp/best_action.hpp"
 #include "aos/planning/pomcp/exploration.hpp"
 #include "aos/planning/pomcp/observation_cells.hpp"
+#include "aos/planning/pomcp/observation_doubts.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/root_record.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
@@ -54,6 +55,9 @@ class TreeSearch {
     record_ = RootRecord{action_count()};
     work_ = 0;
   }
+
+  // What a nat of information is worth in this decision, at which actions count by what they tell; 0: nothing.
+  void pay_for_information(double price) { price_ = price; }
 
   // The work of all simulations since `begin`, without that of rollouts.
   Operations work() const { return work_; }
@@ -129,6 +133,7 @@ class TreeSearch {
     std::uint32_t history;
     std::uint32_t action;
     double reward;
+    std::optional<double> doubt;  // see ActionNode; none if what is observed does not count
   };
 
   static std::uint32_t action_count() { return static_cast<std::uint32_t>(Model::action_count()); }
@@ -148,14 +153,15 @@ class TreeSearch {
     while (true) {
       const std::optional<double> expected =
           switches::expected_rewards && visits_.size() < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
+      const std::optional<double> doubt = price_ > 0 ? state.doubt(static_cast<int>(a), doubts_) : std::nullopt;
       Step step = step_of(state, static_cast<int>(a), random, drawn);
       if (expected) step.reward = *expected;
-      work_ += step_cost_ + per_visit + per_action * action_count() + (expected ? few_paths * step_cost_ : 0);
+      work_ += step_cost_ + per_visit + per_action * action_count() + ((expected ? few_paths : 0) + (doubt ? few_paths : 0)) * step_cost_;
       if (visits_.empty()) record_.add_reward(a, step.reward);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
       value = goes_on ? state.value(left) : 0;
-      visits_.push_back({history, a, step.reward + Model::discount * value - before});
+      visits_.push_back({history, a, step.reward + Model::discount * value - before, doubt});
       if (!goes_on) break;
 
       const std::uint32_t action = tree_.history(history).first_action + a;
@@ -230,6 +236,7 @@ class TreeSearch {
     node.rewards += visit.reward;
     node.continuations += change;
     node.q = (node.rewards + Model::discount * node.continuations) / node.n;
+    if (visit.doubt) add_information(node, *visit.doubt);
     const double deviation = seen - node.mean;
     node.mean += deviation / node.n;
     const double square = deviation * (seen - node.mean);
@@ -242,6 +249,13 @@ class TreeSearch {
     ++parent.n;
     parent.v = !switches::max_backup || parent.n < settled_visits ? parent.v + (seen - parent.v) / parent.n : actions[parent.best].q;
     return parent.n * parent.v - sum;
+  }
+
+  // Adds the worth of what an action tells to its value.
+  void add_information(ActionNode& node, double doubt) {
+    node.doubt += doubt;
+    if (node.n < settled_visits || node.n % settled_visits == 0) node.information = information_of(tree_, node);
+    node.q += Model::discount * price_ * node.information;
   }
 
   // At the root the bounds decide only after every action was tried. Below it, they decide at once where something
@@ -322,9 +336,11 @@ class TreeSearch {
   Operations step_cost_ = 0;
   Operations worth_cost_ = 0;
   Operations work_ = 0;
+  double price_ = 0;  // of a nat
   BarredActions barred_;
   std::vector<double> prior_;
   ExpectedRewards<Model> rewards_;
+  ObservationDoubts<Model> doubts_;
   RootRecord record_;
   RootSpread spread_;
   std::vector<Visit> visits_;  // of the simulation that runs

@@ -8,6 +8,7 @@
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/step_table.hpp"
+#include "aos/planning/pomcp/observation_doubts.hpp"
 #include "aos/planning/values/expected_rewards.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/state_values.hpp"
@@ -27,6 +28,8 @@ class ComputedState {
   std::optional<double> expected_reward(int action, ExpectedRewards<Model>& rewards) const {
     return rewards.of(state_, action);
   }
+  // See ObservationDoubts.
+  std::optional<double> doubt(int action, ObservationDoubts<Model>& doubts) const { return doubts.of(state_, action); }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
   // The value with `left` decisions to go; 0 if values are not known.
   double value(int left) const { return values_ != nullptr ? values_->value(state_, left) : 0; }
@@ -59,6 +62,7 @@ class ListedState {
     return outcome.step;
   }
   std::optional<double> expected_reward(int, ExpectedRewards<Model>&) const { return {}; }
+  std::optional<double> doubt(int, ObservationDoubts<Model>&) const { return {}; }
   bool has_ended() const { return number_ == StepTable<Model>::ended; }
   double value(int left) const { return values_.value(number_, left); }
   double leaf(int, Sampler&) const { return 0; }

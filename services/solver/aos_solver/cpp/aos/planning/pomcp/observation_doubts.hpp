@@ -1,0 +1,98 @@
+// What observations leave open where the state is known, and what they tell where it is not.
+//
+// A tree that ends in values of seen states does not pay for what is not seen there. So an action is worth more by what its
+// observation tells of the state (mutual information), at a price for each nat: then a leaf counts as if it paid the price
+// for the entropy of its belief, but for a constant. What is observed is counted in the tree, and what of it is noise is
+// found from all outcomes of the steps.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/pomcp/pomcp_constants.hpp"
+#include "aos/planning/pomcp/search_tree.hpp"
+
+namespace aos {
+
+inline double share_of_entropy(double probability) { return probability > 0 ? -probability * std::log(probability) : 0; }
+
+// The probabilities of what is observed.
+class ObservationOddsOfStep {
+ public:
+  void clear() { odds_.clear(); }
+  void add(Observation seen, double probability) {
+    for (auto& known : odds_) {
+      if (known.first != seen) continue;
+      known.second += probability;
+      return;
+    }
+    odds_.emplace_back(seen, probability);
+  }
+  double entropy() const {  // in nats
+    double sum = 0;
+    for (const auto& [seen, probability] : odds_) sum += share_of_entropy(probability);
+    return sum;
+  }
+  const std::vector<std::pair<Observation, double>>& all() const { return odds_; }
+
+ private:
+  std::vector<std::pair<Observation, double>> odds_;
+};
+
+template <class Model>
+class ObservationDoubts {
+ public:
+  ObservationDoubts() : is_left_out_(static_cast<std::size_t>(Model::action_count())) { paths_.report_to(&ignored_numbers); }
+
+  // The entropy of what is observed after an action in a known state, in nats. An end counts as an observation. None if the
+  // action has had too many outcomes once, or a continuous draw.
+  std::optional<double> of(const typename Model::State& state, int action) {
+    if (is_left_out_[static_cast<std::size_t>(action)]) return {};
+    odds_.clear();
+    Step step;
+    const auto run = [&](Enumerator& path) {
+      next_ = state;
+      step = Model::step(next_, action, path);
+    };
+    const auto add = [&](Enumerator& path) {
+      odds_.add(Model::ending(next_) == Ending::running ? step.observation : no_observation, path.probability());
+    };
+    try {
+      paths_.for_nearly_each_path(run, add, max_reward_paths);
+      return odds_.entropy();
+    } catch (const NotEnumerable&) {
+    } catch (const ModelFault&) {  // a path that may never be drawn
+    }
+    is_left_out_[static_cast<std::size_t>(action)] = true;
+    return {};
+  }
+
+ private:
+  Enumerator paths_;
+  typename Model::State next_;
+  std::vector<bool> is_left_out_;
+  ObservationOddsOfStep odds_;
+};
+
+// What the observation after an action tells of the state, in nats, by the visits of its children. The entropy of few visits is
+// too low, so what is noise does not tell anything.
+inline double information_of(const SearchTree& tree, const ActionNode& action) {
+  double entropy = 0;
+  double going_on = 0;
+  for (std::uint32_t child = action.first_child; child != no_node; child = tree.history(child).sibling) {
+    const double share = static_cast<double>(tree.history(child).n) / action.n;
+    entropy += share_of_entropy(share);
+    going_on += share;
+  }
+  return std::max(entropy + share_of_entropy(1 - going_on) - action.doubt / action.n, 0.0);
+}
+
+}  // namespace aos
