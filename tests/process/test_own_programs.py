@@ -269,6 +269,12 @@ def test_a_call_that_comes_again_from_a_new_middleware_is_joined(project: Path) 
     assert "refused" not in done.stdout
 
 
+def test_a_mission_whose_output_is_closed_runs_all_the_same(project: Path) -> None:
+    words = ["sh", "-c", 'exec "$@" >&-', "sh", BIN / "aos-up", "fetch.yaml", "--model"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
+    assert done.returncode == 0, done.stderr
+
+
 def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Path) -> None:
     done = up("--model")
     assert done.returncode == 0, done.stdout + done.stderr

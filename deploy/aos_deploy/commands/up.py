@@ -119,7 +119,8 @@ def up(
     deployment = _with_options(deployment, seed, listen, runs, set_values, is_to_stay=stay, is_played=model)
     check_sandbox(deployment)
     check_needed_here(deployment)
-    view = make_view(_title(deployment), is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
+    is_terminal = sys.stdout is not None and sys.stdout.isatty()  # None where it was closed before.
+    view = make_view(_title(deployment), is_plain=plain, is_json=as_json, is_terminal=is_terminal)
     is_unread = asyncio.Event()
     report, clock = told_while_read(view, is_unread), SystemClock()
     if serve is not None:
