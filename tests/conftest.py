@@ -1,6 +1,7 @@
 """Fixtures that every kind of test may use."""
 
 import gc
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -16,9 +17,15 @@ LONGEST = TESTS / "longest_first.txt"
 
 
 def pytest_configure() -> None:
-    """The documents of tests are ours. Where the kernel can confine them, nothing takes it back."""
+    """The documents of tests are ours, and Ctrl-C is heard.
+
+    Where the kernel can confine documents, nothing takes it back. A script that starts the tests in the
+    background leaves them a Ctrl-C that is ignored: tests that interrupt a command would wait for ever.
+    """
     if not sandbox_support().is_whole:
         trust_documents()
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_report_header() -> str:
