@@ -60,6 +60,7 @@ ROUTES = (
             "rollout_repeats",
             "rollout_ends",
             "rollout_shares",
+            "certain_actions",
             *_SEARCH,
         ),
     ),

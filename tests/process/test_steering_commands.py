@@ -18,9 +18,9 @@ from aos_runtime.mission_folders import mission_folder
 
 
 async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(
-    root: Path, cache_dir: Path, tmp_path: Path
+    root: Path, tmp_path: Path
 ) -> None:
-    with up(root, tmp_path, cache_dir) as system:
+    with up(root, tmp_path) as system:
         system.be_slow(True)
         name = system.until("mission", phase="acting")["mission"]
         code, said, _ = system.aos("mission", "hold")
@@ -58,10 +58,8 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert len({row["by"] for row in rows}) == 1
 
 
-async def test_a_program_steers_and_stop_cancels_motion_at_once(
-    root: Path, cache_dir: Path, tmp_path: Path
-) -> None:
-    with up(root, tmp_path, cache_dir) as system:
+async def test_a_program_steers_and_stop_cancels_motion_at_once(root: Path, tmp_path: Path) -> None:
+    with up(root, tmp_path) as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
         async with AosClient.of_run(system.run, OPERATOR, by="ana") as aos:

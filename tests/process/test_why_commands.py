@@ -9,10 +9,8 @@ from test_missions import up
 LINES = 8
 
 
-def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(
-    root: Path, tmp_path: Path, cache_dir: Path
-) -> None:
-    with up(root, tmp_path, cache_dir, "tiger.yaml") as system:
+def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(root: Path, tmp_path: Path) -> None:
+    with up(root, tmp_path, "tiger.yaml") as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
         code, out, error = system.aos("why", "1", "--json")
@@ -65,8 +63,8 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(
         assert "simulations: 200 in A, 100 in B" in out
 
 
-def test_a_plan_may_begin_with_another_belief(root: Path, tmp_path: Path, cache_dir: Path) -> None:
-    with up(root, tmp_path, cache_dir) as system:
+def test_a_plan_may_begin_with_another_belief(root: Path, tmp_path: Path) -> None:
+    with up(root, tmp_path) as system:
         bundle = str(root / "deploy" / "bundles" / "bench" / "tiger")
         supposed = tmp_path / "belief.txt"
         supposed.write_text("tiger_behind=Left:0.999\n")

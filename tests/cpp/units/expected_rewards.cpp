@@ -1,6 +1,7 @@
-// Expected rewards: expected_rewards.hpp.
+// Expected rewards and which values are reliable: expected_rewards.hpp and exploration.hpp.
 #include "aos/planning/values/expected_rewards.hpp"
 
+#include "aos/planning/pomcp/exploration.hpp"
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -33,6 +34,13 @@ TEST("Rewards of a step with many outcomes are left to chance, those of other ac
   aos::ExpectedRewards<TableModel> rewards;
   EXPECT(!rewards.of(first_state(), 0).has_value());
   EXPECT_EQUAL(rewards.of(first_state(), 1).value_or(0), 5);
+}
+
+TEST("A certain value is reliable after few visits, and an uncertain one is not") {
+  const aos::ActionEstimate most{.q = -0.3, .n = 4000, .standard_error = 0.1};
+  EXPECT(aos::is_certain({.q = -0.1, .n = 100, .standard_error = 0}, most));
+  EXPECT(!aos::is_certain({.q = -0.1, .n = 100, .standard_error = 0.5}, most));
+  EXPECT(!aos::is_certain({.q = -0.1, .n = 3, .standard_error = 0}, most));
 }
 
 }  // namespace expected_rewards_tests

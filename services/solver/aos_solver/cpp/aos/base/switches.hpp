@@ -20,7 +20,7 @@
 // POMCP's values of states, and its prior:
 //   listed_values, wide_values, learned_values, prior, prior_draw, asked_leaves, first_state, priced_information, step_table, expected_rewards
 // POMCP's search:
-//   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, sooner, observation_cells,
+//   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
   of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings)                                  \
@@ -30,7 +30,7 @@
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information)  \
   of(step_table) of(expected_rewards)                                                                           \
   of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns)              \
-  of(sooner) of(observation_cells) of(kept_tree)
+  of(certain_actions) of(sooner) of(observation_cells) of(kept_tree)
 
 namespace aos::switches {
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "aos/base/switches.hpp"
+#include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 
@@ -36,6 +37,16 @@ class ExplorationBonus {
   double root_n_;
   double prior_;
 };
+
+// Whether an action's value is as reliable as that of the most visited action would be with a quarter of its visits.
+// A search seldom tries an action whose outcome is certain, and that is enough. The action's spread is filled up with
+// that of the most visited one, since few visits may have missed what is rare.
+inline bool is_certain(const ActionEstimate& estimate, const ActionEstimate& most) {
+  const auto variance = [](const ActionEstimate& of) { return of.n * of.standard_error * of.standard_error; };
+  const double n = estimate.n;
+  const double spread = (n * variance(estimate) + prior_visits * variance(most)) / (n + prior_visits);
+  return spread / n <= well_visited_share * variance(most) / most.n;
+}
 
 // The variance of the best root action's returns, or of all returns while that is unknown.
 class RootSpread {

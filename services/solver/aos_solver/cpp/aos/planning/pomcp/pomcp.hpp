@@ -138,9 +138,10 @@ class Pomcp final : public TreePlanner<Model> {
     if (chosen.n > 0) result.gain = chosen.q - belief.probability_of(Ending::running) * rolled_out_;
     return result;
   }
-  // With a prior every value counts.
+  // With a prior every value counts. Where rollouts value new histories, one that is certain does, too.
   bool is_reliable(const ActionEstimate& estimate, const ActionEstimate& most) const override {
-    return !prior_.empty() || is_well_visited(estimate.n, most.n);
+    return !prior_.empty() || is_well_visited(estimate.n, most.n) ||
+           (switches::certain_actions && rolls_out() && is_certain(estimate, most));
   }
 
  private:

@@ -24,7 +24,7 @@ inline constexpr std::uint64_t spread_renewal = 256;
 
 // Visits of a history before its best action gives its value.
 inline constexpr std::uint32_t settled_visits = 16;
-// An action counts with one of so many of the most visited action's visits.
+// An action counts with one of so many of the most visited action's visits. Without exceptions it is too many: docs/lab/untuned.md.
 inline constexpr std::uint32_t well_visited_share = 4;
 // Rollouts that tell what the search has gained over them, a hundredth of the budget between these.
 inline constexpr std::uint64_t fewest_rollouts = 10;
