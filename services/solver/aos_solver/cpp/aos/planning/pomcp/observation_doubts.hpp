@@ -8,17 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
+#include "aos/planning/values/few_outcomes.hpp"
 
 namespace aos {
 
@@ -50,35 +46,18 @@ class ObservationOddsOfStep {
 template <class Model>
 class ObservationDoubts {
  public:
-  ObservationDoubts() : is_left_out_(static_cast<std::size_t>(Model::action_count())) { paths_.report_to(&ignored_numbers); }
-
   // The entropy of what is observed after an action in a known state, in nats. An end counts as an observation. None if the
-  // action has had too many outcomes once, or a continuous draw.
+  // action's outcomes are not few.
   std::optional<double> of(const typename Model::State& state, int action) {
-    if (is_left_out_[static_cast<std::size_t>(action)]) return {};
     odds_.clear();
-    Step step;
-    const auto run = [&](Enumerator& path) {
-      next_ = state;
-      step = Model::step(next_, action, path);
+    const auto add = [&](const typename Model::State& next, const Step& step, double probability) {
+      odds_.add(Model::ending(next) == Ending::running ? step.observation : no_observation, probability);
     };
-    const auto add = [&](Enumerator& path) {
-      odds_.add(Model::ending(next_) == Ending::running ? step.observation : no_observation, path.probability());
-    };
-    try {
-      paths_.for_nearly_each_path(run, add, max_reward_paths);
-      return odds_.entropy();
-    } catch (const NotEnumerable&) {
-    } catch (const ModelFault&) {  // a path that may never be drawn
-    }
-    is_left_out_[static_cast<std::size_t>(action)] = true;
-    return {};
+    return outcomes_.visit_each(state, action, add) ? std::optional{odds_.entropy()} : std::nullopt;
   }
 
  private:
-  Enumerator paths_;
-  typename Model::State next_;
-  std::vector<bool> is_left_out_;
+  FewOutcomes<Model> outcomes_;
   ObservationOddsOfStep odds_;
 };
 

@@ -6,53 +6,31 @@
 // first one does, since the search keeps what it found there for the next decision.
 #pragma once
 
-#include <cstddef>
 #include <optional>
-#include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/pomcp/pomcp_constants.hpp"
+#include "aos/planning/values/few_outcomes.hpp"
 
 namespace aos {
 
 template <class Model>
 class ExpectedRewards {
  public:
-  ExpectedRewards() : is_left_out_(static_cast<std::size_t>(Model::action_count())) {
+  ExpectedRewards() {
     for (int action = 0; action < Model::action_count(); ++action) {
-      is_left_out_[static_cast<std::size_t>(action)] = Model::has_certain_rewards(Model::skill_of(action));
+      if (Model::has_certain_rewards(Model::skill_of(action))) outcomes_.leave_out(action);
     }
-    paths_.report_to(&ignored_numbers);
   }
 
-  // Nothing if the reward is certain, or if an action has had too many outcomes once, or a continuous draw that does
-  // not count by its mean.
+  // Nothing if the reward is certain, or if the action's outcomes are not few.
   std::optional<double> of(const typename Model::State& state, int action) {
-    if (is_left_out_[static_cast<std::size_t>(action)]) return {};
     double sum = 0;
-    double reward = 0;
-    const auto run = [&](Enumerator& path) {
-      next_ = state;
-      reward = Model::step(next_, action, path).reward;
-    };
-    const auto add = [&](Enumerator& path) { sum += reward * path.probability(); };
-    try {
-      paths_.for_nearly_each_path(run, add, max_reward_paths);
-      return sum;
-    } catch (const NotEnumerable&) {
-    } catch (const ModelFault&) {  // a path that may never be drawn
-    }
-    is_left_out_[static_cast<std::size_t>(action)] = true;
-    return {};
+    const auto add = [&](const typename Model::State&, const Step& step, double probability) { sum += step.reward * probability; };
+    return outcomes_.visit_each(state, action, add) ? std::optional{sum} : std::nullopt;
   }
 
  private:
-  Enumerator paths_;
-  typename Model::State next_;
-  std::vector<bool> is_left_out_;
+  FewOutcomes<Model> outcomes_;
 };
 
 }  // namespace aos

@@ -1,0 +1,48 @@
+// All outcomes of an action in a state, where they are few.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/pomcp/pomcp_constants.hpp"
+
+namespace aos {
+
+template <class Model>
+class FewOutcomes {
+ public:
+  FewOutcomes() : is_left_out_(static_cast<std::size_t>(Model::action_count())) { paths_.report_to(&ignored_numbers); }
+
+  void leave_out(int action) { is_left_out_[static_cast<std::size_t>(action)] = true; }
+
+  // Calls `visit(next state, step, probability)` for each outcome. False if the action is left out, as it is once it has had too
+  // many outcomes, or a continuous draw that does not count by its mean; some outcomes may have been visited then.
+  template <class Visit>
+  bool visit_each(const typename Model::State& state, int action, Visit&& visit) {
+    if (is_left_out_[static_cast<std::size_t>(action)]) return false;
+    Step step;
+    const auto run = [&](Enumerator& path) {
+      next_ = state;
+      step = Model::step(next_, action, path);
+    };
+    try {
+      paths_.for_nearly_each_path(run, [&](Enumerator& path) { visit(next_, step, path.probability()); }, max_reward_paths);
+      return true;
+    } catch (const NotEnumerable&) {
+    } catch (const ModelFault&) {  // a path that may never be drawn
+    }
+    leave_out(action);
+    return false;
+  }
+
+ private:
+  Enumerator paths_;
+  typename Model::State next_;
+  std::vector<bool> is_left_out_;
+};
+
+}  // namespace aos
