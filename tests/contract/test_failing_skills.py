@@ -135,7 +135,8 @@ async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system:
 
 
 async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: System) -> None:
-    await system.adapter.serve("/sense", answering({}), lambda _: Cancelled())  # type: ignore[arg-type, return-value]
+    no_result: Any = Cancelled()
+    await system.adapter.serve("/sense", answering({}), lambda _: no_result)
     outcome = await system.activate("sense", 1)
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS602")
