@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import missions, monitored, stopping, takeovers
+from . import latency, missions, monitored, stopping, takeovers
 
 
 class Part(NamedTuple):
@@ -23,6 +23,7 @@ class Part(NamedTuple):
 
 
 PARTS: Mapping[str, Part] = {
+    "latency": Part("activations on the way to a skill and back", latency.add_options, latency.measure),
     "stopping": Part("skills that are stopped while they run", stopping.add_options, stopping.measure),
     "missions": Part("missions one after the other", missions.add_options, missions.measure),
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),

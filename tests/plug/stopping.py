@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 from aos_protocol.messages import TopicMessage
 
-from ..adapter_numbers.harness import Harness, harness, project_of
+from .harness import Harness, harness, project_of
 
 TOPICS = 20
 HERTZ = 100

@@ -1,5 +1,6 @@
 """The latency from the solver's activation to the skill, and from its result to the observation."""
 
+import argparse
 import asyncio
 import time
 from collections.abc import Sequence
@@ -32,8 +33,16 @@ ended = __input.ended
 """
 
 
-async def measure_latency(calls: int) -> int:
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--calls", type=int, default=300, metavar="N")
+
+
+def measure(options: argparse.Namespace) -> int:
     """Prints the figures; 1 if a target was missed."""
+    return asyncio.run(_measure(options.calls))
+
+
+async def _measure(calls: int) -> int:
     async with harness(project_of({"skill": MAPPING})) as made:
         await made.adapter(SKILL, {"/skill": "skill"})
         await made.until_available(skills=1)
