@@ -1,7 +1,9 @@
 """Limits of the house that a test can hold everybody to: functions, their parameters, what git tracks."""
 
 import ast
+import re
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -115,3 +117,10 @@ def test_a_tracked_file_counts_and_another_one_does_not(tmp_path: Path) -> None:
     (tmp_path / "other").write_bytes(b"12345678")
     subprocess.run(["git", "add", "tracked"], cwd=tmp_path, check=True)
     assert tracked_bytes(tmp_path) == 4
+
+
+def test_every_command_of_contributing_can_be_imported() -> None:
+    named = sorted(set(re.findall(r"python -m (tests\.[\w.]+\w)", (ROOT / "CONTRIBUTING.md").read_text())))
+    modules = [f"{name}.__main__" if (ROOT / name.replace(".", "/")).is_dir() else name for name in named]
+    assert len(modules) > 10
+    subprocess.run([sys.executable, "-c", f"import {', '.join(modules)}"], cwd=ROOT, check=True)
