@@ -14,12 +14,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
+from marked_change import changed
 
 from aos_language.load import load_files, read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Span
 
 ROOT = Path(__file__).resolve().parents[1]
-MARK = "«"
 EXAMPLE = re.compile(r"^```sdl ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -57,20 +57,12 @@ class Verdict(msgspec.Struct, frozen=True):
 def mistakes() -> Iterator[Mistake]:
     """All of the table, in its order."""
     table = tomllib.loads((ROOT / "tests/data/bad/mistakes.toml").read_text(encoding="utf-8"))
-    for bundle, entry in table.items():
+    for bundle, rows in table.items():
         files = _bundle(bundle)
-        for number, mistake in enumerate(entry["mistakes"], 1):
-            text = files[mistake["in"]].decode()
-            assert mistake["find"] in text, (
-                f"{bundle} {number}: {mistake['find']!r} is not in {mistake['in']}"
-            )
-            marked = text.replace(mistake["find"], mistake["put"], 1)
-            before, mark, after = marked.partition(MARK)
-            assert mark, f"{bundle} {number} has no mark"
-            line, column = before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1
-            changed = files | {mistake["in"]: (before + after).encode()}
-            title = f"{bundle} {number}: {mistake['put'].strip()}"
-            yield Mistake(title, changed, mistake["code"], Span(mistake["in"], line, column))
+        for number, (file, code, change) in enumerate(rows, 1):
+            after, place = changed(files, file, change)
+            assert place.line, f"{bundle} {number} has no mark"
+            yield Mistake(f"{bundle} {number}: {change.strip()}", after, code, place)
 
 
 def judged(mistake: Mistake) -> Verdict:

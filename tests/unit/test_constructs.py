@@ -12,151 +12,118 @@ from test_reading_rules import Rule, bundle_of
 from aos_language.load import load_files
 from aos_solver.emission.lower import lower
 
-EXTRINSIC = '"ExtrinsicChangesDynamicModel": []'
 MISUSES = {
-    "v1.x JSON": Rule("go.json", '"PlpMain"', '"«PlpMian"', "AOS102"),
+    "v1.x JSON": Rule("go.json", '"§«PlpMain→PlpMian»"', "AOS102"),
     "paper GSDL JSON": Rule(
         "go.json",
-        '"PlpMain": {"Project": "two rooms", "Name": "go", "Type": "PLP"',
-        '"GsdlMain": {"Project": "two rooms", "Name": "go", "Type": "«GDSL"',
+        '"«PlpMain→GsdlMain»": {"Project": "two rooms", "Name": "go", "Type": "§«PLP→GDSL»"',
         "AOS106",
     ),
-    "SDL 2.0": Rule("room.ef", "horizon: 5", "«horizont: 5", "AOS102"),
+    "SDL 2.0": Rule("room.ef", "§«horizon→horizont»: 5", "AOS102"),
     "enum": Rule(
-        "room.json",
-        '{"TypeName": "tRoom", "Type": "enum", "EnumValues": ["eHall", "eLab"]}',
-        '{"TypeName": "«tRoom", "Type": "enum", "EnumValues": []}',
-        "AOS105",
+        "room.json", '{"TypeName": "§tRoom", "Type": "enum", "EnumValues": [«"eHall", "eLab"→»]}', "AOS105"
     ),
-    "compound type": Rule(
-        "room.json", '"Name": "room", "Type": "tRoom"', '"Name": "room", "Type": "«tRom"', "AOS110"
-    ),
+    "compound type": Rule("room.json", '"Name": "room", "Type": "§«tRoom→tRom»"', "AOS110"),
     "mission parameter": Rule(
         "room.ef",
-        "horizon: 5",
-        "horizon: 5\nmission_parameter: int count\nextrinsic_code:\n«state_.count = 2;",
+        "horizon: 5«→\nmission_parameter: int count\nextrinsic_code:\n§state_.count = 2;»",
         "AOS128",
     ),
-    "array": Rule("room.ef", "int steps []", "int steps «[2]", "AOS104"),
-    "array over an enum": Rule("room.ef", "int steps []", "int steps [«tRom]", "AOS110"),
-    "vector<...>": Rule("room.ef", "int steps []", "«vector<Roof> steps", "AOS110"),
-    "map variable": Rule("room.json", '"IsArray": true,', '"Parameters": ["«(0,3)"],', "AOS106"),
+    "array": Rule("room.ef", "int steps §[«→2»]", "AOS104"),
+    "array over an enum": Rule("room.ef", "int steps [§«→tRom»]", "AOS110"),
+    "vector<...>": Rule("room.ef", "§«int steps []→vector<Roof> steps»", "AOS110"),
+    "map variable": Rule("room.json", '"«IsArray": true→Parameters": ["§(0,3)"]»,', "AOS106"),
     "anyValue": Rule(
         "room.json",
-        '{"Name": "pose", "Type": "anyValue", "UnderlineLocalVariableType": "Pose"}',
-        '{"Name": "«pose", "Type": "anyValue", "UnderlineLocalVariableType": "Pos"}',
+        '{"Name": "§pose", "Type": "anyValue", "UnderlineLocalVariableType": "«Pose→Pos»"}',
         "AOS110",
     ),
     "EnvironmentGlue constant": Rule(
-        "low.json",
-        '"Constants": []',
-        '"Constants": [{"Name": "___p", "Type": "Pose", "InitCode": "___p.x = «(1"}]',
-        "AOS121",
+        "low.json", '"Constants": [«→{"Name": "___p", "Type": "Pose", "InitCode": "___p.x = §(1"}»]', "AOS121"
     ),
     "temporary variable": Rule(
-        "go.json", '{"IterateNextStateVars": []}', '{"TempVar": {"VarName": "«n", "Type": "it"}}', "AOS110"
+        "go.json", '{"«IterateNextStateVars": []→TempVar": {"VarName": "§n", "Type": "it"}»}', "AOS110"
     ),
     "temporary enum": Rule(
         "go.json",
-        '{"VarName": "end", "Type": "enum", "EnumName": "tEnd", "EnumValues": ["eWell", "eBadly"]}',
-        '«{"VarName": "end", "Type": "enum", "EnumName": "tEnd", "EnumValues": []}',
+        '§{"VarName": "end", "Type": "enum", "EnumName": "tEnd", "EnumValues": [«"eWell", "eBadly"→»]}',
         "AOS105",
     ),
     "IteratePreviousStateVars": Rule(
         "go.json",
-        '{"IterateNextStateVars": []}',
-        '{"IteratePreviousStateVars": [{"Type": "«tDor", "ItemName": "d"}]}',
+        '{"«IterateNextStateVars": [→IteratePreviousStateVars": [{"Type": "§tDor", "ItemName": "d"}»]}',
         "AOS110",
     ),
     "IterateNextStateVars": Rule(
         "room.json",
-        '"AssignmentName": "start",',
-        '"IterateNextStateVars": [{"Type": "«tDoor", "ItemName": "d"}],',
+        '"«AssignmentName": "start"→IterateNextStateVars": [{"Type": "§tDoor", "ItemName": "d"}]»,',
         "AOS123",
     ),
-    "xObjects": Rule("go.json", "if (end == eWell)", "if (state.«tDorObjects.empty())", "AOS110"),
+    "xObjects": Rule("go.json", "if («end == eWell→state.§tDorObjects.empty()»)", "AOS110"),
     "xObjectsForActions": Rule(
-        "go.json", "if (end == eWell)", "if (state.«tDorObjectsForActions.empty())", "AOS110"
+        "go.json", "if («end == eWell→state.§tDorObjectsForActions.empty()»)", "AOS110"
     ),
-    "declared action values": Rule("go.sd", "parameter: Door door", "parameter: float «door", "AOS119"),
+    "declared action values": Rule("go.sd", "parameter: «Door→float» §door", "AOS119"),
     "__possibleParameters": Rule(
-        "go.sd",
-        "precondition:",
-        "available_parameters_code:\n«__posibleParameters.push_back({});\nprecondition:",
-        "AOS110",
+        "go.sd", "«→available_parameters_code:\n§__posibleParameters.push_back({});\n»precondition:", "AOS110"
     ),
-    "precondition": Rule("go.json", "!state.closed", "!«state__.closed", "AOS123"),
-    "penalty": Rule("go.json", "-2\n", '«"-2"\n', "AOS106"),
-    "rollout policy": Rule(
-        "go.sd", "violate_penalty", "rollout_policy:\n«state.at = Hall;\nviolate_penalty", "AOS123"
-    ),
-    "state heuristic": Rule(
-        "room.ef", "initial_belief:", "heuristic_code:\n«state.at = Lab;\ninitial_belief:", "AOS123"
-    ),
+    "precondition": Rule("go.json", "!§«state→state__».closed", "AOS123"),
+    "penalty": Rule("go.json", '§«-2→"-2"»\n', "AOS106"),
+    "rollout policy": Rule("go.sd", "«→rollout_policy:\n§state.at = Hall;\n»violate_penalty", "AOS123"),
+    "state heuristic": Rule("room.ef", "«→heuristic_code:\n§state.at = Lab;\n»initial_belief:", "AOS123"),
     "module execution time": Rule(
         "go.json",
-        '"DynamicModel"',
-        '"ModuleExecutionTimeDynamicModel": [{"AssignmentCode": "«state.at = eLab;"}], "DynamicModel"',
+        '"«→ModuleExecutionTimeDynamicModel": [{"AssignmentCode": "§state.at = eLab;"}], "»DynamicModel"',
         "AOS123",
     ),
-    "special state, condition": Rule("room.json", "state.at == eLab", "«state_.at == eLab", "AOS123"),
-    "special state, code": Rule("room.ef", "if (state.at == Lab)", "if («state__.at == Lab)", "AOS123"),
-    "one-time reward": Rule(
-        "room.json", '"IsGoalState": true', '"IsGoalState": true, "IsOneTimeReward": «3', "AOS106"
-    ),
-    "goal": Rule("room.ef", "__isGoalState", "«__isGoal", "AOS110"),
-    "failure": Rule("room.ef", "__isGoalState", "«__isFailState", "AOS110"),
+    "special state, condition": Rule("room.json", "§«state→state_».at == eLab", "AOS123"),
+    "special state, code": Rule("room.ef", "if (§«state→state__».at == Lab)", "AOS123"),
+    "one-time reward": Rule("room.json", '"IsGoalState": true«→, "IsOneTimeReward": §3»', "AOS106"),
+    "goal": Rule("room.ef", "§«__isGoalState→__isGoal»", "AOS110"),
+    "failure": Rule("room.ef", "§«__isGoalState→__isFailState»", "AOS110"),
     "extrinsic changes": Rule(
         "room.json",
-        EXTRINSIC,
-        '"ExtrinsicChangesDynamicModel": [{"AssignmentCode": "«state__.at = eLab;"}]',
+        '"ExtrinsicChangesDynamicModel": [«→{"AssignmentCode": "§state__.at = eLab;"}»]',
         "AOS123",
     ),
     "chosen action": Rule(
         "room.json",
-        EXTRINSIC,
-        '"ExtrinsicChangesDynamicModel": [{"AssignmentCode": "if (go->«oDor.room) return;"}]',
+        '"ExtrinsicChangesDynamicModel": [«→{"AssignmentCode": "if (go->§oDor.room) return;"}»]',
         "AOS110",
     ),
     "string observation": Rule(
-        "go glue.json", '{"ResponseRules"', '{"FromStringLocalVariable": "«txt", "ResponseRules"', "AOS110"
+        "go glue.json", '{"«→FromStringLocalVariable": "§txt", "»ResponseRules"', "AOS110"
     ),
-    "__observed": Rule(
-        "go.sd", "__reward = -1;", "__observed.steps = «1 + AOS.SampleNormal(0, 1);", "AOS138"
-    ),
+    "__observed": Rule("go.sd", "«__reward = -1→__observed.steps = §1 + AOS.SampleNormal(0, 1)»;", "AOS138"),
     "state given observation": Rule(
         "go.json",
-        '"DynamicModel"',
-        '"StateGivenObservationModel": {"Assignments": [{"AssignmentCode": "«state__.at = eLab;"}]},\n'
-        '"DynamicModel"',
+        '"«→StateGivenObservationModel": '
+        '{"Assignments": [{"AssignmentCode": "§state__.at = eLab;"}]}, "»DynamicModel"',
         "AOS123",
     ),
-    "OneStateModel": Rule("room.ef", "horizon: 5", "horizon: 5\none_state_model: «perhaps", "AOS106"),
+    "OneStateModel": Rule("room.ef", "horizon: 5«→\none_state_model: §perhaps»", "AOS106"),
     "print function": Rule(
         "room.json",
-        EXTRINSIC,
-        EXTRINSIC + ', "PrintStateFunc": [{"AssignmentCode": "«state.at = eLab;"}]',
+        '"ExtrinsicChangesDynamicModel": []«→, "PrintStateFunc": [{"AssignmentCode": "§state.at = eLab;"}]»',
         "AOS123",
     ),
-    "AOS.Bernoulli": Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.Bernoulli(«1.5)", "AOS122"),
-    "AOS.SampleDiscrete": Rule("go.json", "{0.9, 0.1}", "«{0.9, -0.1}", "AOS122"),
-    "AOS.SampleNormal": Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.SampleNormal(0, «-1) > 0", "AOS122"),
-    "AOS.SampleUniform": Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.SampleUniform(2, «1) > 1.5", "AOS122"),
-    "AOSUtils": Rule("room.ef", "AOS.Bernoulli(0.5)", "AOSUtils::«Bernouli(0.5)", "AOS110"),
+    "AOS.Bernoulli": Rule("room.json", "AOS.Bernoulli(§«0.5→1.5»)", "AOS122"),
+    "AOS.SampleDiscrete": Rule("go.json", "§{0.9, «→-»0.1}", "AOS122"),
+    "AOS.SampleNormal": Rule("room.json", "AOS.«Bernoulli(0.5)→SampleNormal(0, §-1) > 0»", "AOS122"),
+    "AOS.SampleUniform": Rule("room.json", "AOS.«Bernoulli(0.5)→SampleUniform(2, §1) > 1.5»", "AOS122"),
+    "AOSUtils": Rule("room.ef", "«AOS.Bernoulli→AOSUtils::§Bernouli»(0.5)", "AOS110"),
     "AOS.SetNull and its like": Rule(
-        "go.json", "if (end == eWell)", "AOS.«SetNul(state__.door.pose); if (end == eWell)", "AOS110"
+        "go.json", "«→AOS.§SetNul(state__.door.pose); »if (end == eWell)", "AOS110"
     ),
-    "response rules": Rule("go.json", "? eDone : eLost", "? eDone : «eGone", "AOS116"),
-    "shared code": Rule("room.ef", "horizon: 5", "horizon: 5\nshared_code:\nint «count = 3;", "AOS145"),
+    "response rules": Rule("go.json", "? eDone : §«eLost→eGone»", "AOS116"),
+    "shared code": Rule("room.ef", "horizon: 5«→\nshared_code:\nint §count = 3;»", "AOS145"),
     "shared code of mappings": Rule(
-        "room.ef", "horizon: 5", "horizon: 5\nshared_mapping_code:\ndef far(x) «return x", "AOS121"
+        "room.ef", "horizon: 5«→\nshared_mapping_code:\ndef far(x) §return x»", "AOS121"
     ),
-    "stop_when": Rule("go glue.json", '"GlueFramework": "ROS",', '"StopWhen": "«ok",', "AOS110"),
-    "monitor": Rule(
-        "go glue.json", '"GlueFramework": "ROS",', '"Monitor": "«battery", "GlueFramework": "ROS",', "AOS114"
-    ),
-    "no mapping": Rule("go glue.json", '"Name": "go"', '"Name": "«goo"', "AOS114"),
-    "local variables": Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
+    "stop_when": Rule("go glue.json", '"«GlueFramework": "ROS→StopWhen": "§ok»",', "AOS110"),
+    "monitor": Rule("go glue.json", '"«→Monitor": "§battery", "»GlueFramework": "ROS",', "AOS114"),
+    "no mapping": Rule("go glue.json", '"Name": "§«go→goo»"', "AOS114"),
+    "local variables": Rule("go glue.json", '"§oDoor.«pose→where»"', "AOS110"),
 }
 
 WARNED_OF = {"AOS.SampleUniform", "anyValue"}

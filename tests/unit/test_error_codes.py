@@ -17,16 +17,14 @@ from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 from aos_solver.offline.solving import SolvingLimits, solve
 
 MORE_RULES = [
-    Rule("room.json", '[{"StateConditionCode": "state.at == eLab", "Reward": 5.0',
-         '[«{"StateConditionCode": "state.at == eLab", "Reward": -5.0', "AOS137"),
-    Rule("go.sd", "__meetPrecondition = door.is_open;\nviolate_penalty: -2\n",
-         "«__meetPrecondition = door.is_open;\n", "AOS147"),
-    Rule("go.sd", "__reward = -1;", "__reward = -1;\n«door.room = Hall;", "AOS128"),
-    Rule("room.ef", "state_variable: Room", "state_variable: int «spare\nstate_variable: Room", "AOS133"),
-    Rule("go.sd", "__reward = -1;", "«__observed.width = AOS.SampleNormal(1, 1);", "AOS136"),
-    Rule("go.am", "response: arrived", "response: «lost\nresponse_rule: not ok\nresponse: arrived", "AOS117"),
-    Rule("go.am", "response_rule: ok", "response_rule: True\nresponse: lost\nresponse_rule: «ok", "AOS118"),
-    Rule("go glue.json", '"FromROSServiceResponse": true', '«"RosParameter": "/ok"', "AOS124"),
+    Rule("room.json", '[§{"StateConditionCode": "state.at == eLab", "Reward": «→-»5.0', "AOS137"),
+    Rule("go.sd", "§__meetPrecondition = door.is_open;\n«violate_penalty: -2\n→»", "AOS147"),
+    Rule("go.sd", "__reward = -1;«→\n§door.room = Hall;»", "AOS128"),
+    Rule("room.ef", "state_variable: «→int §spare\nstate_variable: »Room", "AOS133"),
+    Rule("go.sd", "§«__reward = -1→__observed.width = AOS.SampleNormal(1, 1)»;", "AOS136"),
+    Rule("go.am", "response: §«→lost\nresponse_rule: not ok\nresponse: »arrived", "AOS117"),
+    Rule("go.am", "response_rule: «→True\nresponse: lost\nresponse_rule: »§ok", "AOS118"),
+    Rule("go glue.json", '§"«FromROSServiceResponse": true→RosParameter": "/ok"»', "AOS124"),
 ]  # fmt: skip
 
 
