@@ -1,27 +1,38 @@
 """Malformed bundles and the exact text of what is said about them.
 
-Each folder in `documents` lies over `documents/base`: its files replace or join those, and the names in its
-file REMOVED are taken away. `AOS_PROMOTE=1 pytest tests/golden` takes what is said now as what is expected.
+The bundle of a case is that of `documents/base` with the changes of `changes.toml`; the files of the case's own
+folder replace or join it. `AOS_PROMOTE=1 pytest tests/golden` takes what is said now as what is expected.
 """
 
 import os
+import tomllib
 from pathlib import Path
 
 import pytest
+from marked_change import changed
 
-from aos_protocol.diagnostics import render
 from aos_language.load import load_files
+from aos_protocol.diagnostics import render
 
 FOLDER = Path(__file__).parent / "documents"
-CASES = sorted(path.name for path in FOLDER.iterdir() if path.is_dir() and path.name != "base")
+CHANGES = tomllib.loads((FOLDER / "changes.toml").read_text(encoding="utf-8"))
+FOLDERS = {path.name for path in FOLDER.iterdir() if path.is_dir()} - {"base", "json"}
+
+
+def files_in(folder: str) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in (FOLDER / folder).glob("*")}
 
 
 def files_of(case: str) -> dict[str, bytes]:
-    files = {path.name: path.read_bytes() for path in (FOLDER / "base").iterdir()}
-    changes = {path.name: path.read_bytes() for path in (FOLDER / case).iterdir()}
-    for name in changes.pop("REMOVED", b"").decode().split():
+    files, changes = files_in("base"), dict(CHANGES.get(case, {}))
+    if changes.pop("pour_is_json", False):
+        files = files_in("json") | {name: data for name, data in files.items() if name != "pour.sd"}
+    for name in changes.pop("removed", ()):
         del files[name]
-    return files | changes
+    for name, parts in changes.items():
+        for part in parts:
+            files, _ = changed(files, name, part)
+    return files | files_in(case)
 
 
 def test_the_bundle_that_the_cases_spoil_is_clean() -> None:
@@ -30,7 +41,7 @@ def test_the_bundle_that_the_cases_spoil_is_clean() -> None:
     assert loaded.diagnostics == ()
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", sorted(FOLDERS | CHANGES.keys()))
 def test_a_malformed_bundle_is_explained_as_stored(case: str) -> None:
     loaded = load_files(files_of(case), name="kettle")
     text = "".join(f"{render(diagnostic)}\n" for diagnostic in loaded.diagnostics)
