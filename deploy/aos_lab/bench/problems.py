@@ -4,7 +4,9 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.program import cache_dir
 from aos_deploy.shipped import shipped
+from aos_lab.bench.rocksamples import LAYOUTS, write_bundle
 
 
 class Problem(msgspec.Struct, frozen=True):
@@ -55,6 +57,15 @@ def problems_named(names: list[str]) -> list[Problem]:
 
     Whatever is not the name of a problem is the folder of a bundle.
     """
-    ours = [problem for name, problem in _PROBLEMS.items() if not names or name in names]
+    ours = [_with_documents(problem) for name, problem in _PROBLEMS.items() if not names or name in names]
     bundles = [Path(name) for name in names if name not in _PROBLEMS]
     return [*ours, *(_own_bundle(bundle) for bundle in bundles)]
+
+
+def _with_documents(problem: Problem) -> Problem:
+    """The problem with its bundle, which is written where it does not come along."""
+    if problem.bundle.is_dir() or problem.name not in LAYOUTS:
+        return problem
+    folder = cache_dir() / "bundles" / problem.name
+    write_bundle(problem.name, folder)
+    return msgspec.structs.replace(problem, bundle=folder)
