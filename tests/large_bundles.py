@@ -11,6 +11,7 @@ from collections.abc import Mapping
 
 from mappings import mapping_text
 from models import built_text, engine_of
+from texts import encoded
 
 from aos_deploy.program import cache_dir
 from aos_language.load import load_files
@@ -66,7 +67,7 @@ def _bundle(environment: list[str], dynamic_model: list[str]) -> dict[str, str]:
 
 async def _measure(title: str, files: Mapping[str, str]) -> None:
     checking_s = time.perf_counter()
-    load_files({name: text.encode() for name, text in files.items()})
+    load_files(encoded(files))
     building_s = time.perf_counter()
     built = await built_text(files, cache_dir())
     built_s = time.perf_counter()

@@ -4,6 +4,8 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+from texts import encoded
+
 from aos_language.load import load_bundle, load_files
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
@@ -25,7 +27,7 @@ async def built_bundles(bundles: Sequence[Path], cache_dir: Path) -> BuiltModel:
 
 async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:
     """The compiled model of documents given as text."""
-    loaded = load_files({name: text.encode() for name, text in files.items()})
+    loaded = load_files(encoded(files))
     assert loaded.project is not None, loaded.diagnostics
     return await build_project(loaded.project, cache_dir)
 
@@ -40,3 +42,24 @@ async def engine_of(
         yield engine
     finally:
         await engine.close()
+
+
+@asynccontextmanager
+async def engine_of_text(
+    files: Mapping[str, str],
+    cache_dir: Path,
+    *,
+    seed: int = 1,
+    impossible_observation: ImpossiblePolicy = "widen",
+) -> AsyncIterator[Engine]:
+    """A running engine child of documents given as text."""
+    built = await built_text(files, cache_dir)
+    async with engine_of(built, seed=seed, impossible_observation=impossible_observation) as engine:
+        yield engine
+
+
+@asynccontextmanager
+async def engine_of_bundle(bundle: Path, cache_dir: Path, *, seed: int = 1) -> AsyncIterator[Engine]:
+    """A running engine child of a bundle on the disk."""
+    async with engine_of(await built_bundle(bundle, cache_dir), seed=seed) as engine:
+        yield engine

@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 from exam.programs import PATIENCE_S, run, what_decides
 from processes import COMMAND_S
+from texts import encoded
 
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
@@ -89,7 +90,7 @@ class ScriptedModel(msgspec.Struct, frozen=True):
 
 def text_project(files: Mapping[str, str]) -> Project:
     """The project of documents given as text, which must have no mistakes that the registry finds."""
-    loaded = load_files({name: text.encode() for name, text in files.items()})
+    loaded = load_files(encoded(files))
     assert loaded.project is not None, [d for d in loaded.diagnostics if d.is_error]
     return loaded.project
 

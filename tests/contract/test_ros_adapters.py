@@ -20,6 +20,7 @@ from processes import HANG_S
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
 from ros1_core import roscore, skip_without_ros1
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.errors import AosError
@@ -236,7 +237,7 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
 
 
 async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
-    project = load_files({name: text.encode() for name, text in DOCUMENTS.items()}).project
+    project = load_files(encoded(DOCUMENTS)).project
     assert project is not None
     revision = ProjectRevision(1, "digest", project)
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of
+from models import engine_of_bundle
 
 from aos_solver.child.engine import Planner, Restriction
 
@@ -12,7 +12,7 @@ from aos_solver.child.engine import Planner, Restriction
 async def test_a_barred_action_is_never_the_decision(
     bundles: Path, cache_dir: Path, planner: Planner
 ) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         barred: list[int] = []
         while len(barred) < 4:
             plan = await engine.plan(

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.documents import Project
@@ -69,7 +70,7 @@ async def distribution(engine: Engine) -> dict[str, float]:
 
 
 def project() -> Project:
-    loaded = load_files({name: text.encode() for name, text in WALK.items()})
+    loaded = load_files(encoded(WALK))
     assert loaded.project is not None, loaded.diagnostics
     return loaded.project
 
@@ -189,7 +190,7 @@ async def test_a_belief_is_kept_from_a_mission_before(cache_dir: Path, tmp_path:
         return project()
 
     succession = Succession(Logbooks(tmp_path, 1, stay=True), terms, documents, cache_dir)
-    async with engine_of(await built_text(WALK, cache_dir)) as engine:
+    async with engine_of_text(WALK, cache_dir) as engine:
         with pytest.raises(PlanningError, match="there is no mission before this one") as refused:
             await succession.next(RunningModel(1, engine), StartMission("keep"), None)
         assert refused.value.code == "AOS516"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
 
 from aos_solver.child.engine import Engine
@@ -81,7 +81,7 @@ class RandomModel:
 async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path) -> None:
     model, dice = RandomModel(1), random.Random(1)
     belief = model.start
-    async with engine_of(await built_text(model.documents(), cache_dir)) as engine:
+    async with engine_of_text(model.documents(), cache_dir) as engine:
         for _ in range(20):
             action = dice.randrange(ACTIONS)
             odds = [model.updated(belief, action, response)[1] for response in range(RESPONSES)]
@@ -98,7 +98,7 @@ async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path) ->
 async def test_particles_follow_a_random_chain_closely(cache_dir: Path) -> None:
     model, dice = RandomModel(1), random.Random(4)
     belief = model.start
-    async with engine_of(await built_text(model.documents(), cache_dir)) as engine:
+    async with engine_of_text(model.documents(), cache_dir) as engine:
         assert (await engine.draw_belief()).error_bound == 1
         for _ in range(20):
             action = dice.randrange(ACTIONS)
@@ -150,7 +150,7 @@ MANY_STATES = {
 
 
 async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound(cache_dir: Path) -> None:
-    async with engine_of(await built_text(MANY_STATES, cache_dir)) as engine:
+    async with engine_of_text(MANY_STATES, cache_dir) as engine:
         first = await engine.summary()
         update = await engine.update("read(number=9)", "yes")
     assert not first.is_exact
@@ -191,7 +191,7 @@ __moduleResponse = is_open && AOS.Bernoulli(0.01 * state__.level) ? yes : no;
 
 
 async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cache_dir: Path) -> None:
-    async with engine_of(await built_text(RARE, cache_dir)) as engine:
+    async with engine_of_text(RARE, cache_dir) as engine:
         update = await engine.update("read", "yes")
     assert update.probability == pytest.approx(1e-4, rel=0.05)
     assert update.summary.error_bound == 1
@@ -210,7 +210,7 @@ DEPLETING = {
 async def test_particles_outlive_more_observations_than_they_can_tell_apart(cache_dir: Path) -> None:
     dice = random.Random(1)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
-    async with engine_of(await built_text(DEPLETING, cache_dir)) as engine:
+    async with engine_of_text(DEPLETING, cache_dir) as engine:
         for card, is_on in enumerate(hand):
             update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
             assert not update.is_impossible, card
@@ -234,7 +234,7 @@ async def test_what_all_particles_have_by_chance_is_given_up_when_it_is_observed
 ) -> None:
     dice = random.Random(2)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
-    async with engine_of(await built_text(SHAKEN, cache_dir)) as engine:
+    async with engine_of_text(SHAKEN, cache_dir) as engine:
         for card, is_on in enumerate(hand):
             update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
             assert not update.is_impossible, card
@@ -284,7 +284,7 @@ state__.is_dealt = true;""",
 async def test_what_opened_up_since_the_beginning_is_given_up_as_well(cache_dir: Path) -> None:
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
-    async with engine_of(await built_text(DEALT, cache_dir)) as engine:
+    async with engine_of_text(DEALT, cache_dir) as engine:
         for card, is_on in enumerate(hand):
             update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
             assert not update.is_impossible, card

@@ -6,7 +6,7 @@ import random
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of
+from models import engine_of_bundle
 from reference_problems import MODELS, expected_reward, initial_belief, observed
 
 from aos_lab.bench.problems import problems_named
@@ -25,7 +25,7 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
 ) -> None:
     model = MODELS[problem]
     draws = random.Random(f"walks of {problem}")
-    async with engine_of(await built_bundle(bundles / "bench" / problem, cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "bench" / problem, cache_dir) as engine:
         assert [action.name for action in engine.description.actions] == sorted(model.actions)
         for walk in range(WALKS):
             belief = initial_belief(model)
@@ -58,7 +58,7 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_d
         squares = ((east_m - x) / deviation) ** 2 + ((north_m - y) / deviation) ** 2
         weights[x, y] = math.exp(-squares / 2) / (2 * math.pi * deviation**2) / 9
     density = sum(weights.values())
-    async with engine_of(await built_bundle(bundles / "bench" / "lightdark-normal", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "bench" / "lightdark-normal", cache_dir) as engine:
         numbers = {"east_m": east_m, "north_m": north_m}
         update = await engine.update("move(direction=north)", "moved", numbers=numbers)
     assert update.probability == pytest.approx(density, rel=1e-9)

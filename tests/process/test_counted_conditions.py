@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from models import built_text, engine_of
+from models import engine_of_text
 from wide.writing import BundleWriter
 
 ENVIRONMENT = """horizon: 4
@@ -43,6 +43,6 @@ async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(
     writer = BundleWriter("counted", ENVIRONMENT)
     end = "state__.doors[2] = 1;\nstate__.is_ready = true;\n__moduleResponse = ok;\n"
     writer.skill("close", ["ok"], code + end)
-    async with engine_of(await built_text(writer.files, cache_dir)) as engine:
+    async with engine_of_text(writer.files, cache_dir) as engine:
         exact = await engine.exact(1)
     assert exact.values[0].q == pytest.approx(17)

@@ -5,7 +5,7 @@ from typing import Literal
 
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
+from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
@@ -83,7 +83,7 @@ async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Pat
 
 
 async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of(await built_bundle(bundles / "bench" / "tiger", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "bench" / "tiger", cache_dir) as engine:
         first = await engine.plan(simulations=5_000, seed=1, planner="despot")
         for _ in range(3):
             await engine.update("listen", "tiger_left")
@@ -94,7 +94,7 @@ async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path, cache_
 
 
 async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of(await built_bundle(bundles / "bench" / "tag", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "bench" / "tag", cache_dir) as engine:
         search = Search(simulations=500, seed=1, planner="despot")
         limits = MissionLimits(goal_probability=0.999, step_limit=90)
         run = await simulate_mission(engine, search, limits)
@@ -103,7 +103,7 @@ async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path) 
 
 
 async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts(cache_dir: Path) -> None:
-    async with engine_of(await built_text(COUNTER, cache_dir)) as engine:
+    async with engine_of_text(COUNTER, cache_dir) as engine:
         plan = await engine.plan(simulations=5_000, seed=1, planner="despot")
         other = [await engine.plan(simulations=2_000, seed=1, planner=name) for name in ("auto", "sarsop")]
     assert plan.best.action == "stop"
@@ -115,7 +115,7 @@ async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts(cache_di
 async def test_a_belief_that_has_ended_needs_no_decision(
     planner: Literal["despot", "sarsop", "auto"], bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / "bench" / "rocksample-7-8", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "bench" / "rocksample-7-8", cache_dir) as engine:
         for _ in range(7):
             summary = (await engine.update("move(direction=east)", "moved")).summary
         plan = await engine.plan(simulations=1_000, seed=1, planner=planner)
@@ -124,7 +124,7 @@ async def test_a_belief_that_has_ended_needs_no_decision(
 
 
 async def test_an_action_that_was_not_tried_is_told_by_its_bound_and_not_chosen(cache_dir: Path) -> None:
-    async with engine_of(await built_text(DEAR, cache_dir)) as engine:
+    async with engine_of_text(DEAR, cache_dir) as engine:
         within = Restriction(barred=[0, 1, 2])
         plan = await engine.plan(simulations=1, seed=1, planner="despot", within=within)
     untried = [action for action in plan.actions if action.n == 0]

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 from scripted_missions import Surroundings, observed
 from test_taking_up import rows_of
 
@@ -43,7 +43,7 @@ async def played(
     around = Surroundings(lambda request: observed(request, response))
     limits = MissionLimits(step_limit=8, goal_probability=2.0)
     terms = Terms(name="m", limits=limits, search=Search(simulations=50, seed=1))
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         mission = Mission(terms, RunningModel(1, engine), around, drift=drift)
         await mission.run_or_raise()
         return mission, around

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
+from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 from processes import descendants, kill_engine, until_ended
 
 from aos_protocol.errors import ModelError
@@ -92,7 +92,7 @@ async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(
     bundles: Path, cache_dir: Path
 ) -> None:
     texts: list[str] = []
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         unheard = await engine.exact(4)
         engine.on_progress = lambda progress: texts.append(progress.text)
         await engine.tell_progress(0)
@@ -101,7 +101,7 @@ async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(
 
 
 async def assert_exact(folder: Path, kind: str, cache_dir: Path, names: Mapping[str, str]) -> None:
-    async with engine_of(await built_bundle(folder / f"armadillo-{kind}", cache_dir)) as engine:
+    async with engine_of_bundle(folder / f"armadillo-{kind}", cache_dir) as engine:
         values = await _exact(engine, 8)
     for action, value in EXACT_AT_8[kind].items():
         assert values[names[action]] == pytest.approx(value, abs=5e-4)
@@ -124,7 +124,7 @@ async def test_the_original_armadillo_has_the_same_values(kind: str, corpus: Pat
 async def test_the_search_orders_actions_as_the_exact_values_do(
     kind: str, bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / f"armadillo-{kind}", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / f"armadillo-{kind}", cache_dir) as engine:
         exact = await _exact(engine, 8)
         plan = await engine.plan(simulations=1_000_000, seed=1, horizon=8, planner="pomcp")
     assert abs(plan.best.q - max(exact.values())) < 0.5
@@ -157,7 +157,7 @@ async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(
 
 
 async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
         for _ in range(3):
@@ -169,7 +169,7 @@ async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
     bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(engine_child, "FROZEN_S", 0.1)
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
         children = descendants(engine.pid)
@@ -182,7 +182,7 @@ async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
 async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_well(
     bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         start, killed = EngineChild.start, []
 
@@ -223,7 +223,7 @@ async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(
 async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it(
     bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         assert engine.pid is not None
         (child,) = descendants(engine.pid)
         os.kill(child, signal.SIGSEGV)
@@ -247,7 +247,7 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(cache_dir: 
         "__moduleResponse = hears_left;\n__moduleResponse = hears_right;\n"
     )
     listening = (0).to_bytes(4, "little")
-    async with engine_of(await built_text(crashing, cache_dir)) as engine:
+    async with engine_of_text(crashing, cache_dir) as engine:
         with pytest.raises(ModelError, match=r"listen\.sd:5") as error:
             await engine.plan(simulations=100, seed=1, planner="pomcp")
         assert error.value.code == "AOS210"
@@ -261,7 +261,7 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(cache_dir: 
 async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve(
     bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         limits = MissionLimits(stop_below_value=0.0)
         served = 0
         for seed in range(1, 6):

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 from hostile.counters import counting
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from processes import HANG_S
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Diagnostic
@@ -47,7 +48,7 @@ async def started(built: BuiltModel) -> Engine:
 
 
 async def test_a_response_that_no_text_can_be_is_refused(cache_dir: Path) -> None:
-    async with engine_of(await built_text(LAMP, cache_dir)) as engine:
+    async with engine_of_text(LAMP, cache_dir) as engine:
         with pytest.raises(ModelError, match="tab or a line end") as caught:
             await engine.update("press", "clicked\ttwice")
     assert caught.value.code == "AOS310"
@@ -57,7 +58,7 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
     built = await built_text(LAMP, cache_dir)
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
     wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
-    project = load_files({name: text.encode() for name, text in wider.items()}).project
+    project = load_files(encoded(wider)).project
     assert project is not None
     async with engine_of(built) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
@@ -83,10 +84,10 @@ async def test_documents_whose_code_would_end_a_running_mission_are_refused(
 async def refused(documents: dict[str, str], cache_dir: Path) -> Diagnostic:
     """The one reason for which documents are not taken into a mission."""
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
-    project = load_files({name: text.encode() for name, text in documents.items()}).project
+    project = load_files(encoded(documents)).project
     assert project is not None
     good = counting("lamp", "press", steps="1000")
-    async with engine_of(await built_text(good, cache_dir)) as engine:
+    async with engine_of_text(good, cache_dir) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
     return refusal
@@ -116,7 +117,7 @@ async def test_of_slow_code_in_many_places_the_environment_document_is_told(cach
 async def test_a_response_that_is_no_text_is_an_answer_that_makes_no_sense(cache_dir: Path) -> None:
     files = counting("lamp", "press", code='__moduleResponseStr = "\\xff";', steps="3")
     files["press.sd"] = files["press.sd"].replace("__moduleResponse = done;\n", "")
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         with pytest.raises(ModelError, match="the engine's answer makes no sense"):
             await engine.plan(seed=1, simulations=20)
 

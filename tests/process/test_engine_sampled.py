@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 
 
 def reading(project: str, skill: str = "read") -> str:
@@ -76,7 +76,7 @@ __moduleResponse = high;
 
 
 async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path) -> None:
-    async with engine_of(await built_text(GAUGE, cache_dir)) as engine:
+    async with engine_of_text(GAUGE, cache_dir) as engine:
         first = await engine.update("read", "high")
         plan = await engine.plan(simulations=1000, seed=1, planner="pomcp")
         second = await engine.update("read", "high")
@@ -88,7 +88,7 @@ async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(ca
 
 
 async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> None:
-    async with engine_of(await built_text(SWITCHES, cache_dir)) as engine:
+    async with engine_of_text(SWITCHES, cache_dir) as engine:
         summary = await engine.summary()
         update = await engine.update("read", "high")
     assert not summary.is_exact
@@ -98,7 +98,7 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> No
 
 
 async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(cache_dir: Path) -> None:
-    async with engine_of(await built_text(TEMPTING, cache_dir)) as engine:
+    async with engine_of_text(TEMPTING, cache_dir) as engine:
         plan = await engine.plan(simulations=2, seed=1, planner="pomcp")
     values = {value.action: value for value in plan.actions}
     assert (values["leap"].n, values["read"].n) == (1, 1)
@@ -137,7 +137,7 @@ async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
     leap: str, best: str, cache_dir: Path
 ) -> None:
     files = PREJUDICED | {"leap.sd": PREJUDICED["leap.sd"].format(leap=leap)}
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         plan = await engine.plan(simulations=10_000, seed=1, planner="pomcp")
     assert plan.best.action == best
     five_steps = (1 - 0.95**5) / 0.05
@@ -155,7 +155,7 @@ async def test_what_holds_in_every_particle_is_certain_whatever_their_weights_su
         "reward_code:\nif (state.hour >= 5) __isGoalState = true, __reward = 1;\n"
     )
     files = {**GAUGE, "gauge.ef": GAUGE["gauge.ef"].replace("initial_belief", f"{counted}\ninitial_belief")}
-    async with engine_of(await built_text(files, cache_dir), seed=2) as engine:
+    async with engine_of_text(files, cache_dir, seed=2) as engine:
         for response in ("high", "low", "high", "high"):
             before = await engine.update("read", response)
             assert before.summary.goal_probability == 0

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from models import built_text, engine_of
+from models import engine_of_text
 from wide.shelf import shelf
 from wide.writing import BundleWriter
 
@@ -36,7 +36,7 @@ if (state.fell) {
 
 
 async def _plan(files: dict[str, str], cache_dir: Path, planner: str = "auto") -> Plan:
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         return await engine.plan(simulations=5000, seed=1, planner=planner)
 
 
@@ -49,7 +49,7 @@ async def test_values_are_those_of_the_same_model_with_flags(cache_dir: Path) ->
         "go.sd": files["go.sd"].replace("AOS.SampleNormal(0, 1) > 1.0", "AOS.Bernoulli(0.1586553)"),
         "grab.sd": files["grab.sd"].replace("AOS.SampleUniform(0, 1) < 0.8", "AOS.Bernoulli(0.8)"),
     }
-    async with engine_of(await built_text(twin, cache_dir)) as engine:
+    async with engine_of_text(twin, cache_dir) as engine:
         exact = await engine.exact(horizon=10)
     best = max(value.q for value in exact.actions)
     assert plan.best.q == pytest.approx(best, abs=0.05)

@@ -8,7 +8,8 @@ from random import Random
 import pytest
 from loop_programs import loop_program, solved
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
+from texts import write_texts
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
@@ -201,7 +202,7 @@ def approximately(odds: dict[int, Fraction]) -> dict[str, float]:
 
 
 async def test_beliefs_and_values_after_loops_are_closed_forms(cache_dir: Path) -> None:
-    async with engine_of(await built_text(FILES, cache_dir)) as engine:
+    async with engine_of_text(FILES, cache_dir) as engine:
         start = await engine.summary()
         sides = {str(side): pytest.approx(float(odds), abs=1e-12) for side, odds in SIDES.items()}
         assert start.is_exact
@@ -298,8 +299,7 @@ def test_the_command_plans_exactly_after_a_loop(loop: str, mean: Fraction, tmp_p
         "turn.sd": TURN.format(reward="state.side + state_.wind"),
         "turn.am": MAPPING,
     }
-    for name, text in files.items():
-        (tmp_path / name).write_text(text)
+    write_texts(files, tmp_path)
     result = CliRunner().invoke(aos_app(), ["plan", str(tmp_path), "--exact", "--json"])
     assert result.exit_code == 0, result.output
     (action,) = json.loads(result.stdout)["actions"]

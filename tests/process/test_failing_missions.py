@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of_text
 from scripted_missions import Clock, Surroundings, jammed, observed, run_mission, timed_out
 
 from aos_protocol.messages import Activate, EndingOdds, Fault, Outcome
@@ -175,7 +175,7 @@ __reward = -0.5;
 
 
 async def test_observations_can_refute_that_nothing_ran(cache_dir: Path) -> None:
-    async with engine_of(await built_text(fetch(take=TAKE, feel=FEEL), cache_dir)) as engine:
+    async with engine_of_text(fetch(take=TAKE, feel=FEEL), cache_dir) as engine:
         ran = await engine.update_without_observation("take(side=left_side)", ran_probability=0.5)
         assert ran.summary.goal_probability == pytest.approx(0.5 * 0.5 * 0.9)
         assert ran.summary.cautious == EndingOdds(0.0, 0.0, 0.0)

@@ -14,6 +14,7 @@ pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-auton
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.utils.env_checker import check_env
+from texts import write_texts
 
 from aos_lab.gym import AosEnv, AosVectorEnv
 from aos_protocol.errors import DeployError
@@ -59,14 +60,12 @@ for (int i = 1; i < 3; i++) __observed.echoes.push_back(AOS.SampleUniform(i, i +
 
 @pytest.fixture
 def kettle(tmp_path: Path) -> Path:
-    for name, text in KETTLE.items():
-        (tmp_path / name).write_text(text)
+    write_texts(KETTLE, tmp_path)
     return tmp_path
 
 
 def add_reading(folder: Path) -> Path:
-    for name, text in READING.items():
-        (folder / name).write_text(text)
+    write_texts(READING, folder)
     return folder
 
 
@@ -126,8 +125,7 @@ def test_text_observations_are_bytes(kettle: Path) -> None:
 @pytest.mark.filterwarnings("ignore:.*A Box observation space m.* value is -?infinity")
 def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
     """An array has as many columns as there is room for; what a response does not report is marked."""
-    for name, text in SENSING.items():
-        (kettle / name).write_text(text)
+    write_texts(SENSING, kettle)
     environment = AosEnv(kettle, max_episode_steps=20, array_room=3)
     check_env(environment, skip_render_check=True)
     assert environment.number_names == ("echoes[0]", "echoes[1]", "echoes[2]", "weight")

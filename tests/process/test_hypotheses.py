@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine, Restriction
@@ -45,7 +45,7 @@ __moduleResponse = AOS.Bernoulli(0.8) == state.red ? light : darkness;
 
 @pytest.fixture
 async def lamps(cache_dir: Path) -> Engine:
-    async with engine_of(await built_text(LAMPS, cache_dir)) as engine:
+    async with engine_of_text(LAMPS, cache_dir) as engine:
         yield engine
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 from processes import kill_engine
 
 from aos_solver.child.engine import Engine
@@ -56,7 +56,7 @@ NOW_VARIABLE = FILES | {"read.sd": READ.replace("dynamic_model:\n", "dynamic_mod
 
 @pytest.fixture
 async def engine(cache_dir: Path) -> AsyncIterator[Engine]:
-    async with engine_of(await built_text(FILES, cache_dir)) as engine:
+    async with engine_of_text(FILES, cache_dir) as engine:
         yield engine
 
 
@@ -86,7 +86,7 @@ async def test_a_belief_goes_over_in_pieces_to_documents_with_other_constants(
     belief = await engine.export_belief()
     assert sum(len(state) for _, state in belief.particles) > ANSWER_LIMIT_BYTES
     assert belief.constants == {"unit": "3"}
-    async with engine_of(await built_text(NOW_VARIABLE, cache_dir)) as other:
+    async with engine_of_text(NOW_VARIABLE, cache_dir) as other:
         after = await other.import_belief(belief)
         moved = await other.export_belief()
         back = await engine.import_belief(moved)

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 from large_bundles import long_array, many_variables
-from models import built_text, engine_of
+from models import engine_of_text
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.messages import BeliefSummary
@@ -19,12 +20,12 @@ def marginal(belief: BeliefSummary, name: str) -> dict[str, float]:
 
 @pytest.mark.parametrize("files", [many_variables(VARIABLES), long_array(ELEMENTS)], ids=["many", "long"])
 def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]) -> None:
-    found = load_files({name: text.encode() for name, text in files.items()}).diagnostics
+    found = load_files(encoded(files)).diagnostics
     assert {finding.code for finding in found} <= {"AOS139"}  # There is no goal.
 
 
 async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path) -> None:
-    async with engine_of(await built_text(many_variables(VARIABLES), cache_dir)) as engine:
+    async with engine_of_text(many_variables(VARIABLES), cache_dir) as engine:
         belief = (await engine.update("act(at=2)", "one")).summary
         again = (await engine.update("act(at=1)", "one")).summary
         exported = await engine.export_belief()
@@ -39,7 +40,7 @@ async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path) -> 
 
 
 async def test_a_long_array_is_believed_element_by_element(cache_dir: Path) -> None:
-    async with engine_of(await built_text(long_array(ELEMENTS, drawn=5), cache_dir)) as engine:
+    async with engine_of_text(long_array(ELEMENTS, drawn=5), cache_dir) as engine:
         belief = (await engine.update("act(at=1)", "one")).summary
         plan = await engine.plan(simulations=50, seed=1, planner="pomcp")
     assert belief.states == 32

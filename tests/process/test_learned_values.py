@@ -5,6 +5,7 @@ from pathlib import Path
 from exam.bundles import told_of_bundle
 from mappings import mapping_text
 from models import built_text, engine_of
+from texts import write_texts
 
 OPEN = """project: boxes
 parameter: int box
@@ -188,8 +189,7 @@ async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much(cache_dir:
 
 async def test_what_missions_return_is_told_where_values_are_learned(tmp_path: Path) -> None:
     """The tree promises that all is seen, some 20 more than a robot earns that has to open box after box."""
-    for name, text in COINS.items():
-        (tmp_path / name).write_text(text)
+    write_texts(COINS, tmp_path)
     told = await told_of_bundle(tmp_path, "pomcp", missions=1, seed=1, seconds=None, simulations=300)
     assert told.returned < -10
     assert abs(told.value - told.returned) < 6
@@ -201,8 +201,7 @@ async def test_played_missions_never_take_what_everybody_knows_not_to_be_possibl
 ) -> None:
     """A state that is left without others to choose for it takes an action whose precondition holds."""
     assert "what states are worth is learned" in await _why(JAMMING_COINS, cache_dir)
-    for name, text in JAMMING_COINS.items():
-        (tmp_path / name).write_text(text)
+    write_texts(JAMMING_COINS, tmp_path)
     told = await told_of_bundle(tmp_path, "pomcp", missions=1, seed=1, seconds=None, simulations=300)
     assert -20 < told.returned < -5
     assert abs(told.value - told.returned) < 10

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 import typer
 from processes import COMMAND_S
+from texts import write_texts
 from typer.testing import CliRunner
 
 from aos_deploy import reachability
@@ -77,8 +78,7 @@ def hall(tmp_path: Path) -> Callable[..., Path]:
             "walk.am": MAPPING.format(response="walked", skill="walk"),
             "open.am": MAPPING.format(response="opened", skill="open"),
         }
-        for name, text in files.items():
-            (tmp_path / name).write_text(text)
+        write_texts(files, tmp_path)
         return tmp_path
 
     return write

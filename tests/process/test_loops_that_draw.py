@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.search import Search
@@ -75,7 +75,7 @@ async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir
     for name, (loop, _) in LOOPS.items():
         files |= {f"{name}.sd": SKILL.format(loop=loop), f"{name}.am": MAPPING}
     files |= {"weights.sd": MANY_WEIGHTS, "weights.am": MAPPING}
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         names = [action.name for action in engine.description.actions]
         start = await engine.summary()
         assert start.marginals[0].values == {"1": pytest.approx(2 / 3), "0": pytest.approx(1 / 3)}
@@ -137,7 +137,7 @@ PLACED = mapping_text("placed: is_done", project="slots", skill="place", reports
 
 async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_dir: Path) -> None:
     files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         # The reward before the loop is not earned.
         values = await engine.exact(horizon=1)
         assert values.values[0].q == pytest.approx(0.25 * 9 + 0.375 * 5 - 0.375 * 4)
@@ -153,7 +153,7 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
 
 async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision(cache_dir: Path) -> None:
     files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         chooser = Chooser(
             Terms(name="m", search=Search(simulations=100, seed=1)), Failures(), QuietPorts(), RiskBudget(())
         )
@@ -166,7 +166,7 @@ async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decisi
 async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path) -> None:
     files = {"loops.ef": ENVIRONMENT, "turn.sd": ENDLESS, "turn.am": MAPPING}
     with pytest.raises(ModelError) as raised:
-        async with engine_of(await built_text(files, cache_dir)) as engine:
+        async with engine_of_text(files, cache_dir) as engine:
             await engine.update("turn", "yes")
     assert raised.value.code == "AOS211"
     (diagnostic,) = raised.value.diagnostics

@@ -12,6 +12,7 @@ import msgspec
 import pytest
 from models import built_bundle, built_text, engine_of
 from processes import COMMAND_S, HANG_S
+from texts import encoded
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
@@ -130,7 +131,7 @@ if (state.dock.near == soda) __reward += 1000;
 async def test_defaults_and_initial_values_follow_from_what_is_set(
     cache_dir: Path, options: list[str], value: float
 ) -> None:
-    loaded = load_files({name: text.encode() for name, text in PARTS.items()})
+    loaded = load_files(encoded(PARTS))
     assert loaded.project is not None, loaded.diagnostics
     project = msgspec.structs.replace(
         loaded.project, mission_values=tuple(map(mission_value_of_option, options))

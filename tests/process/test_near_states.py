@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from models import built_bundle, built_text, engine_of
+from models import built_bundle, built_text, engine_of, engine_of_text
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Plan
@@ -141,7 +141,7 @@ async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_th
         "reward_code:\nif (state.count >= 99000) { __reward = 10; __isGoalState = true; }\n",
         "step.sd": "project: count\ndynamic_model:\nstate__.count++;\n__moduleResponse = done;\n",
     }
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         plan = await engine.plan(simulations=20, seed=1, planner="sarsop")
     assert plan.planner == "sarsop"
     assert plan.actions[0].q == pytest.approx(0, abs=1e-6)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 from numpy.typing import NDArray
 
 from aos_protocol.errors import ModelError
@@ -132,7 +132,7 @@ EXACT = gauge(
 
 async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path) -> None:
     """The noise depends on the state, so that both the mean and the deviation tell."""
-    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+    async with engine_of_text(EXACT, cache_dir) as engine:
         belief = dict(enumerate(PRIOR))
         for depth in (1.3, -0.4, 2.9, 3.3):
             likelihood = {level: normal(depth, 2.0 * level, 1.0 + 0.5 * level) for level in belief}
@@ -158,7 +158,7 @@ async def test_several_numbers_and_a_response_count_together(
         beep = {True: 0.3 + 0.2 * level, False: 0.7 - 0.2 * level, None: 1.0}
         likelihood[level] = chance * warmth * shade * kinds[kind] * 0.5 * beep[beeps]
     expected, density = posterior(dict(enumerate(PRIOR)), likelihood)
-    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+    async with engine_of_text(EXACT, cache_dir) as engine:
         numbers = {"warmth": 0.7, "shade": 1, "kind": kind, "beeps": beeps}
         update = await engine.update("feel", "read", numbers=numbers)
         assert update.probability == pytest.approx(density, rel=1e-9)
@@ -170,7 +170,7 @@ async def test_several_numbers_and_a_response_count_together(
 
 async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache_dir: Path) -> None:
     beams = [0.4, 1.7, 1.2, 4.4]
-    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+    async with engine_of_text(EXACT, cache_dir) as engine:
         update = await engine.update("scan", "read", numbers={"beams": beams, "hits": [True, False]})
         # Only at level 1 there are two hits.
         density = math.prod(normal(beam, i, 1.5) for i, beam in enumerate(beams)) * 0.4 * 0.6 * PRIOR[1]
@@ -186,7 +186,7 @@ async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(c
         + math.log(PRIOR[level])
         for level in range(3)
     ]
-    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+    async with engine_of_text(EXACT, cache_dir) as engine:
         update = await engine.update("sweep", "read", numbers={"beams": beams})
         total = max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs))
         assert total < -7000
@@ -203,7 +203,7 @@ async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Pat
         mapping("double sight"),
         belief="state.place = AOS.SampleNormal(0, 1);",
     )
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         mean, variance = 0.0, 1.0
         expected = log_probability = 0.0
         for sight in (0.1, 0.9, 0.5, 1.4, 2.0, 1.6, 3.4, 3.0, 3.9, 3.6):
@@ -231,7 +231,7 @@ async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.flo
 
 
 async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path) -> None:
-    async with engine_of(await built_text(EXACT, cache_dir)) as engine:
+    async with engine_of_text(EXACT, cache_dir) as engine:
         missing = await engine.update("poke", "read", {"depth": "null", "code": '"read"'}, {})
         assert not missing.is_impossible
         assert missing.remark == (
@@ -253,7 +253,7 @@ async def test_simulated_worlds_give_numbers_that_their_belief_learns_from(cache
         "__observed.beams.push_back(AOS.SampleUniform(0, 1));\n",
         mapping("float depth", "float[] beams"),
     )
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         limits = MissionLimits(goal_probability=0.9, step_limit=12)
         run = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
         again = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
@@ -291,7 +291,7 @@ FAULTY = gauge(
 @pytest.mark.parametrize("skill", FAULTS)
 async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str, cache_dir: Path) -> None:
     _, why, line = FAULTS[skill]
-    async with engine_of(await built_text(FAULTY, cache_dir)) as engine:
+    async with engine_of_text(FAULTY, cache_dir) as engine:
         with pytest.raises(ModelError, match=why) as raised:
             await engine.update(skill, "read", numbers={"depth": 0.5, "beams": [True]})
     assert raised.value.code == "AOS215"
@@ -304,7 +304,7 @@ async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path)
         "__moduleResponse = read;\n__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0);\n",
         mapping("float depth"),
     )
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         with pytest.raises(ModelError, match="what is observed are numbers") as raised:
             await engine.exact()
         assert raised.value.code == "AOS220"
@@ -397,7 +397,7 @@ async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:
 async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path) -> None:
     """It listens as long as that is worth it."""
     best = value_of_listening()
-    async with engine_of(await built_text(DOCUMENTS_OF_DOORS, cache_dir)) as engine:
+    async with engine_of_text(DOCUMENTS_OF_DOORS, cache_dir) as engine:
         plan = await engine.plan(seed=1, simulations=20_000, planner="pomcp")
         assert (plan.planner, plan.best.action) == ("pomcp", "listen")
         # Cells tell less than numbers, so it is worth no more than the best, but for chance.
@@ -411,7 +411,7 @@ async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_ce
 ) -> None:
     """The robot can earn what is earned over cells. Cells lose little here; there is no upper bound."""
     best = value_of_listening()
-    async with engine_of(await built_text(DOCUMENTS_OF_DOORS, cache_dir)) as engine:
+    async with engine_of_text(DOCUMENTS_OF_DOORS, cache_dir) as engine:
         plan = await engine.plan(seed=1, simulations=20_000, planner=planner)
         assert (plan.planner, plan.best.action) == ("sarsop", "listen")
         assert plan.best.at_least is not None
@@ -430,7 +430,7 @@ async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_di
         "for (int i = 0; i < 9; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 1.5);\n",
         mapping("float[] beams"),
     )
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         plan = await engine.plan(seed=1, simulations=200, planner="auto")
         assert plan.planner == "belief-tree"
         assert "SARSOP cannot be used: 9 numbers are observed at once" in plan.why
@@ -442,13 +442,13 @@ async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution(c
     tenths = (
         "state.level = AOSUtils::SampleDiscrete(vector<double>(20, 0.05)); state.place = state.level / 10.0;"
     )
-    async with engine_of(await built_text(documents(*look, belief=tenths), cache_dir)) as engine:
+    async with engine_of_text(documents(*look, belief=tenths), cache_dir) as engine:
         found = {each.variable: each.quantiles for each in (await engine.summary()).marginals}
         assert found == {"level": (0, 4, 9, 14, 18), "place": (0.0, 0.4, 0.9, 1.4, 1.8)}
     few = "state.level = AOSUtils::SampleDiscrete(vector<double>(9, 1.0)); state.place = state.level % 8;"
-    async with engine_of(await built_text(documents(*look, belief=few), cache_dir)) as engine:
+    async with engine_of_text(documents(*look, belief=few), cache_dir) as engine:
         assert [each.quantiles for each in (await engine.summary()).marginals] == [(), ()]
     drawn = "state.place = AOS.SampleNormal(3.0, 2.0);"
-    async with engine_of(await built_text(documents(*look, belief=drawn), cache_dir)) as engine:
+    async with engine_of_text(documents(*look, belief=drawn), cache_dir) as engine:
         (place,) = (each for each in (await engine.summary()).marginals if each.variable == "place")
         assert place.quantiles == pytest.approx((-0.29, 1.65, 3.0, 4.35, 6.29), abs=0.3)

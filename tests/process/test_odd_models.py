@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 
 from aos_protocol.errors import DocumentError
 
@@ -62,7 +62,7 @@ NOTHING = {
 
 
 async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir: Path) -> None:
-    async with engine_of(await built_text(CROWDED, cache_dir)) as engine:
+    async with engine_of_text(CROWDED, cache_dir) as engine:
         assert len(engine.description.actions) == 1000
         plan = await engine.plan(simulations=20_000, seed=1, threads=2, planner="pomcp")
         assert plan.index in (7, 8)
@@ -71,7 +71,7 @@ async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir
 
 
 async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path) -> None:
-    async with engine_of(await built_text(SINGLE, cache_dir)) as engine:
+    async with engine_of_text(SINGLE, cache_dir) as engine:
         plan = await engine.plan(simulations=5_000, seed=1, planner="pomcp")
         assert plan.best.q == pytest.approx(1 + 0.9 + 0.81 + 0.729 + 0.6561, abs=0.3)
         assert {response.response for response in plan.predicted} == {"it is hot", "it is cold"}
@@ -82,6 +82,6 @@ async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache
 
 async def test_a_model_without_an_action_is_refused(cache_dir: Path) -> None:
     with pytest.raises(DocumentError) as error:
-        async with engine_of(await built_text(NOTHING, cache_dir)):
+        async with engine_of_text(NOTHING, cache_dir):
             pass
     assert error.value.code == "AOS119"

@@ -3,7 +3,7 @@
 from pathlib import Path
 from statistics import fmean
 
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from wide.delivery import delivery
 from wide.leaving import questions, survey
 from wide.lock import lock
@@ -31,7 +31,7 @@ async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path) 
 
 
 async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it(cache_dir: Path) -> None:
-    async with engine_of(await built_text(open_field(9), cache_dir)) as engine:
+    async with engine_of_text(open_field(9), cache_dir) as engine:
         search = Search(simulations=10_000, seed=2)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
     assert sum(action == "move(direction=0)" for action in run.actions) >= 3
@@ -39,7 +39,7 @@ async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it
 
 
 async def test_an_action_that_is_barred_is_not_taken(cache_dir: Path) -> None:
-    async with engine_of(await built_text(parcels(14), cache_dir)) as engine:
+    async with engine_of_text(parcels(14), cache_dir) as engine:
         plan = await engine.plan(simulations=1000, seed=1, planner="auto")
         within = Restriction(barred=[plan.index])
         other = await engine.plan(simulations=1000, seed=1, planner="auto", within=within)
@@ -49,7 +49,7 @@ async def test_an_action_that_is_barred_is_not_taken(cache_dir: Path) -> None:
 
 async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_dir: Path) -> None:
     """A lift breaks at any step, whatever the robot does, and all ways to a reward change its place."""
-    async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
+    async with engine_of_text(delivery(6), cache_dir) as engine:
         plan = await engine.plan(simulations=4000, seed=1, planner="auto")
         assert plan.planner == "options"
         search = Search(simulations=4000, seed=1)
@@ -59,7 +59,7 @@ async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_d
 
 
 async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> None:
-    async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
+    async with engine_of_text(delivery(6), cache_dir) as engine:
         plan = await engine.plan(simulations=10_000, seed=1, planner="auto")
     assert plan.planner == "options"
     assert plan.simulations < 12_500
@@ -67,7 +67,7 @@ async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> Non
 
 async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> None:
     """Also before it is known what a step costs."""
-    async with engine_of(await built_text(delivery(6), cache_dir)) as engine:
+    async with engine_of_text(delivery(6), cache_dir) as engine:
         await engine.count_processor_time(True)
         plans = [await engine.plan(simulations=1, time_s=0.006, seed=seed) for seed in range(3)]
     assert max(plan.search_s for plan in plans) < 0.012
@@ -77,7 +77,7 @@ async def test_a_reward_that_was_earned_is_not_expected_again_where_the_mission_
     cache_dir: Path,
 ) -> None:
     """Two people are helped, who may be in one room. A rule by hand returns 26, and random actions -42."""
-    async with engine_of(await built_text(rescue(3), cache_dir)) as engine:
+    async with engine_of_text(rescue(3), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=40)
         searches = (Search(simulations=1000, seed=seed) for seed in range(8))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
@@ -86,7 +86,7 @@ async def test_a_reward_that_was_earned_is_not_expected_again_where_the_mission_
 
 async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir: Path) -> None:
     """A lock opens when five dials are right, and nothing is earned before. Random actions return -24."""
-    async with engine_of(await built_text(lock(5), cache_dir)) as engine:
+    async with engine_of_text(lock(5), cache_dir) as engine:
         search = Search(simulations=10_000, seed=1)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
     assert run.actions[-1] == "pull"
@@ -95,7 +95,7 @@ async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir
 
 async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path) -> None:
     """Twelve sites are hardly worth a probe. Without the rule the robot probes and drives for ever."""
-    async with engine_of(await built_text(survey(12), cache_dir)) as engine:
+    async with engine_of_text(survey(12), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
         run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
     assert run.actions[-1] == "leave"
@@ -104,7 +104,7 @@ async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path) -> No
 
 async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> None:
     """A robot that leaves at once returns 0, a rule by hand 6.4."""
-    async with engine_of(await built_text(questions(18), cache_dir)) as engine:
+    async with engine_of_text(questions(18), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=30)
         searches = (Search(simulations=1000, seed=seed) for seed in (1, 2))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
@@ -113,7 +113,7 @@ async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> 
 
 async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_dir: Path) -> None:
     """A rule by hand returns 69, and whoever waits for 60 steps -18."""
-    async with engine_of(await built_text(towers(8), cache_dir)) as engine:
+    async with engine_of_text(towers(8), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
         run = await simulate_mission(engine, Search(simulations=2000, seed=1), limits)
     assert run.discounted_return > 50

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 
 ENVIRONMENT = """project: odd
 horizon: 2
@@ -133,7 +133,7 @@ async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path) -> None:
     for name, (code, _) in CODE.items():
         files[f"{name}.sd"] = SKILL.format(code=code)
         files[f"{name}.am"] = mapping_text("done: True", project="odd", skill=name)
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         values = await engine.exact(horizon=1)
     rewards = {value.action.split("(")[0]: value.q for value in values.values}
     assert rewards == {name: pytest.approx(reward) for name, (_, reward) in CODE.items()}
@@ -180,7 +180,7 @@ async def test_a_name_is_the_enums_value_where_no_response_can_stand(cache_dir: 
         "open: is_open", "closed: True", project="door", skill="pull", reports={"is_open": "bool"}
     )
     files = {"door.ef": DOOR, "pull.sd": PULL, "pull.am": pull}
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         values = await engine.exact()
         update = await engine.update("pull", "open")
     assert values.values[0].q == pytest.approx(0.5 * 100 + 0.5 * 1)

@@ -7,7 +7,7 @@ import msgspec
 import numpy as np
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
+from models import engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Plan
@@ -99,7 +99,7 @@ CHANCE = Chance(seed=20261121)
 @pytest.fixture
 async def chance(cache_dir: Path) -> AsyncIterator[Engine]:
     """An engine that may be in any of the random worlds."""
-    async with engine_of(await built_text(CHANCE.documents(), cache_dir)) as engine:
+    async with engine_of_text(CHANCE.documents(), cache_dir) as engine:
         yield engine
 
 
@@ -182,7 +182,7 @@ async def test_pondering_while_acting_leaves_a_warm_start_and_stops_when_it_is_a
 
 
 async def test_a_belief_that_has_ended_costs_no_simulations(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of(await built_bundle(bundles / "bench" / "tag", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "bench" / "tag", cache_dir) as engine:
         particles = await engine.export_belief()
         await engine.update("tag", "tagged")
         ended = await engine.plan(simulations=1000, seed=1, threads=2, planner="pomcp")

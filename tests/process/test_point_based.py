@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
+from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Plan
@@ -185,7 +185,7 @@ async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag:
 
 
 async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: Path) -> None:
-    async with engine_of(await built_text(TICKET, cache_dir)) as engine:
+    async with engine_of_text(TICKET, cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="sarsop")
         exact = await engine.exact()
     assert plan.planner == "sarsop"
@@ -205,7 +205,7 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
     length: int, simulations: int, planner: str, why: str, cache_dir: Path
 ) -> None:
     larger = {name: text.replace("150", str(length)) for name, text in FIELD.items()}
-    async with engine_of(await built_text(larger, cache_dir)) as engine:
+    async with engine_of_text(larger, cache_dir) as engine:
         plan = await engine.plan(simulations=simulations, seed=1, planner="auto")
     assert plan.planner == planner, plan.why
     assert why in plan.why
@@ -223,14 +223,14 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
 async def test_auto_chooses_by_states_and_budget_and_says_so(
     problem: str, planner: str, why: str, bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / problem, cache_dir)) as engine:
+    async with engine_of_bundle(bundles / problem, cache_dir) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
     assert why in plan.why
 
 
 async def test_few_missions_make_no_value_less_certain_than_what_is_proven(cache_dir: Path) -> None:
-    async with engine_of(await built_text(TURNS, cache_dir)) as engine:
+    async with engine_of_text(TURNS, cache_dir) as engine:
         best = (await engine.plan(simulations=1_000, seed=1, planner="sarsop")).best
     assert best.at_least is not None
     assert best.at_most is not None

@@ -3,7 +3,7 @@
 from pathlib import Path
 from statistics import fmean
 
-from models import built_text, engine_of
+from models import engine_of_text
 from wide.photo import photo
 
 from aos_solver.child.search import Search
@@ -13,7 +13,7 @@ from aos_solver.mission.simulation import simulate_mission
 
 async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo(cache_dir: Path) -> None:
     """A drone without a price of information flies to and fro: -5.1 in these worlds."""
-    async with engine_of(await built_text(photo(12), cache_dir)) as engine:
+    async with engine_of_text(photo(12), cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
         assert plan.planner == "pomcp"
         assert "information has a price" in plan.why

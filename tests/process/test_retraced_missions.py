@@ -5,8 +5,9 @@ from pathlib import Path
 import msgspec
 import pytest
 from hall import HALL, changed, with_bell
-from models import built_text, engine_of
+from models import built_text, engine_of_text
 from scripted_missions import Surroundings, observed
+from texts import encoded
 
 from aos_deploy.history_check.replayed import replayed
 from aos_language.load import load_files
@@ -89,7 +90,7 @@ async def whole(cache_dir: Path) -> Rows:
 
 
 async def documents(revision: int) -> Project:
-    project = load_files({name: text.encode() for name, text in REVISIONS[revision].items()}).project
+    project = load_files(encoded(REVISIONS[revision])).project
     assert project is not None
     return project
 
@@ -105,7 +106,7 @@ async def taken_up(rows: Rows, revision: int, run: Path, cache_dir: Path) -> Row
     """The journal after another solver has taken the mission up with this newest revision."""
     memory = memory_of(rows)
     around = Surroundings(robot)
-    async with engine_of(await built_text(REVISIONS[revision], cache_dir)) as engine:
+    async with engine_of_text(REVISIONS[revision], cache_dir) as engine:
         running = RunningModel(revision, engine)
         of_before = settings(run, cache_dir)
         earlier = await earlier_models(memory, running, documents, of_before, lambda text: None)
@@ -127,9 +128,7 @@ def write_run(rows: Rows, run: Path, cache_dir: Path) -> None:
     (run / "settings" / "solver.json").write_bytes(msgspec.json.encode(settings(run, cache_dir)))
     catalogue = Catalogue.open(run / "catalogue.db")
     for number, files in REVISIONS.items():
-        catalogue.store(
-            "hall", f"digest {number}", {name: text.encode() for name, text in files.items()}, (), 0
-        )
+        catalogue.store("hall", f"digest {number}", encoded(files), (), 0)
     catalogue.close()
     with Journal.open(run / "journal.db", survives_power_loss=False) as journal:
         for kind, payload in rows:
@@ -170,7 +169,7 @@ async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(
         raise StorageError("the catalogue has no revision 1", code="AOS702")
 
     rows = await whole(cache_dir)
-    async with engine_of(await built_text(REVISIONS[3], cache_dir)) as engine:
+    async with engine_of_text(REVISIONS[3], cache_dir) as engine:
         running, of_before = RunningModel(3, engine), settings(tmp_path, cache_dir)
         assert await earlier_models(memory_of(rows), running, gone, of_before, lambda text: None) == ()
 

@@ -9,6 +9,7 @@ from hostile.cases import MODELS
 from hostile.counters import counting
 from models import built_text, engine_of
 from processes import COMMAND_S
+from texts import write_texts
 
 from aos_protocol.errors import CodeFaultError, ModelError
 from aos_runtime.sandbox.support import sandbox_support
@@ -76,8 +77,7 @@ def test_the_trial_of_the_sandbox_finds_nothing_that_a_confined_program_can_do()
 
 
 def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Path) -> None:
-    for name, text in lamp("").items():
-        (tmp_path / name).write_text(text)
+    write_texts(lamp(""), tmp_path)
     script = Path(__file__).parents[1] / "without_landlock.py"
     aos = str(Path(sys.executable).with_name("aos"))
     command = [sys.executable, str(script), aos, "lint", str(tmp_path)]

@@ -3,7 +3,7 @@
 from pathlib import Path
 from statistics import fmean
 
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from wide.cleaning import cleaning
 from wide.upkeep import greenhouse
 
@@ -42,7 +42,7 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
 async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once(
     cache_dir: Path,
 ) -> None:
-    async with engine_of(await built_text(cleaning(7), cache_dir)) as engine:
+    async with engine_of_text(cleaning(7), cache_dir) as engine:
         search = Search(simulations=_SIMULATIONS, seed=1)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
     assert sum(action == "clean" for action in run.actions) >= 8
@@ -50,7 +50,7 @@ async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_a
 
 
 async def test_an_action_that_is_barred_saves_nothing(cache_dir: Path) -> None:
-    async with engine_of(await built_text(greenhouse(5), cache_dir)) as engine:
+    async with engine_of_text(greenhouse(5), cache_dir) as engine:
         plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
         within = Restriction(barred=[plan.index])
         other = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto", within=within)

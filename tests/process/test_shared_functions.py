@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models import built_text, engine_of
+from models import engine_of_text
 
 WRITTEN_OUT = {
     "cart.ef": """project: cart
@@ -61,7 +61,7 @@ __reward = -1;
 async def test_values_are_exact_and_the_same(cache_dir: Path) -> None:
     values = []
     for files in (WRITTEN_OUT, SHARED):
-        async with engine_of(await built_text(files, cache_dir)) as engine:
+        async with engine_of_text(files, cache_dir) as engine:
             exact = await engine.exact()
             summary = await engine.summary()
             values.append({action.action: action.q for action in exact.actions})

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
+from texts import write_texts
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
@@ -49,7 +50,7 @@ LIMITS = MissionLimits(goal_probability=0.9, step_limit=3)
 
 
 async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: Path) -> None:
-    async with engine_of(await built_text(TABLE, cache_dir)) as engine:
+    async with engine_of_text(TABLE, cache_dir) as engine:
         runs = [
             await simulate_mission(engine, Search(simulations=200, seed=seed), LIMITS)
             for seed in range(1, 121)
@@ -63,7 +64,7 @@ async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: P
 
 
 async def test_a_belief_tells_each_ending_apart(cache_dir: Path) -> None:
-    async with engine_of(await built_text(TABLE, cache_dir)) as engine:
+    async with engine_of_text(TABLE, cache_dir) as engine:
         served = (await engine.update("serve", "done")).summary
         await engine.reset_belief()
         kept = (await engine.update("keep", "DefaultObservation")).summary
@@ -75,15 +76,14 @@ async def test_a_belief_tells_each_ending_apart(cache_dir: Path) -> None:
 
 async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path) -> None:
     keep = {name: text for name, text in TABLE.items() if not name.startswith("serve")}
-    async with engine_of(await built_text(keep, cache_dir)) as engine:
+    async with engine_of_text(keep, cache_dir) as engine:
         run = await simulate_mission(engine, Search(simulations=100, seed=1), LIMITS)
     assert (run.ending, run.world_ending, run.believed_ending) == (Ending.OVER,) * 3
     assert run.total == -1
 
 
 def test_goals_are_counted_by_the_world(tmp_path: Path) -> None:
-    for name, text in TABLE.items():
-        (tmp_path / name).write_text(text)
+    write_texts(TABLE, tmp_path)
     command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]
     app = aos_app(command)
     app = aos_app(command)

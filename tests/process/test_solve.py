@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
+from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 from processes import COMMAND_S
 
 from aos_lab.formats.graph_writers import c_header, graphviz
@@ -44,7 +44,7 @@ def published(root: Path) -> Path:
 
 
 async def enumerated(bundle: Path, cache_dir: Path) -> Enumeration:
-    async with engine_of(await built_bundle(bundle, cache_dir)) as engine:
+    async with engine_of_bundle(bundle, cache_dir) as engine:
         return await enumerate_model(engine)
 
 
@@ -167,7 +167,7 @@ async def test_variables_that_change_nothing_are_left_out(
     files["tiger.ef"] += "\nstate_variable: int listened\n\nstate_variable: bool heard []\n"
     files["tiger.ef"] += "code:\nstate.heard = {false, false};\n"
     files["listen.sd"] += "state__.listened += 1;\nstate__.heard[0] = __moduleResponse == hears_left;\n"
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         found = await enumerate_model(engine, max_states=50)
         assert found.left_out == ("listened", "heard[0]", "heard[1]")
         assert found.model.size.states == 3
@@ -212,7 +212,7 @@ async def test_a_policy_for_other_documents_is_refused(
     found = await enumerated(folder, cache_dir)
     solution = await solve(found.model, QUICK, cache_dir=cache_dir)
     policy = saved(found, "of yesterday", solution)
-    async with engine_of(await built_bundle(folder, cache_dir)) as engine:
+    async with engine_of_bundle(folder, cache_dir) as engine:
         search = PolicySearch(policy=policy, simulations=100, seed=1)
         with pytest.raises(PlanningError, match="solved for other documents of tiger") as caught:
             await search.run(engine, 1)
@@ -257,7 +257,7 @@ async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cac
             "read.sd": skill.format(step=step),
             "read.am": mapping,
         }
-        async with engine_of(await built_text(files, cache_dir)) as engine:
+        async with engine_of_text(files, cache_dir) as engine:
             with pytest.raises(ModelError, match=reason) as caught:
                 await enumerate_model(engine, max_states=50)
         assert caught.value.code == "AOS220"

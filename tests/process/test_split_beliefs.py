@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from numpy.typing import NDArray
 from processes import kill_engine
 
@@ -80,7 +80,7 @@ async def told(engine: Engine) -> NDArray[np.float64]:
 
 async def test_marginals_of_many_machines_stay_close_to_the_exact_ones(cache_dir: Path) -> None:
     distances = []
-    async with engine_of(await built_text(FILES, cache_dir)) as engine:
+    async with engine_of_text(FILES, cache_dir) as engine:
         workshop = Workshop(1)
         for _ in range(12):
             update = await engine.update(*workshop.inspection())
@@ -144,7 +144,7 @@ __moduleResponse = state__.cards[number] ? yes : no;
     dice = random.Random(4)
     hand = [dice.random() < 0.5 for _ in range(cards)]
     files = {"cards.ef": environment, "turn.sd": turn, "turn.am": rules}
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         for card, is_on in enumerate(hand):
             update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
             assert not update.is_impossible, card

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_bundle, built_text, engine_of
+from models import built_text, engine_of, engine_of_bundle
 
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
@@ -257,7 +257,7 @@ async def test_a_simulated_state_is_shown_by_the_documents_print_function(engine
 async def test_without_a_print_function_a_state_is_shown_by_its_variables(
     bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         await engine.reset_world(1)
         text = await engine.world_state()
     assert ", robot_at=HardTable, holding_can=false, " in text

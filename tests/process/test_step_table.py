@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import engine_of_text
 
 ODDS = (0.02, 0.5, 0.18, 0.3)
 FIRST_ODDS = (0.25, 0.0, 0.7, 0.05)
@@ -60,14 +60,14 @@ async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path) -> Non
     thrown = sum(odds * worth for odds, worth in zip(ODDS, WORTH, strict=True))
     # The die has been thrown after half of the steps: what is left of the first face halves each time.
     means = [thrown + (first - thrown) * 0.5**step for step in range(HORIZON)]
-    async with engine_of(await built_text(documents(""), cache_dir)) as engine:
+    async with engine_of_text(documents(""), cache_dir) as engine:
         walked = await engine.rate(0.2, seed=1, stepping="table")
         assert walked.samples > 100_000
         assert walked.mean_reward == pytest.approx(sum(means) / HORIZON, rel=0.01)
 
 
 async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> None:
-    async with engine_of(await built_text(documents(""), cache_dir)) as engine:
+    async with engine_of_text(documents(""), cache_dir) as engine:
         best = max((await engine.exact(HORIZON)).actions, key=lambda value: value.q)
         plan = await engine.plan(simulations=100_000, seed=1, planner="pomcp")
     assert (plan.best.action, plan.best.q) == (best.action, pytest.approx(best.q, rel=0.01))
@@ -83,6 +83,6 @@ async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> N
     ids=["a draw without end", "states without end", "a fault that hardly ever happens"],
 )
 async def test_there_is_no_table_of(move: str, cache_dir: Path) -> None:
-    async with engine_of(await built_text(documents(move), cache_dir)) as engine:
+    async with engine_of_text(documents(move), cache_dir) as engine:
         assert (await engine.rate(0.05, seed=1, stepping="table")).samples == 0
         assert (await engine.rate(0.05, seed=1)).samples > 0

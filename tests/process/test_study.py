@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from models import built_bundle, engine_of
+from models import engine_of_bundle
 from study.played import Played, play
 
 from aos_language.load import read_bundle_files
@@ -69,7 +69,7 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         assert all(not value.action.startswith("pick") for value in without.actions)
         tree = await study.tree(TreeQuery(1, depth=2, branches=2))
         assert tree.root.actions[0].action == chosen
-        async with engine_of(await built_bundle(bundles / BUNDLE, cache_dir)) as engine:
+        async with engine_of_bundle(bundles / BUNDLE, cache_dir) as engine:
             index = [action.name for action in engine.description.actions].index(chosen)
             predicted = {each.response: each.probability for each in (await engine.predict(index)).predicted}
         assert {response: p for response, p, _ in tree.root.actions[0].after} == predicted

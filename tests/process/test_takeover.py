@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from hall import HALL, changed, looked, marginal, past_of, with_bell
-from models import built_text, engine_of
+from models import built_text, engine_of_text
 
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import Marginal
@@ -20,7 +20,7 @@ from aos_solver.mission.takeover import REPLAY_S, RunningModel, Successor, Takeo
 @asynccontextmanager
 async def hall(cache_dir: Path, past: Past) -> AsyncIterator[RunningModel]:
     """A mission by the documents, with a past."""
-    async with engine_of(await built_text(HALL, cache_dir)) as engine:
+    async with engine_of_text(HALL, cache_dir) as engine:
         for evidence in past.steps:
             await updated(engine, evidence, past.refuted_below)
         yield RunningModel(1, engine)
@@ -197,7 +197,7 @@ async def test_a_projection_of_particles_keeps_their_weights(cache_dir: Path) ->
     past = past_of(*[looked("below")] * 3)
     files = with_bell("state.has_bell = AOS.Bernoulli(0.25);")
     engine = await Engine.start(await built_text(files, cache_dir), seed=1)
-    async with engine_of(await built_text(HALL, cache_dir)) as old:
+    async with engine_of_text(HALL, cache_dir) as old:
         await old.draw_belief()
         for evidence in past.steps:
             await updated(old, evidence, past.refuted_below)
@@ -222,7 +222,7 @@ async def test_a_projection_keeps_what_has_counted_once_where_both_have_the_same
     old["hall.ef"] += once.format(7)
     past = past_of(*[looked("above")] * 3)
     engine = await Engine.start(await built_text(files, cache_dir), seed=1)
-    async with engine_of(await built_text(old, cache_dir)) as running:
+    async with engine_of_text(old, cache_dir) as running:
         for evidence in past.steps:
             await updated(running, evidence, past.refuted_below)
         common = running.layout.common_with(engine.layout)

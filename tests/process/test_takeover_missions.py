@@ -5,7 +5,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from hall import HALL, marginal, with_peek
-from models import built_text, engine_of
+from models import built_text, engine_of_text
 from scripted_missions import Surroundings, observed, run_mission
 
 from aos_deploy.views.lines import adopted_line
@@ -42,7 +42,7 @@ class Plugged(Surroundings):
 async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold(cache_dir: Path) -> None:
     around = Plugged(hears_below)
     around.unavailable = {"look": "the camera is away"}
-    async with engine_of(await built_text(with_peek(HALL), cache_dir)) as engine:
+    async with engine_of_text(with_peek(HALL), cache_dir) as engine:
 
         def push() -> None:
             around.successor = Successor(RunningModel(2, engine), SystemClock())
@@ -79,8 +79,8 @@ async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_mo
     around = Plugged(hears_below)
     terms = Terms(name="m", search=Prepared(simulations=1, seed=1), limits=MissionLimits(step_limit=1))
     async with (
-        engine_of(await built_text(HALL, cache_dir)) as before,
-        engine_of(await built_text(with_peek(HALL), cache_dir)) as after,
+        engine_of_text(HALL, cache_dir) as before,
+        engine_of_text(with_peek(HALL), cache_dir) as after,
     ):
         around.successor = Successor(RunningModel(2, after), SystemClock())
         state = await Mission(terms, RunningModel(1, before), around).run()
@@ -101,7 +101,7 @@ async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_dec
     assert memory.pending is not None
     rest = Surroundings(hears_below)
     terms = Terms(name="m", search=Search(simulations=100, seed=1), limits=limits)
-    async with engine_of(await built_text(with_peek(HALL), cache_dir)) as engine:
+    async with engine_of_text(with_peek(HALL), cache_dir) as engine:
         state = await Mission(terms, RunningModel(2, engine), rest, memory).run()
     assert (state.ending, state.step) == ("step_limit", 2)
     assert [record.skill for record in rest.decisions] == ["peek"]

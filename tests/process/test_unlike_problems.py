@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 
 BOXES = """project: boxes
 horizon: 20
@@ -120,7 +120,7 @@ __moduleResponseStr = "alarm " + std::to_string(AOSUtils::SampleDiscrete(odds));
 
 async def first_actions(files: dict[str, str], cache_dir: Path, simulations: int) -> list[str]:
     """The decisions of three seeds at the initial belief."""
-    async with engine_of(await built_text(files, cache_dir)) as engine:
+    async with engine_of_text(files, cache_dir) as engine:
         plans = [await engine.plan(simulations=simulations, seed=seed, planner="auto") for seed in (1, 2, 3)]
     return [plan.best.action for plan in plans]
 

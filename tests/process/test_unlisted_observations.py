@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 
 CORRIDOR = {
     "corridor.ef": """project: corridor
@@ -113,7 +113,7 @@ async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(
     readings: tuple[int, ...], cache_dir: Path
 ) -> None:
     left, right = (math.prod(_chance(reading, mean) for reading in readings) for mean in (-1, 1))
-    async with engine_of(await built_text(DOORS, cache_dir)) as engine:
+    async with engine_of_text(DOORS, cache_dir) as engine:
         update = await engine.update("listen", "".join(f"{reading};" for reading in readings))
     marginal = next(
         marginal for marginal in update.summary.marginals if marginal.variable.endswith("is_left")
@@ -124,7 +124,7 @@ async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(
 
 async def test_readings_that_are_written_as_numbers_are_paid_for(cache_dir: Path) -> None:
     """Were all seen after one action, waiting would be better than listening."""
-    async with engine_of(await built_text(DOORS, cache_dir)) as engine:
+    async with engine_of_text(DOORS, cache_dir) as engine:
         plan = await engine.plan(simulations=4_000, seed=1, planner="auto")
         assert (plan.planner, plan.best.action) == ("belief-tree", "listen")
         again, other = [await engine.plan(simulations=4_000, seed=seed, planner="auto") for seed in (1, 2)]
@@ -143,14 +143,14 @@ for (int i = 0; i < 8; i++) {
     __moduleResponseStr += char('a' + int(heard));
 }
 """
-    async with engine_of(await built_text({**DOORS, "listen.sd": words}, cache_dir)) as engine:
+    async with engine_of_text({**DOORS, "listen.sd": words}, cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
     assert plan.planner == "pomcp"
     assert "; their probabilities cannot be estimated: hardly a response comes twice" in plan.why
 
 
 async def test_pomcp_that_was_asked_for_stays_pomcp(cache_dir: Path) -> None:
-    async with engine_of(await built_text(DOORS, cache_dir)) as engine:
+    async with engine_of_text(DOORS, cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="pomcp")
     assert plan.planner == "pomcp"
 

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from models import built_bundle, built_bundles, engine_of
+from models import built_bundle, built_bundles, engine_of, engine_of_bundle
 from tictactoe_games import game
 
 from aos_skills.pybullet.world_file import load_world_file
@@ -39,14 +39,14 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
 async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
     bundle: str, first: str, bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of(await built_bundle(bundles / bundle, cache_dir)) as engine:
+    async with engine_of_bundle(bundles / bundle, cache_dir) as engine:
         values = sorted((await engine.exact()).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 
 
 async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of(await built_bundle(bundles / "armadillo-rough-blind", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "armadillo-rough-blind", cache_dir) as engine:
         await engine.reset_belief()
         for action, response in (
             ("pick", "pick_succeeded"),
@@ -66,7 +66,7 @@ async def test_the_turtlebot_takes_the_shortest_of_all_tours(
     room = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
     at = {name: (place.x, place.y) for name, place in room.places.items()}
     decided = []
-    async with engine_of(await built_bundle(bundles / "turtlebot", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "turtlebot", cache_dir) as engine:
         await engine.reset_belief()
         for step in range(len(at)):
             plan = await engine.plan(simulations=100_000, seed=step, planner="auto")
@@ -88,7 +88,7 @@ def shortest_tour(start: Point, places: frozenset[Point]) -> float:
 
 async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_dir: Path) -> None:
     chance = random.Random(1)
-    async with engine_of(await built_bundle(bundles / "tictactoe", cache_dir)) as engine:
+    async with engine_of_bundle(bundles / "tictactoe", cache_dir) as engine:
         for seed in range(3):
             ending, moves = await game(engine, "perfect", chance, seed, dry_centre=0.0)
             assert ending != "X", moves

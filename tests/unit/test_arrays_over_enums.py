@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from scripted_models import ScriptedModel, scripted, text_project
+from texts import encoded
 
 from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
@@ -111,14 +112,14 @@ def test_all_dialects_say_the_same() -> None:
     texts, findings = convert(files(), Dialect.JSON)
     assert findings == ()
     assert '"IndexedBy": "Item"' in texts["environment.ef.json"]
-    as_json = {name: text.encode() for name, text in texts.items()}
+    as_json = encoded(texts)
     papers = {
         name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
         for name, data in as_json.items()
     }
     back, _ = convert(as_json, Dialect.SDL)
     assert "state_variable: Place at [Item]" in back["environment.ef"]
-    for other in (as_json, papers, {name: text.encode() for name, text in back.items()}):
+    for other in (as_json, papers, encoded(back)):
         project = load_files(other).project
         assert project is not None
         assert without_origins(project) == without_origins(bundle.project)

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from texts import encoded
 from typer.testing import CliRunner
 
 from aos_deploy.commands.convert import register
@@ -17,10 +18,6 @@ CORPUS = [
     "sarsop-simple", "tic-tac-toe-json", "tic-tac-toe-sdl", "turtlebot-visit", "wildfire",
 ]  # fmt: skip
 ENVIRONMENT = b"project: p\nhorizon: 3\nstate_variable: bool done\n"
-
-
-def encoded(texts: dict[str, str]) -> dict[str, bytes]:
-    return {name: text.encode() for name, text in texts.items()}
 
 
 def converted(files: dict[str, bytes], dialect: Dialect) -> dict[str, bytes]:

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from texts import encoded, write_texts
 
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import read_deploy_file
@@ -95,7 +96,7 @@ DIALECTS = {
 
 
 def project(files: dict[str, str]) -> Project:
-    loaded = load_files({name: text.encode() for name, text in {"act.sd": SKILL, **files}.items()})
+    loaded = load_files(encoded({"act.sd": SKILL, **files}))
     assert loaded.project is not None, loaded.diagnostics
     return loaded.project
 
@@ -148,7 +149,7 @@ MISTAKES = {
 def test_a_mistake_with_a_parameter_is_told_in_its_line(declared: str) -> None:
     code, message = MISTAKES[declared]
     files = {"home.ef": f"{SDL}\n{declared}\n", "act.sd": SKILL}
-    loaded = load_files({name: text.encode() for name, text in files.items()})
+    loaded = load_files(encoded(files))
     (found,) = [diagnostic for diagnostic in loaded.diagnostics if diagnostic.is_error]
     assert found.code == code
     assert message in found.message
@@ -169,9 +170,7 @@ def test_a_local_variable_of_a_mapping_with_its_name_does_not_tell_it() -> None:
         "path: /act\n\nlocal_variable: count\ntype: int\nfrom_ros_service_response: true\ncode:\n"
         "count = __input.count\n"
     )
-    loaded = load_files(
-        {name: t.encode() for name, t in {"home.ef": SDL, "act.sd": SKILL, "act.am": mapping}.items()}
-    )
+    loaded = load_files(encoded({"home.ef": SDL, "act.sd": SKILL, "act.am": mapping}))
     assert [d.code for d in loaded.diagnostics if d.code in ("AOS128", "AOS134")] == []
 
 
@@ -241,8 +240,7 @@ bind: {"*": model}
 @pytest.fixture
 def deploy_file(tmp_path: Path) -> Path:
     (tmp_path / "home").mkdir()
-    for name, text in {"home.ef": SDL, "act.sd": SKILL}.items():
-        (tmp_path / "home" / name).write_text(text)
+    write_texts({"home.ef": SDL, "act.sd": SKILL}, tmp_path / "home")
     path = tmp_path / "home.yaml"
     path.write_text(DEPLOY)
     return path

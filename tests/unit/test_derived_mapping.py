@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from mapping_runs import fields, loaded, observed
 from mappings import mapping_text
+from texts import encoded
 
 from aos_deploy.adapter_templates import adapter_files
 from aos_editor.symbols import read_bundle
@@ -46,7 +47,7 @@ LOOK_JSON = {
 
 def loaded_files(look: str = LOOK, **more: str) -> LoadedBundle:
     texts = {"barn.ef": ENVIRONMENT, "look.sd": look} | {name.replace("_", "."): more[name] for name in more}
-    return load_files({name: text.encode() for name, text in texts.items()})
+    return load_files(encoded(texts))
 
 
 def project_of(look: str = LOOK) -> Project:

@@ -3,6 +3,8 @@
 import json
 from typing import Any
 
+from texts import encoded
+
 from aos_language.load import load_files
 from aos_protocol.documents import LocalSource, Project
 
@@ -243,7 +245,7 @@ def test_a_text_response_and_parameters_by_code_are_read_from_both_dialects() ->
     environment = {k: v for k, v in ENVIRONMENT.items() if k != "ExtrinsicChangesDynamicModel"}
     documents = (environment, LOW_LEVEL, skill, mapping)
     files = {f"{i}.json": json.dumps(document).encode() for i, document in enumerate(documents)}
-    loaded = load_files(files | {name: text.encode() for name, text in sdl.items()})
+    loaded = load_files(files | encoded(sdl))
     assert loaded.project is not None, loaded.diagnostics
     look, see = loaded.project.skills
     for read_skill in (look, see):

@@ -6,6 +6,7 @@ import msgspec
 import pytest
 from mappings import mapping_text
 from scripted_models import ScriptedModel, scripted, text_project
+from texts import encoded
 
 from aos_deploy.exit_codes import exit_code_of_mission
 from aos_language.convert import Dialect, convert, without_origins
@@ -104,7 +105,7 @@ def test_other_states_go_on(room: ScriptedModel) -> None:
 
 
 def test_endings_that_their_reward_decides_are_told(room: ScriptedModel) -> None:
-    found = load_files({name: text.encode() for name, text in BUNDLE.items()}).diagnostics
+    found = load_files(encoded(BUNDLE)).diagnostics
     messages = {finding.span.line: finding.message for finding in found if finding.code == "AOS137"}
     lines = ROOM.splitlines()
     assert [lines[line] for line in sorted(messages)] == [
@@ -123,7 +124,7 @@ def test_both_dialects_say_the_same_of_failure() -> None:
     assert not any(finding.is_error for finding in findings)
     assert as_json["environment.ef.json"].count('"IsFailureState": false') == 1
     assert as_json["environment.ef.json"].count('"IsFailureState": true') == 2
-    back, _ = convert({name: text.encode() for name, text in as_json.items()}, Dialect.SDL)
+    back, _ = convert(encoded(as_json), Dialect.SDL)
     again = load_files({**BUNDLE_OF_SKILL, "room.ef": back["environment.ef"].encode()}).project
     assert again is not None
     assert said(again.environment) == said(text_project(BUNDLE).environment)

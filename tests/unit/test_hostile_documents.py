@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from hostile.counters import counting
+from texts import encoded
 
 from aos_deploy.faults import print_fault
 from aos_gateway.uploads import files_of_upload, keep_project
@@ -23,7 +24,7 @@ def loaded(code: str = "", **replaced: str) -> LoadedBundle:
     files = counting("lamp", "press", code=code, steps="3")
     for before, after in replaced.items():
         files = {name: text.replace(before, after) for name, text in files.items()}
-    return load_files({name: text.encode() for name, text in files.items()})
+    return load_files(encoded(files))
 
 
 @pytest.mark.parametrize("sign", ["(", "{", "[", "#a\n", '"\n'])

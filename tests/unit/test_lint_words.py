@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Diagnostic, Severity
@@ -61,7 +62,7 @@ def found(
     *, environment: str = ENVIRONMENT, skill: str = SKILL, mapping: str = MAPPING
 ) -> tuple[Diagnostic, ...]:
     files = {"hall.ef": environment, "walk.sd": skill, "walk.am": mapping}
-    return load_files({name: text.encode() for name, text in files.items()}).diagnostics
+    return load_files(encoded(files)).diagnostics
 
 
 def finding_texts(**texts: str) -> list[str]:

@@ -7,6 +7,7 @@ import pytest
 from mapping_documents import emitted, project_in
 from mappings import mapping_text
 from scripted_models import text_project
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised
@@ -100,7 +101,7 @@ def test_they_begin_as_the_constants_that_types_and_variables_have_by_default() 
 
 def test_a_field_that_a_low_level_type_has_not_is_a_warning_where_it_is_set() -> None:
     files = GARDEN | {"garden.lf": GARDEN["garden.lf"].replace("___gate.x", "___gate.z")}
-    loaded = load_files({name: text.encode() for name, text in files.items()})
+    loaded = load_files(encoded(files))
     found = [f for f in loaded.diagnostics if "`z`" in f.message]
     assert [(f.code, f.severity, f.span.line, f.span.column) for f in found] == [
         ("AOS110", Severity.WARNING, 11, 9)

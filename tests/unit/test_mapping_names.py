@@ -1,6 +1,7 @@
 """The names in the Python of mappings: what nothing gives is told, what Python allows is not."""
 
 import pytest
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
@@ -76,7 +77,7 @@ def finding_texts(**texts: str) -> list[str]:
         "sell.sd": SKILL,
         "sell.am": MAPPING.format(**{**RIGHT, **texts}),
     }
-    found = load_files({name: text.encode() for name, text in files.items()}).diagnostics
+    found = load_files(encoded(files)).diagnostics
     return [
         f"{finding.span}: {finding.severity}: {finding.message}. {finding.hint}"
         for finding in found
@@ -159,7 +160,7 @@ def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning() -> No
         "path: /sell\nparameter: what\ncode:\nPoint(x=goal_x)\n"
     )
     files = {"shop.ef": ENVIRONMENT, "shop.lf": LOW_LEVEL, "sell.sd": SKILL, "sell.am": mapping}
-    loaded = load_files({name: text.encode() for name, text in files.items()})
+    loaded = load_files(encoded(files))
     (error,) = (finding for finding in loaded.diagnostics if finding.severity is Severity.ERROR)
     assert "goal_x" not in error.message
     warned = [finding.message for finding in loaded.diagnostics if finding.severity is Severity.WARNING]

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from texts import encoded, write_texts
 
 from aos_editor.symbols import read_bundle
 from aos_language.convert import Dialect, convert, without_origins
@@ -93,8 +94,7 @@ def test_a_skill_that_says_nothing_of_being_stopped_is_told_where_a_monitor_may_
 
 
 def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path) -> None:
-    for name, text in BATTERY.items():
-        (tmp_path / name).write_text(text)
+    write_texts(BATTERY, tmp_path)
     places: dict[str, list[str]] = {}
     for occurrence in read_bundle(tmp_path, {}).occurrences:
         symbol = occurrence.symbol
@@ -107,7 +107,7 @@ def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path) -> None:
 
 
 def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused() -> None:
-    files = {name: text.encode() for name, text in BATTERY.items()}
+    files = encoded(BATTERY)
     files["again.am"] = files["battery.am"]
     told = [f"{finding.code} {finding.span}" for finding in load_files(files).diagnostics]
     assert told == ["AOS111 battery.am:2:10"]
@@ -118,8 +118,8 @@ def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused() -
 def test_both_dialects_say_the_same() -> None:
     files = read_bundle_files(Path(__file__).parents[1] / "data" / "bundles" / "battery")[0]
     original = without_origins(project_of(files))
-    json = {name: text.encode() for name, text in convert(files, Dialect.JSON)[0].items()}
-    sdl = {name: text.encode() for name, text in convert(json, Dialect.SDL)[0].items()}
+    json = encoded(convert(files, Dialect.JSON)[0])
+    sdl = encoded(convert(json, Dialect.SDL)[0])
     assert without_origins(project_of(json)) == original == without_origins(project_of(sdl))
 
 
@@ -144,6 +144,6 @@ def project_of(files: dict[str, bytes]) -> Project:
 
 
 def emitted(files: dict[str, str]) -> str:
-    program, diagnostics = lower(project_of({name: text.encode() for name, text in files.items()}))
+    program, diagnostics = lower(project_of(encoded(files)))
     assert program is not None, diagnostics
     return emit(program).digest

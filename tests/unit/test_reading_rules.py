@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import pytest
 from marked_change import changed
+from texts import encoded
 
 from aos_language.load import LoadedBundle, load_bundle, load_files
 from aos_protocol.diagnostics import Severity, Span
@@ -179,7 +180,7 @@ REFUSED = [
 def bundle_of(rule: Rule) -> tuple[dict[str, bytes], Span]:
     """The changed bundle and the place of the mark."""
     files = JSON if rule.file in JSON else SDL
-    return changed({name: text.encode() for name, text in files.items()}, rule.file, rule.change)
+    return changed(encoded(files), rule.file, rule.change)
 
 
 def named(rule: Rule) -> str:
@@ -192,7 +193,7 @@ def found_by(loaded: LoadedBundle) -> list[str]:
 
 @pytest.mark.parametrize("files", [JSON, SDL], ids=["json", "sdl"])
 def test_the_bundles_of_the_rules_have_no_findings(files: Mapping[str, str]) -> None:
-    assert found_by(load_files({name: text.encode() for name, text in files.items()})) == []
+    assert found_by(load_files(encoded(files))) == []
 
 
 @pytest.mark.parametrize("rule", ACCEPTED, ids=named)
@@ -291,7 +292,7 @@ def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path: Path) ->
 
 @pytest.mark.parametrize("case", WHOLE_FILES, ids=lambda case: case.title)
 def test_whole_files_follow_the_rules(case: Whole) -> None:
-    before = {name: text.encode() for name, text in case.files.items()}
+    before = encoded(case.files)
     after = {name: data for name, data in {**before, **case.change(before)}.items() if data is not None}
     loaded = load_files(after)
     findings = {(finding.severity.value, finding.code) for finding in loaded.diagnostics}

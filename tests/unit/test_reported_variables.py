@@ -1,6 +1,7 @@
 """The words of documents on what a real run tells: local variables in model code, low-level assignments."""
 
 import pytest
+from texts import encoded
 
 from aos_language.load import LoadedBundle, load_files
 from aos_language.local_types import LocalType, local_type
@@ -59,7 +60,7 @@ def bundle(response: str = "reached", type_line: str = "type: bool", assignment:
         "drive.sd": SKILL.format(told=response),
         "drive.am": MAPPING.format(assignment=assignment, type=type_line),
     }
-    return load_files({name: text.encode() for name, text in files.items()})
+    return load_files(encoded(files))
 
 
 def findings(response: str = "reached", type_line: str = "type: bool", assignment: str = "") -> list[str]:

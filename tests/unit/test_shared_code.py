@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from scripted_models import ScriptedModel, scripted, text_project
+from texts import encoded
 
 from aos_editor.symbols import read_bundle
 from aos_language.convert import Dialect, convert, without_origins
@@ -75,7 +76,7 @@ def files(*changes: str) -> dict[str, bytes]:
         old, _, new = change.partition(" -> ")
         assert any(old in text for text in texts.values())
         texts = {name: text.replace(old, new, 1) for name, text in texts.items()}
-    return {name: text.encode() for name, text in texts.items()}
+    return encoded(texts)
 
 
 def found(*changes: str) -> list[Diagnostic]:
@@ -123,13 +124,13 @@ def test_all_dialects_say_the_same(tmp_path: Path) -> None:
     texts, findings = convert(files(), Dialect.JSON)
     assert findings == ()
     assert json.loads(texts["environment.ef.json"])["SharedCode"] == SHARED.split("\n")
-    as_json = {name: text.encode() for name, text in texts.items()}
+    as_json = encoded(texts)
     back, _ = convert(as_json, Dialect.SDL)
     papers = {
         name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
         for name, data in as_json.items()
     }
-    for other in (as_json, papers, {name: text.encode() for name, text in back.items()}):
+    for other in (as_json, papers, encoded(back)):
         read = load_files(other).project
         assert read is not None
         assert without_origins(read) == without_origins(project)

@@ -4,6 +4,7 @@ import json
 
 import pytest
 from mapping_runs import loaded, observed
+from texts import encoded
 
 from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
@@ -99,9 +100,9 @@ def test_all_dialects_say_the_same() -> None:
     texts, findings = convert(files(), Dialect.JSON)
     assert [finding for finding in findings if finding.is_error] == []
     assert json.loads(texts["environment.ef.json"])["SharedMappingCode"] == SHARED.split("\n")
-    as_json = {name: text.encode() for name, text in texts.items()}
+    as_json = encoded(texts)
     back, _ = convert(as_json, Dialect.SDL)
-    for other in (as_json, {name: text.encode() for name, text in back.items()}):
+    for other in (as_json, encoded(back)):
         read = load_files(other).project
         assert read is not None
         assert without_origins(read) == without_origins(project)
