@@ -25,14 +25,19 @@ M = TypeVar("M", bound=Message)
 _encoder = msgspec.msgpack.Encoder()
 
 
+class TooLargeError(BusError):
+    """A message that was not sent, since it is larger than MAX_BYTES."""
+
+    code = "AOS602"
+
+
 def encode(message: Message, *, sender: str, stamp_ns: int) -> bytes:
-    """The payload for the bus; BusError AOS602 if it is larger than MAX_BYTES."""
+    """The payload for the bus; TooLargeError if it is larger than MAX_BYTES."""
     body = msgspec.Raw(_encoder.encode(message))
     payload = _encoder.encode(Envelope(PROTOCOL_VERSION, stamp_ns, sender, body))
     if len(payload) > MAX_BYTES:
-        raise BusError(
+        raise TooLargeError(
             f"a {type(message).__name__} of {len(payload)} bytes is too large for the bus",
-            code="AOS602",
             hint=f"The limit is {MAX_BYTES} bytes",
         )
     return payload

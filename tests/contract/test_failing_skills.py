@@ -8,6 +8,7 @@ import pytest
 from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang
 
+from aos_protocol.codec import MAX_BYTES
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Cancelled, Outcome, SkillCall, SkillResult, Stray
 from aos_runtime.journal import Journal
@@ -140,6 +141,15 @@ async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: Sys
     outcome = await system.activate("sense", 1)
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS602")
+
+
+async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_doubt(system: System) -> None:
+    large = f"module_activation: skill\npath: /sense\nparameter: map\ncode:\n'x' * {MAX_BYTES}\n"
+    await with_mapping(system, "project: armadillo\nresponse: done\nresponse_rule: True\n" + large)
+    await system.adapter.serve("/sense", answering({}))
+    assert_refused(await system.activate("sense", 1), "AOS502", "too large for the bus")
+    await with_mapping(system, SENSE)
+    assert (await system.activate("sense", 2)).status == "observed"
 
 
 def assert_refused(outcome: Outcome, code: str, text: str) -> None:

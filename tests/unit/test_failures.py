@@ -67,6 +67,16 @@ def test_a_skill_is_set_aside_whatever_ran_between() -> None:
     assert mission.set_aside == {"take"}
 
 
+def test_a_refusal_because_another_skill_may_move_counts_for_that_one() -> None:
+    mission = Mission(skills={"look": SkillRule(set_aside_after=2)})
+    mission.take("take", "timed_out")
+    may_move = Fault("AOS512", "/take may still be moving")
+    assert not mission.take("look", "refused", fault=may_move)
+    assert "take is set aside for 300 s after 3 failures" in mission.take("look", "refused", fault=may_move)
+    mission.take("look", "refused", fault=may_move)
+    assert mission.set_aside == {"take"}
+
+
 def test_an_observed_end_ends_the_row() -> None:
     mission = Mission()
     for _ in range(5):

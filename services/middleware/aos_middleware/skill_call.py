@@ -10,6 +10,7 @@ from aos_middleware.motion_gate import GONE_S
 from aos_middleware.served_paths import no_adapter
 from aos_middleware.stopping import Stop
 from aos_middleware.surroundings import Surroundings
+from aos_protocol.codec import TooLargeError
 from aos_protocol.documents import Activation
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.messages import Activate, Cancel, Cancelled, SkillCall, SkillResult, Stray
@@ -83,6 +84,9 @@ class Call:
         except SkillError as error:
             has_ended = error.status != "unknown"
             raise
+        except TooLargeError as error:
+            has_ended = True
+            raise SkillError(error.message, code="AOS502", hint=error.hint) from error
         finally:
             if not has_ended:
                 self._around.gate.doubt(request, path)

@@ -48,6 +48,7 @@ class FailureRules(msgspec.Struct, frozen=True, kw_only=True):
 
 
 _USUAL = SkillRule()
+_ANOTHER_MAY_MOVE = "AOS512"
 
 
 class Failures:
@@ -61,6 +62,7 @@ class Failures:
         self._count = 0
         self._tries = 0
         self._setting_aside = SettingAside()
+        self._may_move = ("", "")
         self.to_retry: DecisionRecord | None = None
         self.to_hold = ""
         self.to_end = ""
@@ -108,6 +110,7 @@ class Failures:
         """
         self.to_retry, self.to_hold, self.to_end = None, "", ""
         skill, rule = decision.skill, self.rule(decision.skill)
+        to_blame, status = self._to_blame(outcome)
         is_observed = outcome.status == "observed"
         said = _said(outcome, is_excluded)
         text = f"{decision.action}: {said}"
@@ -117,7 +120,7 @@ class Failures:
             return ""
         is_told = is_observed and not is_excluded
         weight = SettingAside.weight_of_told(surprise) if is_told else 1.0
-        self._setting_aside.count(skill, weight, announced.get(skill, 0), outcome.status)
+        self._setting_aside.count(to_blame, weight, announced.get(to_blame, 0), status)
         if is_observed:
             self._tries = 0
         if not is_told:
@@ -130,12 +133,27 @@ class Failures:
             # Whoever lets the mission go on has looked after the skill.
             self._setting_aside.end_row(skill)
             return ""
-        after = self._rules.set_aside_after if rule.set_aside_after is None else rule.set_aside_after
-        pause_s = self._rules.set_aside_s if rule.set_aside_s is None else rule.set_aside_s
-        reason = self._setting_aside.set_aside(skill, after, pause_s, now_s, said)
-        if reason:
+        of_blamed = self.rule(to_blame)
+        after = (
+            self._rules.set_aside_after if of_blamed.set_aside_after is None else of_blamed.set_aside_after
+        )
+        pause_s = self._rules.set_aside_s if of_blamed.set_aside_s is None else of_blamed.set_aside_s
+        reason = self._setting_aside.set_aside(to_blame, after, pause_s, now_s, said)
+        if reason and to_blame == skill:
             self.to_retry, self._tries = None, 0
         return reason
+
+    def _to_blame(self, outcome: Outcome) -> tuple[str, str]:
+        """Returns the skill that a failure counts for, and the status that it ended with.
+
+        Where an activation is refused because another skill may still be moving, that is the last one that
+        was called, since nothing is called after it until it stands still.
+        """
+        if outcome.fault is None or outcome.fault.code != _ANOTHER_MAY_MOVE:
+            if outcome.status not in ("refused", "failed"):
+                self._may_move = outcome.skill, outcome.status
+            return outcome.skill, outcome.status
+        return self._may_move if self._may_move[0] else (outcome.skill, outcome.status)
 
     def _follow_rule(self, rule: SkillRule, decision: DecisionRecord, text: str) -> None:
         if self._tries < rule.tries_again:
