@@ -1,16 +1,22 @@
 """The check that what a deploy file starts is on this machine, before anything is started."""
 
+import resource
 from collections.abc import Callable, Iterator
 from functools import partial
 
 from aos_deploy.adapter_kinds import check_installed
 from aos_deploy.adapters import SPANS
 from aos_deploy.deploy_file import Deployment
+from aos_deploy.log_sizes import LOG_BYTES
 from aos_deploy.process_start import check_command
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.remote import check_ssh
 from aos_deploy.spans.otlp import check_otel_installed
+from aos_protocol.errors import DeployError
 from aos_runtime.sandbox.support import require_sandbox, trust_documents
+
+OPEN_FILES = 64
+"""A process of a mission may have to open so many files."""
 
 
 def check_sandbox(deployment: Deployment) -> None:
@@ -24,10 +30,35 @@ def check_sandbox(deployment: Deployment) -> None:
 
 
 def check_needed_here(deployment: Deployment) -> None:
-    """Raises DeployError AOS805 for a package or ssh that is missing, AOS802 for a program that is not
-    there."""
+    """Raises DeployError AOS805 for a package or ssh that is missing, a limit of the shell that is too low or
+    a path that no record can name, AOS802 for a program that is not there."""
+    _check_limit(resource.RLIMIT_NOFILE, "-n", OPEN_FILES, 1, "files that a process opens")
+    _check_limit(resource.RLIMIT_FSIZE, "-f", LOG_BYTES, 1024, "kB in a file")
+    for path in (deployment.path, deployment.runs):
+        if not _is_utf8(str(path)):
+            text = f"{str(path)!r} is no UTF-8, and no record can name it"
+            raise DeployError(text, code="AOS805", hint="Move it, or give the folder another name")
     for _, _, check in needs_of(deployment):
         check()
+
+
+def _check_limit(kind: int, option: str, least: int, unit: int, what: str) -> None:
+    limit, _ = resource.getrlimit(kind)
+    if limit not in range(least):
+        return
+    raise DeployError(
+        f"`ulimit {option}` is {limit // unit}, and a mission needs {least // unit} {what}",
+        code="AOS805",
+        hint="Raise this limit of the shell, the container or the unit",
+    )
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def needs_of(deployment: Deployment) -> Iterator[tuple[str, str, Callable[[], None]]]:

@@ -1,6 +1,7 @@
 """The small commands beside aos-up, as a user types them."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -55,6 +56,31 @@ def test_the_overview_names_every_command() -> None:
 @pytest.mark.parametrize("command", [["aos-up"], ["aos-up", "x.yaml", "--sed", "1"], ["aos", "decide"]])
 def test_wrong_usage_has_its_own_exit_code(command: list[str]) -> None:
     assert run(*command).returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("limit", "folder", "told"),
+    [
+        ("-n 24", b"a", "`ulimit -n` is 24, and a mission needs 64 files that a process opens"),
+        ("-f 100", b"a", "`ulimit -f` is "),
+        ("-c 0", b"r\xf6bot", "r\\udcf6bot/errand.yaml' is no UTF-8"),
+    ],
+)
+def test_what_no_mission_can_run_with_is_told_before_anything_starts(
+    limit: str, folder: bytes, told: str, root: Path, tmp_path: Path
+) -> None:
+    deploy = tmp_path / os.fsdecode(folder) / "errand.yaml"
+    deploy.parent.mkdir()
+    deploy.write_text(
+        (root / "deploy/errand.yaml").read_text().replace("bundles/", f"{root}/deploy/bundles/")
+    )
+    command = f"ulimit {limit} && exec {BIN / 'aos-up'} errand.yaml"
+    done = subprocess.run(
+        ["sh", "-c", command], cwd=deploy.parent, capture_output=True, text=True, timeout=COMMAND_S
+    )
+    assert done.returncode == 3
+    assert told in done.stderr
+    assert not (tmp_path / "runs").exists()
 
 
 def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -121,6 +147,9 @@ def test_short_help_reaches_the_commands_below() -> None:
         ("aos simulate --pl", ["--planner"]),
         ("aos plan --planner p", ["pomcp"]),
         ("aos-up --li", ["--listen"]),
+        ("aos new example clean", ["cleanlab"]),
+        ("aos new adapter py", ["python"]),
+        ("aos experiment run arma", ["armadillo"]),
     ],
 )
 def test_a_shell_completes_commands_options_and_values(

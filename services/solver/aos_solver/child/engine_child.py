@@ -258,6 +258,9 @@ class EngineChild:
             return KilledError(f"the engine was {how}", code="AOS213")
         if status is None:
             return self.fault(kind.code, message, piece)
+        if status == -signal.SIGXFSZ:
+            message = "the engine's memory is larger than a file may be"
+            return ModelError(message, code="AOS213", hint="Raise `ulimit -f`")
         if status == -signal.SIGVTALRM:
             fault = self.fault(OverdueError.code, "this code takes long", piece)
             return OverdueError(fault.message, diagnostics=fault.diagnostics)
