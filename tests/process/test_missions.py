@@ -156,6 +156,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> 
     stays.be_slow(True)
     first = stays.until("mission", phase="acting")["mission"]
     name = stays.run.name
+    assert json.loads(stays.aos("runs", "--json")[1])[0]["ending"] == "running"
     assert first == f"{name}-1"
     code, _, error = stays.aos("mission", "start")
     assert code == 3
@@ -163,6 +164,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> 
 
     assert stays.aos("mission", "stop")[1] == f"{first}: cancelled after 1 step\n"
     assert stays.aos("mission", "stop")[1] == f"no mission runs: {first} has ended, cancelled\n"
+    assert json.loads(stays.aos("runs", "--json")[1])[0]["ending"] == "waiting"
     stays.be_slow(False)
     assert stays.aos("mission", "start", "--wait")[0] == 6
     kept = stays.aos(

@@ -107,6 +107,7 @@ def test_slider_and_keys_move_all_views_and_the_address(
     expect(page).to_have_url(re.compile(rf"/missions/{name}$"))
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/cut%E0%A4")
     expect(page.get_by_role("main")).to_contain_text("there is no mission cut")
+    expect(page.locator(".connection")).to_have_text("No such mission")
 
 
 def late(browser: Browser, served: Gateway, run: Path, view: str = "") -> Page:

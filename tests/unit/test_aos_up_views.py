@@ -279,8 +279,9 @@ def test_the_screen_keeps_to_the_terminal(width: int, height: int) -> None:
 def test_actions_that_differ_in_their_middle_are_told_apart_in_a_narrow_terminal() -> None:
     actions = tuple(ActionValue(f"take(side={side}_side)", 1.0, 10, 0.1) for side in ("left", "right"))
     screen = small_screen()
-    screen.take(msgspec.structs.replace(MANY, actions=actions))
-    assert {"take(l…de)", "take(r…de)"} <= set(shown(screen, 40, 24).split())
+    screen.take(msgspec.structs.replace(MANY, step=13, actions=actions, action=actions[0].action))
+    words = shown(screen, 40, 24).split()
+    assert {"take(l…de)", "take(r…de)", "take(left_side)", "0.993"} <= set(words)
 
 
 def test_the_screen_shows_the_skill_while_it_runs() -> None:

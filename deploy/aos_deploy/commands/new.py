@@ -86,7 +86,7 @@ def skill(
 
 @new_app.command(epilog="Example: aos new adapter python --in fetch")
 def adapter(
-    kind: Annotated[str, typer.Argument(help=f"Of {', '.join(KINDS)}")],
+    kind: Annotated[str, typer.Argument(help=f"Of {', '.join(KINDS)}", autocompletion=lambda: list(KINDS))],
     bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")],
     folder: Annotated[Path, typer.Option("--to", help="Where the files are made")] = Path(),
 ) -> None:
@@ -114,7 +114,10 @@ def adapter(
 
 @new_app.command(epilog="Example: aos new example armadillo")
 def example(
-    name: Annotated[str, typer.Argument(help=f"Of {', '.join(deploy_files())}")],
+    name: Annotated[
+        str,
+        typer.Argument(help=f"Of {', '.join(deploy_files())}", autocompletion=lambda: list(deploy_files())),
+    ],
     folder: Annotated[Path | None, typer.Option("--in", help="A new directory; without it NAME here")] = None,
 ) -> None:
     """Write a system that runs.

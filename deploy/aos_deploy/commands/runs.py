@@ -27,7 +27,8 @@ def register(app: typer.Typer) -> None:
 
 
 class Entry(msgspec.Struct, omit_defaults=True):
-    """A run in the output of `aos runs --json`. `ending` is `running`, or `killed` where there is no other.
+    """A run in the output of `aos runs --json`. `ending` is `running`, `waiting` between two missions, or
+    `killed` where there is no other.
 
     A system that stays has its `missions` with it, each as an entry of its own; its steps are all of theirs.
     """
@@ -106,12 +107,12 @@ def _runs_in(folder: Path) -> list[RunDirectory]:
     return [RunDirectory(record.parent) for record in found if not record.parent.is_symlink()]
 
 
-def _ending_in_journal(folder: Path) -> str:
-    """The ending of a mission that has no summary, for want of space or because its aos-up was killed."""
+def _ending_in_journal(folder: Path, otherwise: str = "killed") -> str:
+    """The ending of a mission that has no summary, or not yet: for want of space, or of its aos-up."""
     try:
-        return account_of(folder).verdict().ending or "killed"
+        return account_of(folder).verdict().ending or otherwise
     except StorageError:
-        return "killed"
+        return otherwise
 
 
 def _entry(run: RunDirectory) -> Entry:
@@ -120,7 +121,8 @@ def _entry(run: RunDirectory) -> Entry:
     except DeployError:
         return Entry(str(from_here(run.path)), "", "", "unreadable", None, None, "")
     summary = run.read_summary()
-    ending = summary.ending if summary else "running" if run.is_running else _ending_in_journal(run.path)
+    missions = tuple(_mission(run, number, record) for number in mission_folders(run.path))
+    ending = summary.ending if summary else _ending_without_summary(run, missions)
     return Entry(
         directory=str(from_here(run.path)),
         robot=record.robot,
@@ -129,15 +131,22 @@ def _entry(run: RunDirectory) -> Entry:
         steps=summary.steps if summary else None,
         duration_s=summary.duration_s if summary else None,
         endpoint=record.endpoint,
-        missions=tuple(_mission(run, number, record) for number in mission_folders(run.path)),
+        missions=missions,
         mission_parameters=_mission_parameters(run.path),
     )
+
+
+def _ending_without_summary(run: RunDirectory, missions: tuple[Entry, ...]) -> str:
+    if not run.is_running:
+        return _ending_in_journal(run.path)
+    return "waiting" if missions and missions[-1].ending != "running" else "running"
 
 
 def _mission(run: RunDirectory, number: int, record: RunRecord) -> Entry:
     """A mission of a system that stays."""
     folder, summary = mission_folder(run.path, number), run.read_summary(number)
-    ending = summary.ending if summary else "running" if run.is_running else _ending_in_journal(folder)
+    otherwise = "running" if run.is_running else "killed"
+    ending = summary.ending if summary else _ending_in_journal(folder, otherwise)
     return Entry(
         directory=str(from_here(folder)),
         robot=record.robot,

@@ -15,7 +15,11 @@ _SHOWN_VALUES = 4
 _WIDE = 100
 _BOUNDS_CELLS = 24
 _STEP_COLUMNS_CELLS = 36
-"""The width of the step table without its action and its observation."""
+"""The width of the step table without its action and its observation, which have _ROOM_CELLS at least."""
+_ROOM_CELLS = 20
+_WIDE_ROOM_CELLS = 3 * len("observation")
+_LEFT_OUT_CELLS = {"surprise": 10, "value": 9}
+"""Columns of the step table that a narrow terminal goes without, in this order."""
 _PARAMETER_NAME = re.compile(r"(?<=[(,])( ?)\w+=")
 
 
@@ -28,23 +32,33 @@ def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
     """A row for each step: what was chosen and what came of it."""
     records = tuple(records)
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    for column in ("step", "action", "value", "observation", "surprise", "goal"):
+    columns, room = (
+        ["step", "action", "value", "observation", "surprise", "goal"],
+        width - _STEP_COLUMNS_CELLS,
+    )
+    for column, freed in _LEFT_OUT_CELLS.items():
+        if room < _ROOM_CELLS:
+            columns.remove(column)
+            room += freed
+    for column in columns:
         is_number = column in ("step", "value", "surprise", "goal")
-        table.add_column(column, justify="right" if is_number else "left", no_wrap=True)
-    room = max(width - _STEP_COLUMNS_CELLS, 20)
+        header = "seen" if column == "observation" and room < _WIDE_ROOM_CELLS else column
+        table.add_column(header, justify="right" if is_number else "left", no_wrap=True)
+    room = max(room, _ROOM_CELLS)
     actions = _fitting([record.action for record in records], room * 2 // 3)
     for record, action in zip(records, actions, strict=True):
         chosen = next((value for value in record.actions if value.action == record.action), None)
         observation = _observation(record)
         observation.truncate(max(room - max(map(len, actions)), room // 3), overflow="ellipsis")
-        table.add_row(
-            str(record.step),
-            action,
-            "" if chosen is None else value_text(chosen.q, 2),
-            observation,
-            "" if record.outcome is None else f"{record.surprise:.2f}",
-            f"{record.belief.goal_probability:.3f}",
-        )
+        cells: dict[str, str | Text] = {
+            "step": str(record.step),
+            "action": action,
+            "value": "" if chosen is None else value_text(chosen.q, 2),
+            "observation": observation,
+            "surprise": "" if record.outcome is None else f"{record.surprise:.2f}",
+            "goal": f"{record.belief.goal_probability:.3f}",
+        }
+        table.add_row(*(cells[column] for column in columns))
     return table
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
 import typer
@@ -40,8 +40,15 @@ def register(app: typer.Typer) -> None:
     app.add_typer(group, name="experiment")
 
 
+_NAME: Any = typer.Argument(
+    metavar="NAME",
+    help="A file in deploy/experiments, or any file",
+    autocompletion=lambda: list(_experiments()),
+)
+
+
 def run(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="A file in deploy/experiments, or any file")],
+    name: Annotated[str, _NAME],
     seeds: Annotated[int, typer.Option(min=0, help="Missions that the model plays, of each part")] = 100,
     system_seeds: Annotated[
         int, typer.Option(min=0, help="Missions of the whole system with its adapters, of each part")
@@ -204,12 +211,17 @@ def _check_installed() -> None:
         )
 
 
+def _experiments(where: str = "deploy/experiments") -> dict[str, Path]:
+    """The shipped experiments by name."""
+    return {path.stem: path for path in sorted(shipped(where).glob("*.yaml"))}
+
+
 def _experiment_file(name: str, where: str = "deploy/experiments") -> Path:
     """The file of that name, or the shipped experiment."""
     given = Path(name)
     if given.suffix in (".yaml", ".yml"):
         return given.resolve()
-    known = {path.stem: path for path in sorted(shipped(where).glob("*.yaml"))}
+    known = _experiments(where)
     if name not in known:
         raise typer.BadParameter(
             f"{name} is none of {', '.join(known)}, and no .yaml file", param_hint="NAME"

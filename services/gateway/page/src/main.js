@@ -10,7 +10,7 @@ const THEME = "aos-theme";
 const apply = (theme) => (theme ? (document.documentElement.dataset.theme = theme) : delete document.documentElement.dataset.theme);
 apply(localStorage.getItem(THEME));
 
-const CONNECTIONS = { live: "Live", lost: "Connection lost, trying again", connecting: "Connecting", over: "Recorded" };
+const CONNECTIONS = { live: "Live", lost: "Connection lost, trying again", connecting: "Connecting", over: "Recorded", missing: "No such mission" };
 
 function Page() {
   const { kind, name } = route.value;

@@ -16,7 +16,7 @@ export const recordsChanged = signal(0);
 export const services = signal(new Map());
 export const progress = signal(null);
 export const reports = signal([]);
-export const connection = signal("connecting"); // live, lost, over
+export const connection = signal("connecting"); // live, lost, missing, over
 export const pictures = signal([]);
 export const draws = signal(false); // the documents have a picture.py
 export const successor = signal(null);
@@ -103,7 +103,8 @@ export async function open(name, { again = false } = {}) {
   const begun = performance.now();
   const path = `/v1/missions/${encodeURIComponent(name)}`;
   if (!again) forget();
-  connection.value = again ? "lost" : "connecting";
+  if (!again) connection.value = "connecting";
+  else if (connection.value !== "missing") connection.value = "lost";
   try {
     const [view, trace] = await Promise.all([read(path), read(`${path}/trace`)]);
     if (route.value.name !== name) return;
@@ -123,6 +124,7 @@ export async function open(name, { again = false } = {}) {
     loadPictures(name);
   } catch (error) {
     problem.value = error;
+    connection.value = error.status === 404 ? "missing" : "lost";
     // A system that has just been started may not answer yet.
     setTimeout(() => route.value.name === name && open(name, { again: true }), 1500);
   }
