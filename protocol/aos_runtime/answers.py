@@ -13,6 +13,7 @@ from zenoh.handlers import Callback
 from aos_protocol.codec import decode, encode, encode_fault
 from aos_protocol.errors import AosError, BusError, LostAnswerError
 from aos_protocol.messages import Message
+from aos_runtime.background import Background
 from aos_runtime.clock import Clock
 from aos_runtime.question import RECEIPT
 
@@ -33,7 +34,7 @@ class Answers:
         self._clock = clock
         self._loop = asyncio.get_running_loop()
         self._queryables: list[zenoh.Queryable[None]] = []
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._answering = Background()
         self._is_closed = False
 
     def begin(self, key: str, request: type[M], handler: Handler[M]) -> None:
@@ -49,17 +50,13 @@ class Answers:
         self._is_closed = True
         for queryable in self._queryables:
             queryable.undeclare()
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._answering.cancel()
 
     def _start(self, query: zenoh.Query, request: type[M], handler: Handler[M]) -> None:
         if self._is_closed:
             query.drop()
             return
-        task = self._loop.create_task(self._answer(query, request, handler))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        self._answering.begin(self._answer(query, request, handler))
 
     async def _answer(self, query: zenoh.Query, request: type[M], handler: Handler[M]) -> None:
         # The asker waits out its whole deadline while a query is referenced, replied or not.

@@ -18,6 +18,7 @@ import zenoh.ext
 from zenoh.handlers import Callback
 
 from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError
+from aos_runtime.background import Background
 from aos_runtime.bus_config import client_config, opened_session
 from aos_runtime.closing import Closing
 
@@ -44,7 +45,7 @@ class ForeignBus(Closing):
         self.id = str(session.info.zid())
         self._session = session
         self._loop = asyncio.get_running_loop()
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._answering = Background()
         self._declared: dict[int, Undo] = {}
         self._numbers = 0
         self._is_closed = False
@@ -68,9 +69,7 @@ class ForeignBus(Closing):
         # A session with a subscriber that keeps history does not close before that is undeclared.
         for undo in list(self._declared.values()):
             undo()
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._answering.cancel()
         await asyncio.to_thread(self._session.close)
 
     async def ask(self, key: str, packet: Packet, *, timeout_s: float) -> Packet:
@@ -187,9 +186,7 @@ class ForeignBus(Closing):
         if self._is_closed:
             query.drop()
             return
-        task = self._loop.create_task(self._answer_one(query, handler))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        self._answering.begin(self._answer_one(query, handler))
 
     async def _answer_one(self, query: zenoh.Query, handler: Callable[[Packet], Awaitable[Packet]]) -> None:
         with query:

@@ -6,6 +6,7 @@ import logging
 import secrets
 from collections.abc import Awaitable, Callable
 
+from aos_runtime.background import Background
 from aos_skills.dds.cyclone import HEADER, Endpoint, Participant, Writer
 from aos_skills.ros.faults import check_type, not_answered, not_served
 from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
@@ -33,12 +34,10 @@ class DdsNode(Ros2Node):
         self._has_changed = asyncio.Event()
         self._clients: dict[str, _Client] = {}
         self._matched: dict[str, Callable[[], int]] = {}
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._answering = Background()
 
     async def close(self) -> None:
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._answering.cancel()
         self._clients.clear()
         self._participant.close()
 
@@ -102,9 +101,7 @@ class DdsNode(Ros2Node):
                 replies.send(_joined(head, encoded))
 
         def on_request(payload: bytes) -> None:
-            task = asyncio.get_running_loop().create_task(answer(payload))
-            self._tasks.add(task)
-            task.add_done_callback(self._tasks.discard)
+            self._answering.begin(answer(payload))
 
         replies = self._participant.writer(
             f"rr{service}Reply", f"{type_name}_Response", DEFAULT_QOS, has_header=True

@@ -4,6 +4,7 @@ import asyncio
 import time
 
 from aos_protocol.errors import AosError
+from aos_runtime.background import Background
 from aos_skills.ros.node import Fields, Qos, RosNode, RunGoal
 
 _ACCEPTED, _EXECUTING, _CANCELING, _SUCCEEDED, _CANCELED, _ABORTED = range(1, 7)
@@ -36,7 +37,7 @@ class ActionServer:
     def __init__(self, node: RosNode, action: str, type_name: str, run: RunGoal) -> None:
         self._run = run
         self._goals: dict[bytes, Goal] = {}
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._running = Background()
         self._feedback = node.publisher(f"{action}/_action/feedback", f"{type_name}_FeedbackMessage")
         self._status = node.publisher(
             f"{action}/_action/status",
@@ -52,9 +53,7 @@ class ActionServer:
         if bytes(goal.id) in self._goals:
             return {"accepted": False}
         self._goals[bytes(goal.id)] = goal
-        task = asyncio.get_running_loop().create_task(self._execute(goal, request["goal"]))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        self._running.begin(self._execute(goal, request["goal"]))
         return {"accepted": True, "stamp": _stamp(goal.accepted_ns)}
 
     async def _execute(self, goal: Goal, fields: Fields) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError
+from aos_runtime.background import Background
 from aos_skills.ros.definitions import definitions_in
 from aos_skills.ros.faults import (
     CANCEL_S,
@@ -52,7 +53,7 @@ class Ros1Node(RosNode):
         self._handlers: dict[str, Callable[[Fields], Awaitable[Fields]]] = {}
         self._goals: dict[str, RunGoal] = {}
         self._stops: dict[int, asyncio.Event] = {}
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._answering = Background()
 
     @classmethod
     async def open(
@@ -72,9 +73,7 @@ class Ros1Node(RosNode):
         return node
 
     async def close(self) -> None:
-        for task in self._tasks:
-            task.cancel()
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._answering.cancel()
         await self._process.close()
 
     # --- topics --------------------------------------------------------------------------------------
@@ -176,9 +175,7 @@ class Ros1Node(RosNode):
         elif event == "stop" and line["of"] in self._stops:
             self._stops[line["of"]].set()
         elif event in ("request", "goal"):
-            task = asyncio.get_running_loop().create_task(self._answer(event, line))
-            self._tasks.add(task)
-            task.add_done_callback(self._tasks.discard)
+            self._answering.begin(self._answer(event, line))
 
     async def _answer(self, event: str, line: dict[str, Any]) -> None:
         number, name = line["of"], line["name"]

@@ -6,8 +6,10 @@ Within a mission a thorough build would win less than is lost with the search tr
 import asyncio
 import logging
 from pathlib import Path
+from typing import Any
 
 from aos_protocol.errors import AosError
+from aos_runtime.background import Background
 from aos_solver.building.build import build
 from aos_solver.emission.emit import EmittedModel
 
@@ -20,17 +22,20 @@ _UNHURRIED_DEADLINE_S = 1800.0
 
 
 class ThoroughBuilds:
-    """Builds beside everything else; `tasks` are the builds that have not ended."""
+    """Builds beside everything else."""
 
     def __init__(self, cache_dir: Path) -> None:
         self._cache_dir = cache_dir
-        self.tasks: set[asyncio.Task[None]] = set()
+        self._builds = Background()
+
+    @property
+    def tasks(self) -> set[asyncio.Task[Any]]:
+        """The builds that have not ended."""
+        return self._builds.tasks
 
     def begin(self, emitted: EmittedModel) -> None:
         """Begins a build."""
-        build_task = asyncio.create_task(self._build(emitted))
-        self.tasks.add(build_task)
-        build_task.add_done_callback(self.tasks.discard)
+        self._builds.begin(self._build(emitted))
 
     def end(self) -> None:
         """Has them end. Nobody waits for that before the end: what is served last ends late, too."""

@@ -19,6 +19,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import AosError
 from aos_protocol.messages import ProjectRevision
+from aos_runtime.background import Background
 from aos_runtime.clock import Clock, SystemClock
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
@@ -71,7 +72,7 @@ class ModelShelf:
         self._newest_revision = 0
         self._building = asyncio.Lock()
         self._thorough = ThoroughBuilds(cache_dir)
-        self._ending: set[asyncio.Task[None]] = set()
+        self._ending = Background()
         self._is_closed = False
         self.on_ready: Callable[[], None] = lambda: None
         """The function that hears of a model that may take over."""
@@ -143,9 +144,7 @@ class ModelShelf:
 
     def _end(self, ended: Successor | Engine) -> None:
         """Closes what nobody asks any more, beside the mission."""
-        task = asyncio.create_task(ended.close())
-        self._ending.add(task)
-        task.add_done_callback(self._ending.discard)
+        self._ending.begin(ended.close())
 
     async def first(self) -> RunningModel:
         """The first model that runs; raises what kept it from running."""
@@ -285,5 +284,5 @@ class ModelShelf:
 
     async def settled(self) -> None:
         """Returns once all engines have ended that nobody asks any more."""
-        while ending := self._ending | (self._thorough.tasks if self._is_closed else set()):
+        while ending := self._ending.tasks | (self._thorough.tasks if self._is_closed else set()):
             await asyncio.wait(ending)

@@ -5,6 +5,8 @@ Live and offline are the same code: only where journal and documents come from d
 
 import asyncio
 import math
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Protocol
 
@@ -72,46 +74,40 @@ class Study:
     async def why(self, query: WhyQuery) -> Why:
         """Explains a decision; StudyError AOS530 where that cannot be, SkillError AOS501 for an unknown
         step or action."""
-        async with self._asking:
-            replay, decision = await self._at(query.mission, query.step)
-            try:
-                return await Reasons(replay, decision, self._traced, self._flips_s).why(query.instead)
-            except SkillError:
-                raise  # The engine is where it was.
-            except BaseException:
-                await self._drop()
-                raise
+        async with self._asked(query) as (replay, decision):
+            return await Reasons(replay, decision, self._traced, self._flips_s).why(query.instead)
 
     async def what_if(self, query: WhatIfQuery) -> WhatIf:
         """The decision under other circumstances; errors as from `why`."""
-        async with self._asking:
-            replay, decision = await self._at(query.mission, query.step)
-            try:
-                others = OtherDocuments(self._source.files, self._cache_dir, self._niceness)
-                return await decided_otherwise(replay, decision, query, others)
-            except SkillError:
-                raise  # The engine is where it was.
-            except BaseException:
-                await self._drop()
-                raise
+        async with self._asked(query) as (replay, decision):
+            others = OtherDocuments(self._source.files, self._cache_dir, self._niceness)
+            return await decided_otherwise(replay, decision, query, others)
 
     async def tree(self, query: TreeQuery) -> DecisionTree:
         """The tree below a decision; errors as from `why`."""
-        async with self._asking:
-            replay, decision = await self._at(query.mission, query.step)
-            try:
-                return await tree_below(replay, decision, query)
-            except SkillError:
-                raise  # The engine is where it was.
-            except BaseException:
-                await self._drop()
-                raise
+        async with self._asked(query) as (replay, decision):
+            return await tree_below(replay, decision, query)
 
     async def close(self) -> None:
         """Ends the engines; whatever is asked afterwards starts others."""
         async with self._asking:
             await self._drop()
             await self._traced.close()
+
+    @asynccontextmanager
+    async def _asked(
+        self, query: WhyQuery | WhatIfQuery | TreeQuery
+    ) -> AsyncIterator[tuple[ReplayedMission, DecisionRecord]]:
+        """A replay at the decision of a question, which has it alone while it is answered."""
+        async with self._asking:
+            at_decision = await self._at(query.mission, query.step)
+            try:
+                yield at_decision
+            except SkillError:
+                raise  # The engine is where it was.
+            except BaseException:
+                await self._drop()
+                raise
 
     async def _at(self, mission: str, step: int) -> tuple[ReplayedMission, DecisionRecord]:
         """A replay at the belief of a step's decision, from where the last question has left it if it can."""
