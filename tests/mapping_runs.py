@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from typing import Any
 
+from mapping_documents import emitted
+
 from aos_middleware.emit import EmittedMapping
 from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
 from aos_middleware.worker import LoadedMapping
@@ -14,6 +16,16 @@ path: /look
 """
 
 Messages = Iterable[tuple[str, dict[str, Any]]]
+
+
+def emitted_with(text: str) -> EmittedMapping:
+    """The generated module of a mapping that says this, too."""
+    return emitted(HEAD + text)
+
+
+def running(text: str) -> LoadedMapping:
+    """That module, ready for activations."""
+    return loaded(emitted_with(text))
 
 
 def loaded(mapping: EmittedMapping, allowed_imports: tuple[str, ...] | None = None) -> LoadedMapping:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mapping_documents import emitted, mapping_of, project_in, skill_of
-from mapping_runs import HEAD
+from mapping_runs import HEAD, emitted_with
 from msgspec.structs import replace
 
 from aos_language.findings import Findings
@@ -50,9 +50,7 @@ def function(python: str, name: str) -> str:
 
 
 def test_a_function_names_only_the_local_variables_that_it_reads() -> None:
-    python = emitted(
-        HEAD
-        + """\
+    python = emitted_with("""\
 parameter: limit
 code:
 bound * 2
@@ -65,17 +63,14 @@ topic: /level
 message_type: Level
 code:
 return __input.level
-"""
-    ).python
+""").python
     assert "def request(bound):" in python
     assert "def level_from_topic(__input):" in python
     assert "def observe(level):" in python
 
 
 def test_falling_off_the_end_of_a_topics_code_keeps_the_value() -> None:
-    python = emitted(
-        HEAD
-        + """\
+    python = emitted_with("""\
 local_variable: has_arrived
 topic: /log
 message_type: Log
@@ -83,8 +78,7 @@ initial_value: False
 code:
 if __input.text == 'arrived':
     return True
-"""
-    ).python
+""").python
     assert function(python, "has_arrived_from_topic").splitlines()[2:] == [
         "    if __input.text == 'arrived':",
         "        return True",
@@ -93,9 +87,7 @@ if __input.text == 'arrived':
 
 
 def test_code_that_always_returns_gets_no_second_return() -> None:
-    python = emitted(
-        HEAD
-        + """\
+    python = emitted_with("""\
 local_variable: side
 topic: /log
 message_type: Log
@@ -104,15 +96,12 @@ if __input.x > 0:
     return 'left'
 else:
     return 'right'
-"""
-    ).python
+""").python
     assert function(python, "side_from_topic").endswith("return 'right'")
 
 
 def test_rules_become_one_condition_each_up_to_the_one_that_is_always_true() -> None:
-    python = emitted(
-        HEAD
-        + """\
+    python = emitted_with("""\
 response: a
 response_rule: one or two
 response: b
@@ -125,8 +114,7 @@ local_variable: one
 action_parameter: one
 local_variable: two
 action_parameter: two
-"""
-    ).python
+""").python
     assert function(python, "observe").splitlines()[2:] == [
         "    if one or two:",
         '        return "a"',
@@ -141,23 +129,18 @@ def test_a_mapping_without_rules_has_the_default_observation() -> None:
 
 
 def test_a_response_variable_is_answered_as_text_whatever_the_rules_say() -> None:
-    python = emitted(
-        HEAD
-        + """\
+    python = emitted_with("""\
 local_variable: board
 from_ros_service_response: true
 code:
 board = __input.state
 response_local_variable: board
-"""
-    ).python
+""").python
     assert "return None if board is None else str(board)" in python
 
 
 def test_indentation_inside_a_text_is_left_alone() -> None:
-    python = emitted(
-        HEAD
-        + """\
+    python = emitted_with("""\
 local_variable: word
 topic: /log
 message_type: Log
@@ -166,8 +149,7 @@ code:
   two'''
 \tif __input.text in known:
 \t\treturn __input.text
-"""
-    ).python
+""").python
     lines = function(python, "word_from_topic").splitlines()
     assert lines[2:5] == ["    known = '''one", "  two'''", "    if __input.text in known:"]
 
@@ -236,7 +218,7 @@ def test_each_line_of_a_snippet_knows_its_line_and_column_in_a_json_document() -
 
 
 def test_generated_lines_stand_for_the_document_part_that_made_them() -> None:
-    mapping = emitted(HEAD + "local_variable: level\naction_parameter: tank.level\n")
+    mapping = emitted_with("local_variable: level\naction_parameter: tank.level\n")
     line = mapping.python.splitlines().index('        "level": parameters["tank"]["level"],') + 1
     assert str(mapping.locate(line)).startswith("look.am:4")
 

@@ -1,15 +1,12 @@
 """Faults of mapping code: what is said, and at which place of the document."""
 
-from mapping_documents import emitted
-from mapping_runs import HEAD, fields, loaded
+from mapping_runs import emitted_with, fields, loaded, running
 
 from aos_middleware.frames import Begin, Finish, Raised, Take
 
 
 def test_an_exception_is_placed_at_the_innermost_line_of_the_mapping() -> None:
-    emission = emitted(
-        HEAD
-        + """\
+    emission = emitted_with("""\
 local_variable: level
 topic: /level
 message_type: Level
@@ -17,8 +14,7 @@ code:
 def of(value):
     return value.levle
 return of(__input)
-"""
-    )
+""")
     mapping = loaded(emission)
     fields(mapping, {})
     answer = mapping.answer(Take([("/level", {"level": 1})]))
@@ -28,17 +24,14 @@ return of(__input)
 
 
 def test_columns_count_characters_not_bytes() -> None:
-    emission = emitted(HEAD + "parameter: a\ncode:\n'äöü' + nothing\n")
+    emission = emitted_with("parameter: a\ncode:\n'äöü' + nothing\n")
     answer = loaded(emission).answer(Begin({}))
     assert isinstance(answer, Raised)
     assert str(emission.locate(answer.line, answer.column)) == "look.am:6:9"
 
 
 def test_a_rule_over_a_silent_topic_says_which_variable_has_no_value() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response: high
 response_rule: level > 3
 local_variable: level
@@ -46,9 +39,7 @@ topic: /level
 message_type: Level
 code:
 return __input.data
-"""
-        )
-    )
+""")
     fields(mapping, {})
     answer = mapping.answer(Finish({}))
     assert isinstance(answer, Raised)
@@ -57,15 +48,12 @@ return __input.data
 
 
 def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place() -> None:
-    emission = emitted(
-        HEAD
-        + """\
+    emission = emitted_with("""\
 local_variable: success
 from_ros_service_response: true
 code:
 succes = __input.success
-"""
-    )
+""")
     mapping = loaded(emission)
     fields(mapping, {})
     answer = mapping.answer(Finish({"success": True}))
@@ -75,7 +63,7 @@ succes = __input.success
 
 
 def test_leaving_the_program_ends_only_the_evaluation() -> None:
-    mapping = loaded(emitted(HEAD + "parameter: a\ncode:\n__import__('sys').exit(3)\n"))
+    mapping = loaded(emitted_with("parameter: a\ncode:\n__import__('sys').exit(3)\n"))
     for _ in range(2):
         answer = mapping.answer(Begin({}))
         assert isinstance(answer, Raised)

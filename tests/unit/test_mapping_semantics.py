@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from mapping_documents import emitted, project_in
-from mapping_runs import HEAD, fields, loaded, observed
+from mapping_runs import HEAD, fields, loaded, observed, running
 
 from aos_middleware.mappings import emit_project
 from aos_middleware.worker import LoadedMapping
@@ -33,10 +33,7 @@ def test_parameters_reach_the_call_through_dotted_paths(bundles: Path) -> None:
 
 
 def test_the_result_of_the_call_gives_service_variables() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response: done
 response_rule: success
 response: not_done
@@ -45,18 +42,13 @@ local_variable: success
 from_ros_service_response: true
 code:
 success = __input.success
-"""
-        )
-    )
+""")
     assert observed(mapping, {}, [], {"success": True}).response == "done"
     assert observed(mapping, {}, [], {"success": False}).response == "not_done"
 
 
 def test_topic_messages_are_evaluated_in_the_order_in_which_they_came() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response: three
 response_rule: seen == [1, 2, 3]
 local_variable: seen
@@ -65,18 +57,13 @@ message_type: Int
 initial_value: []
 code:
 return seen + [__input.data]
-"""
-        )
-    )
+""")
     messages = [("/n", {"data": number}) for number in (1, 2, 3)]
     assert observed(mapping, {}, messages, {}).response == "three"
 
 
 def test_one_message_updates_its_variables_in_the_documents_order() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 local_variable: first
 topic: /n
 message_type: Int
@@ -87,9 +74,7 @@ topic: /n
 message_type: Int
 code:
 return first * 10
-"""
-        )
-    )
+""")
     assert observed(mapping, {}, [("/n", {"data": 4})], {}).local_variables == {
         "first": "4",
         "second": "40",
@@ -97,10 +82,7 @@ return first * 10
 
 
 def test_the_result_is_evaluated_after_all_topic_messages() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 local_variable: total
 from_ros_service_response: true
 code:
@@ -110,18 +92,13 @@ topic: /n
 message_type: Int
 code:
 return __input.data
-"""
-        )
-    )
+""")
     variables = observed(mapping, {}, [("/n", {"data": 4})], {"offset": 1}).local_variables
     assert variables["total"] == "5"
 
 
 def test_every_service_variable_is_evaluated_and_may_read_those_before_it() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 local_variable: a
 from_ros_service_response: true
 code:
@@ -130,9 +107,7 @@ local_variable: b
 from_ros_service_response: true
 code:
 b = a + 1
-"""
-        )
-    )
+""")
     assert observed(mapping, {}, [], {"x": 1}).local_variables == {"a": "1", "b": "2"}
 
 
@@ -142,10 +117,7 @@ def test_messages_of_topics_that_the_mapping_does_not_name_change_nothing() -> N
 
 
 def test_initial_values_are_evaluated_anew_for_each_activation() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response: one
 response_rule: len(seen) == 1
 local_variable: seen
@@ -154,18 +126,13 @@ message_type: Int
 initial_value: []
 code:
 seen.append(__input.data)
-"""
-        )
-    )
+""")
     for _ in range(2):
         assert observed(mapping, {}, [("/n", {"data": 1})], {}).response == "one"
 
 
 def test_a_topic_that_says_nothing_in_this_activation_keeps_no_value_of_the_last() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response: heard
 response_rule: level is not None
 response: silent
@@ -175,28 +142,21 @@ topic: /level
 message_type: Level
 code:
 return __input.data
-"""
-        )
-    )
+""")
     assert observed(mapping, {}, [("/level", {"data": 1})], {}).response == "heard"
     assert observed(mapping, {}, [], {}).response == "silent"
 
 
 @pytest.mark.parametrize(("code", "value"), [("pass", '"old"'), ("return", "null"), ("return None", "null")])
 def test_a_topic_value_becomes_none_only_by_an_explicit_return(code: str, value: str) -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + f"""\
+    mapping = running(f"""\
 local_variable: text
 topic: /n
 message_type: Int
 initial_value: 'old'
 code:
 {code}
-"""
-        )
-    )
+""")
     assert observed(mapping, {}, [("/n", {})], {}).local_variables == {"text": value}
 
 
@@ -204,10 +164,7 @@ code:
 
 
 def test_the_first_rule_that_holds_wins_also_with_an_or_in_a_later_one() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response: low
 response_rule: level < 3
 response: any
@@ -216,26 +173,19 @@ local_variable: level
 from_ros_service_response: true
 code:
 level = __input.level
-"""
-        )
-    )
+""")
     answers = [observed(mapping, {}, [], {"level": level}).response for level in (1, 3, 6, 4)]
     assert answers == ["low", "any", "any", None]
 
 
 def test_a_response_variable_without_a_value_is_no_response() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
+    mapping = running("""\
 response_local_variable: board
 local_variable: board
 from_ros_service_response: true
 code:
 board = __input.state
-"""
-        )
-    )
+""")
     assert observed(mapping, {}, [], {"state": "XO?"}).response == "XO?"
     assert observed(mapping, {}, [], {"state": None}).response is None
 
