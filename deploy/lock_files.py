@@ -1,9 +1,9 @@
 """Writes lock files: `python deploy/lock_files.py PYLOCK [--without FILE]` prints requirements with hashes.
 
-PYLOCK is what `uv pip compile --format pylock.toml` writes. The requirements have the hashes of sources, and
-of wheels that AOS can run with: those for Linux with glibc on x86-64 and arm64, and CPython from 3.11 on.
-`--without` leaves out what another lock file pins. With the hashes of all wheels the files would be four
-times as large.
+PYLOCK is what `uv pip compile --format pylock.toml` writes. The requirements have the hashes of wheels that
+AOS can run with: those for Linux with glibc on x86-64 and arm64, and CPython from 3.11 on. Sources have
+theirs where no wheel fits every machine. `--without` leaves out what another lock file pins. With all hashes
+the files would be four times as large.
 """
 
 import argparse
@@ -16,6 +16,7 @@ from typing import Any
 from urllib.parse import unquote
 
 _PLATFORM = re.compile(r"any|manylinux.*_(x86_64|aarch64)")
+_PURE = re.compile(r"[.-]py3-none-any\.whl$")
 _ABI = re.compile(r"none|abi3|cp31[1-9]")
 
 
@@ -47,9 +48,11 @@ def requirement(package: dict[str, Any]) -> str:
 
 
 def digests(package: dict[str, Any]) -> Iterator[str]:
-    """The SHA-256 of a package's source, and of each of its wheels that we can run with."""
-    wheels = [wheel for wheel in package.get("wheels", ()) if can_run(wheel["url"])]
-    for file in [*([package["sdist"]] if "sdist" in package else ()), *wheels]:
+    """The SHA-256 of each wheel that we can run with, and of the source where no wheel fits every machine."""
+    files = [wheel for wheel in package.get("wheels", ()) if can_run(wheel["url"])]
+    if "sdist" in package and not any(_PURE.search(file["url"]) for file in files):
+        files.append(package["sdist"])
+    for file in files:
         yield file["hashes"]["sha256"]
 
 

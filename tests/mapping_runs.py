@@ -24,7 +24,7 @@ def emitted_with(text: str) -> EmittedMapping:
 
 
 def running(text: str) -> LoadedMapping:
-    """That module, ready for activations."""
+    """The module of such a mapping, ready for activations."""
     return loaded(emitted_with(text))
 
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -168,12 +169,25 @@ def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path
 def test_locks_have_the_wheels_of_the_machines_and_pythons_that_aos_runs_with(
     root: Path, wheel: str, can_run: bool
 ) -> None:
+    assert lock_files(root).can_run(wheel) is can_run
+
+
+def test_locks_have_sources_only_of_what_may_have_to_be_built(root: Path) -> None:
+    def hashed(*wheels: str) -> list[str]:
+        files = [{"url": f"https://a.b/{name}", "hashes": {"sha256": name}} for name in (*wheels, "x.tar.gz")]
+        return list(lock_files(root).digests({"wheels": files[:-1], "sdist": files[-1]}))
+
+    assert hashed(pure := "x-1-py3-none-any.whl") == [pure]
+    assert hashed(built := "x-1-cp311-cp311-manylinux_2_17_x86_64.whl") == [built, "x.tar.gz"]
+
+
+def lock_files(root: Path) -> Any:
     source = importlib.util.spec_from_file_location("lock_files", root / "deploy" / "lock_files.py")
     assert source is not None
     assert source.loader is not None
     module = importlib.util.module_from_spec(source)
     source.loader.exec_module(module)
-    assert module.can_run(wheel) is can_run
+    return module
 
 
 def pins(lock: Path) -> dict[str, str]:
