@@ -32,10 +32,8 @@ def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
     """A row for each step: what was chosen and what came of it."""
     records = tuple(records)
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    columns, room = (
-        ["step", "action", "value", "observation", "surprise", "goal"],
-        width - _STEP_COLUMNS_CELLS,
-    )
+    columns = ["step", "action", "value", "observation", "surprise", "goal"]
+    room = width - _STEP_COLUMNS_CELLS
     for column, freed in _LEFT_OUT_CELLS.items():
         if room < _ROOM_CELLS:
             columns.remove(column)

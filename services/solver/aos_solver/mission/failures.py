@@ -133,11 +133,9 @@ class Failures:
             # Whoever lets the mission go on has looked after the skill.
             self._setting_aside.end_row(skill)
             return ""
-        of_blamed = self.rule(to_blame)
-        after = (
-            self._rules.set_aside_after if of_blamed.set_aside_after is None else of_blamed.set_aside_after
-        )
-        pause_s = self._rules.set_aside_s if of_blamed.set_aside_s is None else of_blamed.set_aside_s
+        own = self.rule(to_blame)
+        after = self._rules.set_aside_after if own.set_aside_after is None else own.set_aside_after
+        pause_s = self._rules.set_aside_s if own.set_aside_s is None else own.set_aside_s
         reason = self._setting_aside.set_aside(to_blame, after, pause_s, now_s, said)
         if reason and to_blame == skill:
             self.to_retry, self._tries = None, 0
