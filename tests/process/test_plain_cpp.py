@@ -10,16 +10,16 @@ ENVIRONMENT = """project: odd
 horizon: 2
 discount: 0.9
 
-define_type: Colour
+define_type: Chosen
 enum_members: Red, Blue
 
 define_type: Response
 enum_members: Missed, Observed
 
-define_type: Box
+define_type: Parameters
 variable: int weight 2
 
-state_variable: Colour colour
+state_variable: Chosen colour
 code:
 state.colour = Blue;
 
@@ -43,17 +43,17 @@ state_variable: vector<bool> flags
 code:
 state.flags = {true, false, true};
 
-state_variable: Box first
+state_variable: Parameters first
 
-state_variable: Box second
+state_variable: Parameters second
 
-state_variable: Box third
+state_variable: Parameters third
 
 reward_code:
 int sum = 0;
 for (int& value : state.row) sum += value;
-for (auto& box : state.BoxObjects) sum += box->weight;
-Box& box = state.first;
+for (auto& box : state.ParametersObjects) sum += box->weight;
+Parameters& box = state.first;
 int* last = &state.row[2];
 if (sum + box.weight + *last != 16) __reward = -1000;
 """
@@ -67,8 +67,8 @@ CODE = {
     "rows": ("for (auto line : state.grid) { line.push_back(5); __reward += line[2]; }", 10),
     "captured": ("auto next = [&, n = amount]() mutable { return n++; }; next(); __reward = next();", 4),
     "bound": (
-        "auto add = [&row = state__.row](int value) { row.push_back(value); }; add(9);"
-        "__reward = state__.row.back(); state__.row.pop_back();",
+        "std::function<void(vector<int>&)> add = [&](vector<int>& row) { row.push_back(9); };"
+        "add(state__.row); __reward = state__.row.back(); state__.row.pop_back();",
         9,
     ),
     "stream": ('std::stringstream text("4 5"); int a, b; text >> a >> b; __reward = a + b;', 9),
@@ -96,23 +96,25 @@ CODE = {
         8 * 4 + 3 * 3,
     ),
     "taken": (
-        "vector<int> mine{7}; std::swap(mine, state__.other); state__.other.swap(mine);"
+        "vector<int> mine{7}; std::swap(mine, state__.other); mine.swap(state__.other);"
         "std::vector<int>* all = &mine; std::erase(*all, 7);"
         "auto copy = state.row; std::erase_if(copy, [](int n) { return n < 3; });"
         "vector<int>* list = &state__.other; __reward = list->size() * 10 + copy.size() + all->size();",
         21,
     ),
     "method": (
-        "struct Half { static int of(int n) { return n / 2; } }; static int const four = 4;"
-        "__reward = Half::of(7) * four;",
-        12,
+        "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"
+        "__reward = half.n * four;",
+        4,
     ),
     "headers": (
         "std::any value = 3; std::forward_list<int> list{1, 2}; std::vector<int> sums(3);"
+        "std::valarray<int> all{3}; char digit[1]; std::to_chars(digit, digit + 1, 7);"
         "std::inclusive_scan(state.row.begin(), state.row.end(), sums.begin());"
         "auto large = state.row | std::views::filter([](int n) { return n > 1; });"
-        "__reward = std::any_cast<int>(value) + sums[2] + std::ranges::distance(large) + list.front();",
-        12,
+        "__reward = std::any_cast<int>(value) + sums[2] + std::ranges::distance(large) + list.front()"
+        "+ all[0] + digit[0] - '7';",
+        15,
     ),
 }
 """Code, and the reward that a compiler of plain C++ gives it; the amount is 3."""
@@ -143,14 +145,14 @@ DOOR = """project: door
 horizon: 1
 discount: 0.9
 
-define_type: Door
+define_type: Locals
 enum_members: open, closed
 
-state_variable: Door door
+state_variable: Locals door
 code:
 state.door = closed;
 
-state_variable: int pulls [Door]
+state_variable: int pulls [Locals]
 default_value: 0
 
 reward_code:
@@ -166,9 +168,9 @@ dynamic_model:
 if (AOS.Bernoulli(0.5)) state__.door = state.door == closed ? open : closed;
 switch (state__.door) {
     case open: state__.pulls[open] += 2; break;
-    default: __reward = std::count(state.DoorObjects.begin(), state.DoorObjects.end(), closed);
+    default: __reward = std::count(state.LocalsObjects.begin(), state.LocalsObjects.end(), closed);
 }
-auto is_open = [](Door door) { Door wanted = open; return door == wanted && wanted == open; };
+auto is_open = [](Locals door) { Locals wanted = open; return door == wanted && wanted == open; };
 int said = closed;
 if (is_open(state__.door)) said = open;
 __moduleResponse = said;

@@ -58,7 +58,7 @@ def test_a_skill_is_charged_for_itself_alone(bird: ScriptedModel) -> None:
 
 
 def test_the_emitted_text_tells_skills_apart_by_their_names(bird: ScriptedModel) -> None:
-    chosen = bird.emitted.cpp.split("struct Chosen {")[1].split("};")[0]
+    chosen = bird.emitted.cpp.split("struct aos_Chosen {")[1].split("};")[0]
     for skill in ("fly", "rest", "turn", "lean", "never"):
         assert f"if constexpr (std::same_as<Skill, aos_skill_{skill}>) {skill} = &parameters;" in chosen
     assert "sing" not in chosen

@@ -127,7 +127,7 @@ struct aos_skill_navigate : aos::SkillDefaults {
   static constexpr std::array<const char*, 2> response_names{"arrived", "failed"};
   static constexpr double violation_penalty = -10.0;
 
-  struct Parameters {
+  struct aos_Parameters {
     Destination destination;
 
     template <class Self, class Visit>
@@ -142,11 +142,11 @@ struct aos_skill_navigate : aos::SkillDefaults {
              {"easy_table", aos_draft.easy_table},
              {"hard_table", aos_draft.hard_table},
          }) {
-      aos_groundings.add({{"destination", destination.name}}, new Parameters{destination.value});
+      aos_groundings.add({{"destination", destination.name}}, new aos_Parameters{destination.value});
     }
   }
 
-  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
+  static void precondition(const State& state, bool& __meetPrecondition, const aos_Parameters& aos_parameters,
                            auto& AOS) {
     aos::blame::at(19);
 #line 5 "navigate.sd"
@@ -156,7 +156,7 @@ struct aos_skill_navigate : aos::SkillDefaults {
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
-                         const Parameters& aos_parameters, auto& AOS) {
+                         const aos_Parameters& aos_parameters, auto& AOS) {
     const auto& destination = aos_parameters.destination;
     auto& __reward = aos_effect.reward;
     auto& __moduleResponse = aos_effect.response;
@@ -179,7 +179,7 @@ struct aos_skill_observe_arm_outstretched : aos::SkillDefaults {
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
-                         const Parameters& aos_parameters, auto& AOS) {
+                         const aos_Parameters& aos_parameters, auto& AOS) {
     auto& __reward = aos_effect.reward;
     auto& __moduleResponse = aos_effect.response;
     aos::blame::at(21);
@@ -199,7 +199,7 @@ struct aos_skill_observe_holding : aos::SkillDefaults {
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
-                         const Parameters& aos_parameters, auto& AOS) {
+                         const aos_Parameters& aos_parameters, auto& AOS) {
     auto& __reward = aos_effect.reward;
     auto& __moduleResponse = aos_effect.response;
     aos::blame::at(22);
@@ -218,7 +218,7 @@ struct aos_skill_pick : aos::SkillDefaults {
   static constexpr std::array<const char*, 2> response_names{"pick_succeeded", "pick_failed"};
   static constexpr double violation_penalty = -10.0;
 
-  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
+  static void precondition(const State& state, bool& __meetPrecondition, const aos_Parameters& aos_parameters,
                            auto& AOS) {
     aos::blame::at(23);
 #line 4 "pick.sd"
@@ -229,7 +229,7 @@ struct aos_skill_pick : aos::SkillDefaults {
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
-                         const Parameters& aos_parameters, auto& AOS) {
+                         const aos_Parameters& aos_parameters, auto& AOS) {
     auto& __reward = aos_effect.reward;
     auto& __moduleResponse = aos_effect.response;
     aos::blame::at(24);
@@ -266,7 +266,7 @@ struct aos_skill_serve : aos::SkillDefaults {
   static constexpr bool has_certain_rewards = true;
   static constexpr double violation_penalty = -12.0;
 
-  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
+  static void precondition(const State& state, bool& __meetPrecondition, const aos_Parameters& aos_parameters,
                            auto& AOS) {
     aos::blame::at(25);
 #line 4 "serve.sd"
@@ -276,7 +276,7 @@ struct aos_skill_serve : aos::SkillDefaults {
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
-                         const Parameters& aos_parameters, auto& AOS) {
+                         const aos_Parameters& aos_parameters, auto& AOS) {
     auto& __reward = aos_effect.reward;
     auto& __moduleResponse = aos_effect.response;
     aos::blame::at(26);

@@ -16,11 +16,15 @@ _HEADERS = {
         "stable_partition swap_ranges unique_copy"
     ),
     "any": "any any_cast",
-    "bit": "bit_width countl_zero countr_zero has_single_bit popcount",
+    "bit": (
+        "bit_cast bit_ceil bit_floor bit_width countl_zero countr_one countr_zero has_single_bit popcount "
+        "rotl rotr"
+    ),
     "bitset": "bitset",
     "cassert": "assert",
     "cctype": "isalnum isalpha isdigit islower isspace isupper tolower toupper",
     "cfloat": "DBL_EPSILON DBL_MAX DBL_MIN FLT_EPSILON FLT_MAX FLT_MIN",
+    "charconv": "from_chars to_chars",
     "climits": "CHAR_BIT INT_MAX INT_MIN LLONG_MAX LLONG_MIN LONG_MAX LONG_MIN UINT_MAX",
     "complex": "complex",
     "cstdio": "fprintf printf putchar puts snprintf sprintf",
@@ -60,6 +64,7 @@ _HEADERS = {
     "string_view": "string_view",
     "unordered_map": "unordered_map",
     "unordered_set": "unordered_multiset unordered_set",
+    "valarray": "valarray",
     "variant": "holds_alternative monostate variant visit",
 }
 _HEADER_OF = {name: header for header, names in _HEADERS.items() for name in names.split()}

@@ -16,14 +16,14 @@ _OF_THE_LANGUAGE = frozenset({
 _OF_NAMESPACES = frozenset({"model"})
 """No type can have these names, and everything else can."""
 _OF_EMITTED_SKILLS = frozenset({
-    "Locals", "Parameters", "execution_time", "given_observation",
+    "execution_time", "given_observation",
     "has_alike_groundings", "has_certain_rewards", "has_text_response", "locals", "make_groundings",
     "is_monitor", "next_state", "number_count",
     "possible_parameters", "precondition", "read_locals", "respond", "response_names", "rollout_policy",
     "violation_penalty",
 })  # fmt: skip
 _OF_EMITTED_ENVIRONMENTS = frozenset({
-    "Chosen", "extrinsic_changes", "has_extrinsic_changes", "initial_belief", "is_one_state", "name_of",
+    "extrinsic_changes", "has_extrinsic_changes", "initial_belief", "is_one_state", "name_of",
     "print_state", "special_states", "state_heuristic", "with_action", "with_skill",
 })  # fmt: skip
 

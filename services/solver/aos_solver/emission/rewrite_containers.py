@@ -14,6 +14,9 @@ _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
 )
 _CONTAINER_POINTER = re.compile(_CONTAINER_REFERENCE.pattern.replace("&", r"\*"))
+_FUNCTION_OF_REFERENCE = re.compile(
+    r"((?:std\s*::\s*)?function\s*<.*(?:vector|map|string)\b[^;]*&[^;]*>)\s*$"
+)
 _STD = re.compile(r"std\s*::\s*")
 _OF_VECTORS = frozenset({"erase", "erase_if", "swap"})
 _ITERATOR = re.compile(
@@ -31,6 +34,8 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
     - `vector<int>* row = &state__.row;` becomes `auto* row`
+    - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
+    - `mine.swap(state__.row)` becomes `swap(mine, state__.row)`
     - `std::swap`, `std::erase` and `std::erase_if` lose their `std::`: those of state variables are not there
     - a vector of constants that is only read becomes `static const`
     """
@@ -39,6 +44,9 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
         prefix = _STD.match(cpp.code, call.extent.start)
         if prefix is not None and call.name[-1] in _OF_VECTORS - own:
             yield prefix.start(), prefix.end(), ""
+        if call.name[1:] == ("swap",) and call.name[0] in own and call.arguments:
+            yield call.extent.start, call.extent.start, "swap("
+            yield call.extent.start + len(call.name[0]), call.arguments[0].start, ", "
     for declaration in cpp.declarations:
         before = cpp.code[: declaration.extent.start]
         if declaration.type.endswith("iterator") and _mentions_state(cpp, declaration):
@@ -54,6 +62,9 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
                 yield pointer.start(1), pointer.end(1), "auto"
         elif declaration.kind is DeclarationKind.VARIABLE and declaration.initial is not None:
             vector = _VECTOR.search(before)
+            function = _FUNCTION_OF_REFERENCE.search(before)
+            if function is not None and _is_plain_lambda(cpp, declaration):
+                yield function.start(1), function.end(1), "auto"
             if vector is not None and _is_constant_table(cpp, declaration, values):
                 yield vector.start(1), vector.start(1), "static const "
 
@@ -63,6 +74,16 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
         return re.search(r"\]\s*\([^()]*$", before) is not None
     initial = declaration.initial
     return initial is not None and initial.start in _places_of_state(cpp)
+
+
+def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a variable is a lambda for good, and one that does not call itself."""
+    initial = declaration.initial
+    assert initial is not None
+    uses = [mention for mention in cpp.mentions if mention.path[0] == declaration.name]
+    reads = (Access.CALL, Access.READ)
+    is_called = all(use.access in reads and use.extent.start > initial.end for use in uses)
+    return is_called and cpp.code.startswith("[", initial.start)
 
 
 def _mentions_state(cpp: Cpp, declaration: Declaration) -> bool:

@@ -41,8 +41,8 @@ struct GroundedActions {
 };
 
 template <class Skill>
-const typename Skill::Parameters& parameters_of(const GroundedAction& action) {
-  return *static_cast<const typename Skill::Parameters*>(action.parameters);
+const typename Skill::aos_Parameters& parameters_of(const GroundedAction& action) {
+  return *static_cast<const typename Skill::aos_Parameters*>(action.parameters);
 }
 
 // A value that parameters of type T may take, and the variable that holds it.
@@ -77,7 +77,7 @@ constexpr SkillFacts facts_of(void (*read_locals)(std::string_view values)) {
       .has_certain_rewards = Skill::has_certain_rewards,
       .write_parameters =
           [](const void* parameters, JsonWriter& json) {
-            write_json(json, *static_cast<const typename Skill::Parameters*>(parameters));
+            write_json(json, *static_cast<const typename Skill::aos_Parameters*>(parameters));
           },
       .read_locals = read_locals,
   };

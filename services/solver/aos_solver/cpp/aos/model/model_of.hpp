@@ -29,7 +29,7 @@ namespace aos {
 
 template <class Skill>
 struct LocalsOf {
-  typename Skill::Locals values{};
+  typename Skill::aos_Locals values{};
 };
 
 // The skills of a project, in the order of their numbers.
@@ -40,7 +40,7 @@ struct SkillList {
   static constexpr bool has_monitors = (Skills::is_monitor || ...);
   static constexpr bool have_goal_conditions = (Skills::has_goal_conditions || ...);
   // The local variables of the last real observation of each skill.
-  struct Locals : LocalsOf<Skills>... {};
+  struct aos_Locals : LocalsOf<Skills>... {};
 };
 
 // Calls `use` with the type of the skill of this number, which is not below `first`.
@@ -206,7 +206,7 @@ class ModelOf {
   }
   template <class Skill>
   static void read_locals(std::string_view values) {
-    if constexpr (!std::is_empty_v<typename Skill::Locals>) aos::read_locals(locals_of<Skill>(), values);
+    if constexpr (!std::is_empty_v<typename Skill::aos_Locals>) aos::read_locals(locals_of<Skill>(), values);
   }
   static double state_value(const State& state, auto& random) {
     double value = 0;
@@ -265,12 +265,12 @@ class ModelOf {
     State start;
     GroundedActions grounded;
     GroundedActions monitors;
-    typename Skills::Locals locals;
+    typename Skills::aos_Locals locals;
   };
   inline static Prepared prepared_;
 
   template <class Skill>
-  static typename Skill::Locals& locals_of() {
+  static typename Skill::aos_Locals& locals_of() {
     return static_cast<LocalsOf<Skill>&>(prepared_.locals).values;
   }
 

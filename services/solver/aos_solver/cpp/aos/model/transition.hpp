@@ -48,7 +48,7 @@ struct NoText {
 
 // The defaults for what a skill document leaves out.
 struct SkillDefaults {
-  struct Parameters {
+  struct aos_Parameters {
     static void aos_fields(auto&, auto&&) {}
   };
   static constexpr double violation_penalty = 0;
@@ -63,7 +63,7 @@ struct SkillDefaults {
   static constexpr bool keeps_state = false;
   static constexpr bool keeps_state_ = false;
   static void make_groundings(const auto&, Groundings groundings) {
-    static constexpr Parameters none{};
+    static constexpr aos_Parameters none{};
     groundings.add({}, &none);
   }
   static void precondition(const auto&, bool&, const auto&, auto&) {}
@@ -73,7 +73,7 @@ struct SkillDefaults {
   // Whether it counts the conditions of its rewards (goal_conditions.hpp).
   static constexpr bool has_goal_conditions = false;
   // The local variables of the abstraction mapping at the time of the response.
-  struct Locals {};
+  struct aos_Locals {};
   static void given_observation(const auto&, auto&, const auto&, const auto&, auto&) {}
 };
 
@@ -215,7 +215,7 @@ Step run_phases(State& next, const auto& parameters, auto& random, bool& meets_p
 
   if constexpr (Environment::has_extrinsic_changes) {
     double reward = 0;
-    const typename Environment::Chosen chosen{std::type_identity<Skill>{}, parameters};
+    const typename Environment::aos_Chosen chosen{std::type_identity<Skill>{}, parameters};
     Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
     if constexpr (notes_rewards<decltype(random)>) note_reward(reward);
     check_reward(reward);
@@ -280,7 +280,7 @@ template <class Environment, class State>
 void pass(State& state, auto& random) {
   if constexpr (Environment::has_extrinsic_changes) {
     if (state.aos_ending != Ending::running) return;
-    detail::transition<Environment, NoSkill<Environment>>(state, SkillDefaults::Parameters{}, random);
+    detail::transition<Environment, NoSkill<Environment>>(state, SkillDefaults::aos_Parameters{}, random);
   }
 }
 

@@ -14,7 +14,7 @@ using Violations = std::uint32_t;
 
 // The action's parameters if the action is of skill `Named`, else null. Conditions name a skill by this.
 template <class Named, class Skill>
-const typename Named::Parameters* chosen(const typename Skill::Parameters& parameters) {
+const typename Named::aos_Parameters* chosen(const typename Skill::aos_Parameters& parameters) {
   if constexpr (std::same_as<Named, Skill>) {
     return &parameters;
   } else {
