@@ -8,7 +8,6 @@ from collections.abc import Mapping
 import msgspec
 
 from aos_language.derived_mapping import derived_mapping
-from aos_language.derived_values import with_values_of_enums
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind
 from aos_protocol.diagnostics import Span
@@ -63,8 +62,6 @@ def assemble(
                 assembly.monitors[document.name] = mapping
             case AbstractionMapping() as mapping if document.name:
                 assembly.mappings[document.name] = mapping
-    for name, model in assembly.models.items():
-        assembly.models[name] = with_values_of_enums(model, assembly.environment)
     written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
     for name in assembly.models.keys() - written:
         assembly.mappings[name] = derived_mapping(assembly.models[name], assembly.environment)

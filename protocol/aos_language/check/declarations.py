@@ -46,7 +46,7 @@ def check_skill_declarations(model: SkillModel, scope: Scope, findings: Findings
         if not _check_type(parameter.type, type_span, scope, findings) or model.possible_parameters:
             continue
         values = [v for v in scope.variables.values() if v.is_parameter_value and v.type == parameter.type]
-        if not values:
+        if not values and parameter.type not in scope.enums:
             hint = (
                 f"Declare action parameters of type {parameter.type} in the environment, "
                 "or let the skill's own code list them"

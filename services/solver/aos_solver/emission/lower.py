@@ -44,6 +44,7 @@ from aos_solver.emission.lower_state import (
     member_names,
     object_lists,
     parameter_values,
+    values_for,
 )
 from aos_solver.emission.lower_types import Types, lower_enum
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
@@ -253,13 +254,13 @@ class _Lowering:
 
     def _skill(self, skill: Skill) -> LoweredSkill:
         model, mapping, code = skill.model, skill.mapping, self._code.of(skill.mapping)
-        variables = self._project.environment.variables
-        copies = copies_of(model, self._project.environment)
+        environment = self._project.environment
+        copies = copies_of(model, environment)
         parameters = tuple(
             Parameter(
                 parameter.name,
                 self._types.plain(parameter.type, parameter.span),
-                None if model.possible_parameters else parameter_values(variables, parameter.type),
+                None if model.possible_parameters else values_for(parameter.type, environment),
             )
             for parameter in model.parameters
         )

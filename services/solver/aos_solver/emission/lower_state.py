@@ -126,6 +126,13 @@ def object_lists(environment: Environment, changes: Changes) -> tuple[ObjectList
     )
 
 
+def values_for(type_name: str, environment: Environment) -> ParameterValues:
+    """The values of a parameter that nothing lists: as below, or all of an enum that has none so."""
+    values = {enum.name: enum.values for enum in environment.enums}.get(type_name, ())
+    declared = parameter_values(environment.variables, type_name)
+    return declared if declared.variables else ParameterValues(type_name, (), values)
+
+
 def parameter_values(variables: Iterable[StateVariable], type_name: str) -> ParameterValues:
     """The values for parameters of exactly this type, in the order of their names."""
     names = [v.name for v in variables if v.is_parameter_value and v.type == type_name and _is_plain(v)]

@@ -118,10 +118,11 @@ class ObjectList(msgspec.Struct, frozen=True):
 
 
 class ParameterValues(msgspec.Struct, frozen=True):
-    """The variables whose values a parameter of this type may take, by name."""
+    """The variables whose values a parameter of this type may take, by name; or the enum's values."""
 
     type: str
     variables: tuple[str, ...]
+    enum_values: tuple[str, ...] = ()
 
 
 # --- code ----------------------------------------------------------------------------------------------
