@@ -30,6 +30,7 @@ class Assembly(msgspec.Struct):
     mappings: dict[str, AbstractionMapping] = {}
     monitors: dict[str, AbstractionMapping] = {}
     low_level: LowLevelDocument | None = None
+    has_unread_files: bool = False
 
     def project(self) -> Project | None:
         """The project; None where the environment or a mapping's skill is missing."""
@@ -49,7 +50,7 @@ def assemble(
     """
     unique = _without_duplicates(documents, findings)
     _check_projects(documents, findings)
-    assembly = Assembly()
+    assembly = Assembly(has_unread_files=has_unread_files)
     for document in unique.values():
         match document.content:
             case Environment() as environment:

@@ -83,6 +83,19 @@ def test_what_cannot_be_read_is_said_with_its_place(text: str, place: str, messa
     assert (str(finding.span), finding.message) == (f"a.json:{place}", message)
 
 
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        ('[{"a": 1,\n {"b": 2}]', 'The "{" on line 1 is still open'),
+        ('{"a": [\n1}', 'The "[" on line 1 is still open'),
+        ('{"a": "x, "b": 1}', "A text ended before it: is a quote missing there?"),
+    ],
+)
+def test_what_is_missing_before_that_place_is_told(text: str, hint: str) -> None:
+    _, (finding,) = parsed(text)
+    assert finding.hint.startswith(hint)
+
+
 def test_a_forgotten_comma_does_not_stop_the_reader() -> None:
     result, (finding,) = parsed('{"a": 1\n "b": [1 2]}'.replace("1 2", "1, 2"))
     assert plain(result) == {"a": 1, "b": [1, 2]}

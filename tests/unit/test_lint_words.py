@@ -384,6 +384,8 @@ def test_parameters_of_a_skill_that_was_left_out_are_an_error() -> None:
         Severity.WARNING,
         Severity.ERROR,
     ]
+    unread = {"hall.ef": ENVIRONMENT + looking, "walk.sd": SKILL, "walk.am": MAPPING, "pour.sd": ""}
+    assert [finding.code for finding in load_files(encoded(unread)).diagnostics] == ["AOS104"]
     pointer = "\nextrinsic_code:\nCell* cell = NULL;\nif (cell == NULL) state_.second.x = 1;\n"
     assert found(environment=ENVIRONMENT + pointer) == ()
 

@@ -34,7 +34,7 @@ class MentionCheck:
 
     def _absent_skills(self) -> frozenset[str]:
         """Skills that extrinsic code looks for, and that may have been left out."""
-        if not self._block.role.sees_chosen_action:
+        if not self._block.role.sees_chosen_action or self._scope.has_unread_files:
             return frozenset()
         known = {*self._scope.skills, *self._block.names, *self._declared, *STATE_COPIES, *LITERAL_NAMES}
         return absent_skills(self._cpp, known | {"NULL"})

@@ -61,6 +61,7 @@ class Scope(msgspec.Struct, frozen=True):
     low_level: LowLevelDocument | None
     has_environment: bool
     is_one_state_model: bool
+    has_unread_files: bool = False
     shared: SharedCode = NO_SHARED_CODE
     shared_mapping_code: Snippet | None = None
 
@@ -81,6 +82,7 @@ class Scope(msgspec.Struct, frozen=True):
             low_level=low_level,
             has_environment=environment is not None,
             is_one_state_model=environment is not None and environment.is_one_state_model,
+            has_unread_files=assembly.has_unread_files,
             shared=shared_code_of(environment) if environment is not None else NO_SHARED_CODE,
             shared_mapping_code=environment.shared_mapping_code if environment is not None else None,
         )

@@ -149,7 +149,9 @@ class _Reader:
         keys: dict[str, JsonString] = {}
         while not self._closes("}", start):
             if self._text[self._at] != '"':
-                raise _Unreadable(f"expected a key in double quotes, found {self._found()}", self._at)
+                message = f"expected a key in double quotes, found {self._found()}"
+                is_outside = self._text[self._at] in "{]"
+                raise _Unreadable(message, self._at, self._opened(start) if is_outside else "")
             key = self._string()
             self._skip_blank()
             if self._text[self._at : self._at + 1] != ":":
@@ -198,7 +200,13 @@ class _Reader:
             span = self._source.span(end)
             self._findings.error("AOS104", "a comma is missing here", span)
         elif character and character != bracket:
-            raise _Unreadable(f'expected "," or "{bracket}", found {self._found()}', self._at)
+            hint = self._opened(start) if character in "}]" else ""
+            if self._text[end - 1] == '"' and character.isalnum():
+                hint = 'A text ended before it: is a quote missing there? In a text a quote is written \\"'
+            raise _Unreadable(f'expected "," or "{bracket}", found {self._found()}', self._at, hint)
+
+    def _opened(self, start: int) -> str:
+        return f'The "{self._text[start]}" on line {self._source.span(start).line} is still open'
 
     def _twice(self, key: JsonString, first: JsonString) -> None:
         line = self._source.span(first.start).line
