@@ -6,10 +6,9 @@ import shutil
 from pathlib import Path
 
 import pytest
+from commands import aos
 from models import built_bundle
-from typer.testing import CliRunner
 
-from aos_deploy.cli import aos_app
 from aos_deploy.picture_findings import picture_findings
 from aos_language.load import load_bundle, load_files, read_bundle_files
 from aos_middleware.picture import Drawn, draw, likeliest_state
@@ -108,7 +107,7 @@ def test_a_picture_that_is_no_python_is_a_warning_of_lint(
 def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: Path) -> None:
     shutil.copytree(bundles / "errand", tmp_path / "errand")
     (tmp_path / "errand" / "picture.py").write_text("def draw(state, belief, step):\n    return (\n")
-    told = CliRunner().invoke(aos_app(), ["lint", str(tmp_path / "errand"), "--format", "json"])
+    told = aos("lint", tmp_path / "errand", "--format", "json")
     found = [each["code"] for each in json.loads(told.stdout)["diagnostics"]]
     assert found.count("AOS148") == 1
 

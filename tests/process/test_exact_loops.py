@@ -6,13 +6,12 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from commands import aos
 from loop_programs import loop_program, solved
 from mappings import mapping_text
 from models import engine_of_text
 from texts import write_texts
-from typer.testing import CliRunner
 
-from aos_deploy.cli import aos_app
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine
 
@@ -300,7 +299,7 @@ def test_the_command_plans_exactly_after_a_loop(loop: str, mean: Fraction, tmp_p
         "turn.am": MAPPING,
     }
     write_texts(files, tmp_path)
-    result = CliRunner().invoke(aos_app(), ["plan", str(tmp_path), "--exact", "--json"])
+    result = aos("plan", tmp_path, "--exact", "--json")
     assert result.exit_code == 0, result.output
     (action,) = json.loads(result.stdout)["actions"]
     # The wind is 1, 2 or 3 with equal odds, anew in each of the three steps.

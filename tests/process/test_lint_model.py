@@ -9,13 +9,11 @@ from types import ModuleType
 from typing import Any
 
 import pytest
-import typer
+from commands import aos
 from processes import COMMAND_S
 from texts import write_texts
-from typer.testing import CliRunner
 
 from aos_deploy import reachability
-from aos_deploy.cli import aos_app
 from aos_deploy.commands import documents
 from aos_language import load
 from aos_protocol.errors import ModelError
@@ -61,11 +59,6 @@ srv: {skill}
 """
 
 
-@pytest.fixture(scope="module")
-def app() -> typer.Typer:
-    return aos_app()
-
-
 @pytest.fixture
 def hall(tmp_path: Path) -> Callable[..., Path]:
     """Writes a bundle with this code of the walk, this goal and this door."""
@@ -84,9 +77,9 @@ def hall(tmp_path: Path) -> Callable[..., Path]:
     return write
 
 
-def linted(app: typer.Typer, folder: Path, exit_code: int = 0) -> dict[str, Any]:
+def linted(folder: Path, exit_code: int = 0) -> dict[str, Any]:
     """The findings by code, each as severity, place and hint; there is one of each code here."""
-    result = CliRunner().invoke(app, ["lint", str(folder), "--format", "json"])
+    result = aos("lint", folder, "--format", "json")
     assert result.exit_code == exit_code, result.output
     found = json.loads(result.stdout)["diagnostics"]
     return {
@@ -110,7 +103,6 @@ A compiler that does not check divisions derives that `left` is 1.
 
 @pytest.mark.parametrize(("code", "error_code", "text"), FAULTS, ids=["segfault", "division"])
 def test_a_fault_of_model_code_names_its_document_line(
-    app: typer.Typer,
     hall: Callable[..., Path],
     monkeypatch: pytest.MonkeyPatch,
     code: str,
@@ -118,7 +110,7 @@ def test_a_fault_of_model_code_names_its_document_line(
     text: str,
 ) -> None:
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
-    result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
+    result = aos("plan", hall(code), "--time", "0.1")
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
     assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 5)
@@ -143,49 +135,46 @@ REACHED = [
     ids=["exception", "loop", "index", "behind the goal", "draws", "drawn"],
 )
 def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
-    app: typer.Typer,
     hall: Callable[..., Path],
     monkeypatch: pytest.MonkeyPatch,
     code: str,
     error_code: str,
 ) -> None:
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
-    severity, place, _ = linted(app, hall(code), exit_code=1)[error_code]
+    severity, place, _ = linted(hall(code), exit_code=1)[error_code]
     assert (severity, place) == ("error", "walk.sd:5")
 
 
 def test_steps_that_take_long_and_end_are_a_warning(
-    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     # Each turn needs the one before, so that no compiler makes several at once.
     slow = "int s = 0; for (int i = 0; i < 200000000; i++) s = (5 * s + (i ^ state.place)) % 7;\n"
-    severity, place, hint = linted(app, hall(slow + "state__.place = state.place + 1 + s % 2;"))["AOS211"]
+    severity, place, hint = linted(hall(slow + "state__.place = state.place + 1 + s % 2;"))["AOS211"]
     assert (severity, place) == ("warning", "walk.sd:4")
     assert hint.startswith("Make steps cheaper")
 
 
 def test_steps_that_wait_for_a_processor_are_not_slow(
-    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     waiting = "timespec pause{0, 300'000'000}; nanosleep(&pause, nullptr);\n"
-    assert linted(app, hall(waiting + STEP)) == {}
+    assert linted(hall(waiting + STEP)) == {}
 
 
 @pytest.mark.parametrize("draw", ["", "state__.place += AOS.SampleUniform(0, 1) > 2;\n"])
-def test_a_loop_that_no_draw_ends_is_a_warning(
-    app: typer.Typer, hall: Callable[..., Path], draw: str
-) -> None:
+def test_a_loop_that_no_draw_ends_is_a_warning(hall: Callable[..., Path], draw: str) -> None:
     loop = "while (state.place > 0) { if (AOS.Bernoulli(0.5) && state.place > 1) break; }"
-    severity, place, hint = linted(app, hall(draw + STEP + loop))["AOS211"]
+    severity, place, hint = linted(hall(draw + STEP + loop))["AOS211"]
     assert (severity, place) == ("warning", f"walk.sd:{5 + bool(draw)}")
     assert hint.startswith("Such a step ends the mission as a failure")
 
 
-def test_a_loop_that_chance_ends_is_no_error(app: typer.Typer, hall: Callable[..., Path]) -> None:
+def test_a_loop_that_chance_ends_is_no_error(hall: Callable[..., Path]) -> None:
     loop = "while (AOS.Bernoulli(0.5) || AOS.Bernoulli(0.999)) {}"
-    assert "AOS211" not in linted(app, hall(STEP + loop))
+    assert "AOS211" not in linted(hall(STEP + loop))
 
 
 RECURSIVE = """auto sum = []<int N>(auto self, std::integral_constant<int, N>) -> int {
@@ -205,31 +194,27 @@ state__.place = sum(sum, std::integral_constant<int, 16>{}, std::integral_consta
 """A hundred thousand functions, none of them deep."""
 
 
-def test_templates_that_recurse_deeply_are_refused_at_their_line(
-    app: typer.Typer, hall: Callable[..., Path]
-) -> None:
+def test_templates_that_recurse_deeply_are_refused_at_their_line(hall: Callable[..., Path]) -> None:
     # Gcc tells where the function calls itself, clang where it begins.
     line = 6 if asyncio.run(find_compiler()).family == "gcc" else 4
-    assert linted(app, hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == f"walk.sd:{line}"
+    assert linted(hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == f"walk.sd:{line}"
 
 
 def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
-    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(building, "MODEL_CPU_S", 1.0)
     monkeypatch.setattr(building, "ENGINE_SHARE", 0.0)
     folder = hall(BRANCHING)
-    assert linted(app, folder, exit_code=1)["AOS202"][:2] == ("error", "walk.sd:4")
+    assert linted(folder, exit_code=1)["AOS202"][:2] == ("error", "walk.sd:4")
 
 
-def test_a_model_whose_goal_and_doors_can_be_reached_is_clean(
-    app: typer.Typer, hall: Callable[..., Path]
-) -> None:
-    assert linted(app, hall("state__.place = state.place + 1;")) == {}
+def test_a_model_whose_goal_and_doors_can_be_reached_is_clean(hall: Callable[..., Path]) -> None:
+    assert linted(hall("state__.place = state.place + 1;")) == {}
 
 
 def test_documents_are_read_and_lowered_once(
-    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     calls: Counter[str] = Counter()
 
@@ -246,14 +231,14 @@ def test_documents_are_read_and_lowered_once(
     counted(documents, "load_files")
     counted(project_build, "lower")
     counted(project_build, "emit")
-    assert linted(app, hall("state__.place = state.place + 1;  // once")) == {}
+    assert linted(hall("state__.place = state.place + 1;  // once")) == {}
     assert calls == {"load_files": 1, "lower": 1, "emit": 1}
 
 
 def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_extent(
-    app: typer.Typer, hall: Callable[..., Path]
+    hall: Callable[..., Path],
 ) -> None:
-    found = linted(app, hall("state__.place = (state.place + 1) % 5;", goal="7", door="6"))
+    found = linted(hall("state__.place = (state.place + 1) % 5;", goal="7", door="6"))
     extent = "Looked at all that can be reached, 5 states, up to 4 actions from the start"
     assert found == {
         "AOS132": ("warning", "hall.ef:10", extent),
@@ -261,28 +246,24 @@ def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_exten
     }
 
 
-def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(
-    app: typer.Typer, hall: Callable[..., Path]
-) -> None:
-    found = linted(app, hall("state__.place = state.place + 1;", goal="-1", door="-1"))
+def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(hall: Callable[..., Path]) -> None:
+    found = linted(hall("state__.place = state.place + 1;", goal="-1", door="-1"))
     assert found.keys() == {"AOS132"}
     severity, place, hint = found["AOS132"]
     assert (severity, place) == ("remark", "hall.ef:10")
     assert hint.startswith("Looked at 1")
 
 
-def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(
-    app: typer.Typer, hall: Callable[..., Path]
-) -> None:
+def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(hall: Callable[..., Path]) -> None:
     widens = "state__.place = state.place * 400 + AOS.SampleDiscrete(vector<double>(400, 0.0025));"
-    assert linted(app, hall(widens, goal="64000000", door="-1")) == {}
+    assert linted(hall(widens, goal="64000000", door="-1")) == {}
 
 
 def test_an_initial_belief_that_cannot_be_enumerated_is_no_reason_for_remarks(
-    app: typer.Typer, hall: Callable[..., Path]
+    hall: Callable[..., Path],
 ) -> None:
     folder = hall("state__.place = state.place;", goal="-1", door="-1")
     environment = folder / "hall.ef"
     drawn = "state.place = AOS.SampleNormal(0, 1) > 0;"
     environment.write_text(environment.read_text().replace("state.place = 0;", drawn))
-    assert linted(app, folder) == {}
+    assert linted(folder) == {}

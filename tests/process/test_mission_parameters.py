@@ -10,12 +10,11 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from commands import aos
 from models import built_bundle, built_text, engine_of
 from processes import COMMAND_S, HANG_S
 from texts import encoded
-from typer.testing import CliRunner
 
-from aos_deploy.cli import aos_app
 from aos_deploy.run_directory import RunDirectory
 from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option
@@ -236,7 +235,7 @@ def test_commands_take_values_and_a_policy_is_for_its_own(bundles: Path, tmp_pat
     bundle, policy = str(bundles / "errand"), str(tmp_path / "bob.policy")
 
     def run(*arguments: str) -> object:
-        done = CliRunner().invoke(aos_app(), [*arguments, "--json"])
+        done = aos(*arguments, "--json")
         if done.exception is not None:
             raise done.exception
         return json.loads(done.stdout)
@@ -278,7 +277,7 @@ def test_missions_of_a_test_file_have_its_values_or_the_commands(
 ) -> None:  # fmt: skip
     file = tmp_path / "missions.yaml"
     file.write_text(MISSIONS.format(deploy=root / "deploy" / "errand.yaml", person=person))
-    assert CliRunner().invoke(aos_app(), ["test", str(file), *options]).exit_code == status
+    assert aos("test", file, *options).exit_code == status
 
 
 SLOW_GIVE = """

@@ -5,95 +5,93 @@ from pathlib import Path
 
 import pytest
 import typer
-from typer.testing import CliRunner, Result
+from commands import aos
+from typer.testing import Result
 
-from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files
 from aos_language.convert import without_origins
 from aos_language.load import load_bundle
 
 
-@pytest.fixture
-def aos(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder that commands run in."""
     monkeypatch.chdir(tmp_path)
-    return aos_app()
 
 
-def run(app: typer.Typer, line: str) -> Result:
-    return CliRunner().invoke(app, line.split())
+def run(line: str) -> Result:
+    return aos(*line.split())
 
 
-def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal(aos: typer.Typer) -> None:
-    made = run(aos, "new project fetch")
+def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal() -> None:
+    made = run("new project fetch")
     assert made.exit_code == 0
     assert "wrote fetch/fetch.ef\n" in made.output
     assert "aos plan fetch" in made.output
-    assert run(aos, "new skill wipe --in fetch").exit_code == 0
-    linted = run(aos, "lint fetch")
+    assert run("new skill wipe --in fetch").exit_code == 0
+    linted = run("lint fetch")
     assert linted.exit_code == 0
     assert linted.output.endswith("fetch: 0 errors, 0 warnings\n")
-    planned = run(aos, "plan fetch --simulations 20000 --json")
+    planned = run("plan fetch --simulations 20000 --json")
     assert json.loads(planned.stdout)["action"] == "look"
-    assert "exact: all 2 states can be listed" in run(aos, "plan fetch --simulations 20000").output
-    played = run(aos, "simulate fetch --runs 5 --simulations 20000 --json")
+    assert "exact: all 2 states can be listed" in run("plan fetch --simulations 20000").output
+    played = run("simulate fetch --runs 5 --simulations 20000 --json")
     assert json.loads(played.stdout)["summary"]["goal_rate"] == 1.0
 
 
-def test_a_project_in_json_says_the_same_as_one_in_sdl(aos: typer.Typer) -> None:
-    assert run(aos, "new project fetch").exit_code == 0
-    assert run(aos, "new project fetch --dialect json --in json").exit_code == 0
-    assert run(aos, "new skill wipe --in fetch").exit_code == 0
-    assert run(aos, "new skill wipe --in json/fetch").exit_code == 0
+def test_a_project_in_json_says_the_same_as_one_in_sdl() -> None:
+    assert run("new project fetch").exit_code == 0
+    assert run("new project fetch --dialect json --in json").exit_code == 0
+    assert run("new skill wipe --in fetch").exit_code == 0
+    assert run("new skill wipe --in json/fetch").exit_code == 0
     assert {path.suffix for path in Path("json/fetch").iterdir()} == {".json"}
     sdl, json_bundle = load_bundle(Path("fetch")), load_bundle(Path("json/fetch"))
     assert json_bundle.diagnostics == ()
     assert without_origins(json_bundle.project) == without_origins(sdl.project)
 
 
-def test_nothing_is_overwritten(aos: typer.Typer) -> None:
-    run(aos, "new project fetch")
+def test_nothing_is_overwritten() -> None:
+    run("new project fetch")
     Path("fetch/look.sd").write_text("mine")
-    again = run(aos, "new project fetch")
+    again = run("new project fetch")
     assert "already" in str(again.exception)
     assert Path("fetch/look.sd").read_text() == "mine"
 
 
 @pytest.mark.parametrize("name", ["Fetch", "../fetch", "2do", "a-b", 65 * "n"])
-def test_a_name_that_documents_cannot_have_is_refused(aos: typer.Typer, name: str) -> None:
-    assert "is no name for a project" in str(run(aos, f"new project {name}").exception)
+def test_a_name_that_documents_cannot_have_is_refused(name: str) -> None:
+    assert "is no name for a project" in str(run(f"new project {name}").exception)
     assert not list(Path().iterdir())
 
 
-def test_a_skill_has_no_name_of_cpp(aos: typer.Typer) -> None:
-    run(aos, "new project fetch")
-    assert "means something else in C++" in str(run(aos, "new skill double --in fetch").exception)
+def test_a_skill_has_no_name_of_cpp() -> None:
+    run("new project fetch")
+    assert "means something else in C++" in str(run("new skill double --in fetch").exception)
     assert not Path("fetch/double.sd").exists()
 
 
-def test_a_reader_that_has_gone_leaves_a_whole_project(
-    aos: typer.Typer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_reader_that_has_gone_leaves_a_whole_project(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(typer, "echo", lambda text: 1 / 0)
-    run(aos, "new project fetch")
+    run("new project fetch")
     assert len(list(Path("fetch").iterdir())) == 5
 
 
-def test_a_skill_needs_a_bundle(aos: typer.Typer) -> None:
-    assert "aos new project" in str(run(aos, "new skill wipe").exception)
+def test_a_skill_needs_a_bundle() -> None:
+    assert "aos new project" in str(run("new skill wipe").exception)
 
 
-def test_a_new_skill_belongs_to_the_bundles_project(aos: typer.Typer) -> None:
-    run(aos, "new project fetch")
-    run(aos, "new skill wipe --in fetch")
+def test_a_new_skill_belongs_to_the_bundles_project() -> None:
+    run("new project fetch")
+    run("new skill wipe --in fetch")
     project = load_bundle(Path("fetch")).project
     assert project is not None
     assert [skill.name for skill in project.skills] == ["look", "take", "wipe"]
 
 
 @pytest.mark.parametrize("name", deploy_files())
-def test_every_example_is_whole_where_it_is_written(name: str, aos: typer.Typer) -> None:
-    written = run(aos, f"new example {name}")
+def test_every_example_is_whole_where_it_is_written(name: str) -> None:
+    written = run(f"new example {name}")
     assert written.exit_code == 0, written.output
     here = Path(name).resolve()
     deployment = read_deploy_file(Path(name, f"{name}.yaml"))
@@ -101,16 +99,14 @@ def test_every_example_is_whole_where_it_is_written(name: str, aos: typer.Typer)
     assert deployment.world is None or deployment.world.resolve().is_relative_to(here)
 
 
-def test_an_unknown_example_is_told_with_the_nearest(aos: typer.Typer) -> None:
-    assert "Did you mean `armadillo`?" in str(getattr(run(aos, "new example armadilo").exception, "hint", ""))
+def test_an_unknown_example_is_told_with_the_nearest() -> None:
+    assert "Did you mean `armadillo`?" in str(getattr(run("new example armadilo").exception, "hint", ""))
 
 
 @pytest.mark.parametrize(("kind", "plans_in_time"), [("class", True), ("command", True), ("model", False)])
-def test_a_robot_plans_in_time_and_its_model_in_simulations(
-    kind: str, plans_in_time: bool, aos: typer.Typer
-) -> None:
-    run(aos, "new project fetch")
-    written = run(aos, f"new adapter {kind} --in fetch")
+def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_time: bool) -> None:
+    run("new project fetch")
+    written = run(f"new adapter {kind} --in fetch")
     assert written.exit_code == 0, written.output
     solver = read_deploy_file(next(Path().glob("*.yaml"))).file.solver
     assert (solver.time_s is not None) == plans_in_time

@@ -10,10 +10,8 @@ from pathlib import Path
 
 import msgspec
 import pytest
-import typer
-from typer.testing import CliRunner
+from commands import aos
 
-from aos_deploy.cli import aos_app
 from aos_lab.trials import ray_cluster
 from aos_lab.trials.campaign import HERE, Place, play_campaign
 from aos_lab.trials.setting import Setting
@@ -116,7 +114,6 @@ def test_without_ray_the_command_says_how_to_install_it(
 def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(
     options: list[str], text: str
 ) -> None:
-    app: typer.Typer = aos_app()
-    done = CliRunner().invoke(app, ["experiment", "run", "armadillo", *options])
+    done = aos("experiment", "run", "armadillo", *options)
     assert done.exit_code == 2
     assert text in " ".join(done.stderr.split())

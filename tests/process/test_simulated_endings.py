@@ -4,12 +4,11 @@ import json
 from pathlib import Path
 
 import pytest
+from commands import aos
 from mappings import mapping_text
 from models import engine_of_text
 from texts import write_texts
-from typer.testing import CliRunner
 
-from aos_deploy.cli import aos_app
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
@@ -85,10 +84,7 @@ async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path
 def test_goals_are_counted_by_the_world(tmp_path: Path) -> None:
     write_texts(TABLE, tmp_path)
     command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]
-    app = aos_app(command)
-    app = aos_app(command)
-    app = aos_app(command)
-    done = CliRunner().invoke(app, [*command, "--json"])
+    done = aos(*command, "--json")
     assert done.exit_code == 0, done.output
     campaign = json.loads(done.stdout)
     endings = [run["world_ending"] for run in campaign["runs"]]
@@ -97,5 +93,5 @@ def test_goals_are_counted_by_the_world(tmp_path: Path) -> None:
     assert summary["goal_rate"] == endings.count("goal") / 40 < 1
     assert summary["failure_rate"] == endings.count("failure") / 40
     assert summary["over_rate"] == 0
-    output = CliRunner().invoke(app, command).stdout
+    output = aos(*command).stdout
     assert "believed in 100%" in output

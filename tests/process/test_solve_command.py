@@ -5,19 +5,12 @@ import os
 from pathlib import Path
 
 import pytest
-import typer
-from typer.testing import CliRunner, Result
+from commands import aos
 
-from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.program import programs_of_deployment
 from aos_protocol.errors import DeployError, DocumentError, PlanningError
 from aos_solver.offline.policy import Policy
-
-
-@pytest.fixture
-def app() -> typer.Typer:
-    return aos_app()
 
 
 @pytest.fixture
@@ -30,17 +23,11 @@ def bundle(root: Path) -> Path:
     return root / "tests" / "data" / "bundles" / "tiger"
 
 
-def run(app: typer.Typer, *arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def test_a_problem_file_is_solved_and_everything_is_written(
-    app: typer.Typer, tiger: Path, tmp_path: Path
-) -> None:
+def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_path: Path) -> None:
     names = [tmp_path / name for name in ("t.pomdpx", "t.policy", "t.dot", "t.h")]
     options = ["--export", "--out", "--graph", "--c-header"]
     wanted = [part for pair in zip(options, names, strict=True) for part in pair]
-    result = run(app, "solve", tiger, "--json", *wanted)
+    result = aos("solve", tiger, "--json", *wanted)
     assert result.exit_code == 0, result.output
     report = json.loads(result.stdout)
     assert report["lower"] == pytest.approx(19.371, abs=2e-3)
@@ -54,81 +41,79 @@ def test_a_problem_file_is_solved_and_everything_is_written(
     assert "t_start[1]" in (tmp_path / "t.h").read_text()
 
 
-def test_people_see_the_bounds_come_nearer(app: typer.Typer, tiger: Path) -> None:
-    result = run(app, "solve", tiger)
+def test_people_see_the_bounds_come_nearer(tiger: Path) -> None:
+    result = aos("solve", tiger)
     lines = result.stdout.splitlines()
     assert lines[0].endswith("tiger.pomdp: 2 states, 3 actions, 2 observations, discount 0.95")
     assert lines[1].split() == ["seconds", "at", "least", "at", "most", "gap", "vectors"]
     assert lines[-1].startswith("the policy gives at least 19.371")
 
 
-def test_a_policy_of_a_bundle_plans_and_simulates(app: typer.Typer, bundle: Path, tmp_path: Path) -> None:
+def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path) -> None:
     saved = tmp_path / "tiger.policy"
-    assert run(app, "solve", bundle, "--out", saved).exit_code == 0
-    decided = json.loads(run(app, "plan", bundle, "--policy", saved, "--json").stdout)
+    assert aos("solve", bundle, "--out", saved).exit_code == 0
+    decided = json.loads(aos("plan", bundle, "--policy", saved, "--json").stdout)
     assert decided["action"] == "listen"
     assert decided["value"] == pytest.approx(19.371, abs=2e-3)
     options = ["--policy", saved, "--runs", "3", "--step-limit", "12", "--json"]
-    campaign = json.loads(run(app, "simulate", bundle, *options).stdout)
+    campaign = json.loads(aos("simulate", bundle, *options).stdout)
     assert [run["steps"] for run in campaign["runs"]] == [12, 12, 12]
     assert all(run["actions"][0] == "listen" for run in campaign["runs"])
 
 
-def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path, tmp_path: Path) -> None:
-    result = run(app, "solve", tiger, "--export", tmp_path / "tiger.txt")
+def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path: Path) -> None:
+    result = aos("solve", tiger, "--export", tmp_path / "tiger.txt")
     assert result.exit_code == 2
     assert "needs to end in .pomdp or .pomdpx" in result.output
     for option in ("--out", "--graph", "--c-header", "--export"):
         ending = "pomdp" if option == "--export" else "dot"
-        result = run(app, "solve", tiger, option, tmp_path / "none" / f"tiger.{ending}")
+        result = aos("solve", tiger, option, tmp_path / "none" / f"tiger.{ending}")
         assert result.exit_code == 2
         assert "there is no folder" in result.output
     for option in ("--time", "--precision", "--discount", "--stop-value"):
-        assert "nan is not a finite number" in run(app, "solve", tiger, option, "nan").output
-    assert isinstance(run(app, "solve", tmp_path / "none.pomdp").exception, DocumentError)
-    few = run(app, "solve", tiger, "--states", "1").exception
+        assert "nan is not a finite number" in aos("solve", tiger, option, "nan").output
+    assert isinstance(aos("solve", tmp_path / "none.pomdp").exception, DocumentError)
+    few = aos("solve", tiger, "--states", "1").exception
     assert "has 2 states, more than 1" in str(few)
 
 
 def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
-    app: typer.Typer, tiger: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tiger: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("os.access", lambda path, mode: mode != os.W_OK)  # Root may write everywhere.
-    result = run(app, "solve", tiger, "--out", tmp_path / "tiger.policy")
+    result = aos("solve", tiger, "--out", tmp_path / "tiger.policy")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "cannot be written" in result.output
 
 
 @pytest.mark.parametrize(("problem", "runs"), [("tiger.pomdp", 100), ("rover.pomdpx", 500)])
 def test_missions_of_a_problem_file_return_what_its_policy_promises(
-    app: typer.Typer, tiger: Path, tmp_path: Path, problem: str, runs: int
+    tiger: Path, tmp_path: Path, problem: str, runs: int
 ) -> None:
     policy, path = tmp_path / "a.policy", tiger.with_name(problem)
-    bounds = json.loads(run(app, "solve", path, "--out", policy, "--json").stdout)
-    simulated = run(app, "simulate", path, "--policy", policy, "--runs", str(runs), "--json")
+    bounds = json.loads(aos("solve", path, "--out", policy, "--json").stdout)
+    simulated = aos("simulate", path, "--policy", policy, "--runs", str(runs), "--json")
     summary = json.loads(simulated.stdout)["summary"]
     room = 4 * summary["stderr"] + 1e-2
     assert bounds["lower"] - room < summary["mean_discounted_return"] < bounds["upper"] + room
 
 
-def test_missions_of_a_problem_file_need_a_policy_of_that_file(
-    app: typer.Typer, tiger: Path, tmp_path: Path
-) -> None:
-    assert "aos solve" in run(app, "simulate", tiger).output
+def test_missions_of_a_problem_file_need_a_policy_of_that_file(tiger: Path, tmp_path: Path) -> None:
+    assert "aos solve" in aos("simulate", tiger).output
     policy = tmp_path / "a.policy"
-    run(app, "solve", tiger.with_name("costs.pomdp"), "--out", policy)
-    other = run(app, "simulate", tiger, "--policy", policy).exception
+    aos("solve", tiger.with_name("costs.pomdp"), "--out", policy)
+    other = aos("simulate", tiger, "--policy", policy).exception
     assert isinstance(other, PlanningError)
     assert other.code == "AOS322"
-    assert "--set" in run(app, "simulate", tiger, "--policy", policy, "--set", "a=1").output
+    assert "--set" in aos("simulate", tiger, "--policy", policy, "--set", "a=1").output
 
 
 def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_printed(
-    app: typer.Typer, tiger: Path, bundle: Path
+    tiger: Path, bundle: Path
 ) -> None:
     # With so few states allowed listing them would be refused, too.
     for arguments in ((tiger,), (bundle, "--states", "1")):
-        refused = run(app, "solve", *arguments, "--discount", "1")
+        refused = aos("solve", *arguments, "--discount", "1")
         assert isinstance(refused.exception, PlanningError)
         assert (refused.exception.code, refused.stdout) == ("AOS320", "")
 

@@ -5,16 +5,9 @@ import shutil
 from pathlib import Path
 
 import pytest
-import typer
-from typer.testing import CliRunner
+from commands import aos
 
-from aos_deploy.cli import aos_app
 from aos_protocol.errors import DocumentError
-
-
-@pytest.fixture(scope="module")
-def app() -> typer.Typer:
-    return aos_app()
 
 
 @pytest.fixture
@@ -26,28 +19,26 @@ def broken(bundles: Path, tmp_path: Path) -> Path:
     return folder
 
 
-def test_lint_of_a_good_bundle_ends_with_zero(app: typer.Typer, bundles: Path) -> None:
-    result = CliRunner().invoke(app, ["lint", str(bundles / "armadillo-rough"), "--no-compile"])
+def test_lint_of_a_good_bundle_ends_with_zero(bundles: Path) -> None:
+    result = aos("lint", bundles / "armadillo-rough", "--no-compile")
     assert result.exit_code == 0
     assert result.output.endswith("0 errors, 1 warning\n")
 
 
-def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(
-    app: typer.Typer, bundles: Path, tmp_path: Path
-) -> None:
+def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Path, tmp_path: Path) -> None:
     folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
     path = folder / "pick.sd"
     path.write_text(path.read_text().replace("bool in_hand =", "bool in_hand = in_the_hand &&"))
     line = next(n for n, text in enumerate(path.read_text().split("\n"), 1) if "in_the_hand" in text)
-    assert CliRunner().invoke(app, ["lint", str(folder), "--no-compile"]).exit_code == 0
-    result = CliRunner().invoke(app, ["lint", str(folder)])
+    assert aos("lint", folder, "--no-compile").exit_code == 0
+    result = aos("lint", folder)
     assert result.exit_code == 1
     assert f"pick.sd:{line}:16: error[AOS201]" in result.output
     assert "bool in_hand = in_the_hand &&" in result.output
 
 
-def test_lint_gives_sarif_with_rules_and_regions(app: typer.Typer, broken: Path) -> None:
-    result = CliRunner().invoke(app, ["lint", str(broken), "--format", "sarif"])
+def test_lint_gives_sarif_with_rules_and_regions(broken: Path) -> None:
+    result = aos("lint", broken, "--format", "sarif")
     log = json.loads(result.output)
     assert log["version"] == "2.1.0"
     (run,) = log["runs"]
@@ -69,27 +60,25 @@ def test_lint_gives_sarif_with_rules_and_regions(app: typer.Typer, broken: Path)
     assert replacement["deletedRegion"] == {"startLine": 12, "startColumn": 41, "endColumn": 49}
 
 
-def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(app: typer.Typer, broken: Path) -> None:
-    result = CliRunner().invoke(app, ["lint", str(broken)])
+def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(broken: Path) -> None:
+    result = aos("lint", broken)
     assert result.exit_code == 1
     assert "serve.sd:12:41: error[AOS116]" in result.output
     assert "broken: error[AOS115]: there is no environment document" in result.output
 
 
-def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(
-    app: typer.Typer, bundles: Path
-) -> None:
-    alone = CliRunner().invoke(app, ["lint", str(bundles / "armadillo-retract"), "--no-compile"])
+def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(bundles: Path) -> None:
+    alone = aos("lint", bundles / "armadillo-retract", "--no-compile")
     assert alone.exit_code == 1
     assert "armadillo-retract --also BUNDLE" in alone.output
     arguments = ["lint", str(bundles / "armadillo-retract"), "--also", str(bundles / "armadillo-finer")]
-    together = CliRunner().invoke(app, [*arguments, "--no-compile"])
+    together = aos(*arguments, "--no-compile")
     assert together.exit_code == 0
     assert "armadillo-retract: 0 errors" in together.output
 
 
-def test_lint_gives_the_same_as_json(app: typer.Typer, broken: Path) -> None:
-    result = CliRunner().invoke(app, ["lint", str(broken), "--format", "json"])
+def test_lint_gives_the_same_as_json(broken: Path) -> None:
+    result = aos("lint", broken, "--format", "json")
     found = json.loads(result.output)
     assert (found["errors"], found["bundle"]) == (2, str(broken))
     (error,) = [d for d in found["diagnostics"] if d["code"] == "AOS116"]
@@ -97,8 +86,8 @@ def test_lint_gives_the_same_as_json(app: typer.Typer, broken: Path) -> None:
     assert error["hint"] == "Did you mean `delivered`?"
 
 
-def test_inspect_prints_the_documents_with_their_places(app: typer.Typer, bundles: Path) -> None:
-    result = CliRunner().invoke(app, ["inspect", str(bundles / "armadillo-rough")])
+def test_inspect_prints_the_documents_with_their_places(bundles: Path) -> None:
+    result = aos("inspect", bundles / "armadillo-rough")
     assert result.exit_code == 0
     assert "project armadillo: horizon 10, discount 0.99" in result.output
     assert "variable bool holding_can" in result.output
@@ -106,20 +95,20 @@ def test_inspect_prints_the_documents_with_their_places(app: typer.Typer, bundle
     assert "pick.am:3:11" in result.output
 
 
-def test_inspect_prints_the_python_of_one_skill(app: typer.Typer, bundles: Path) -> None:
+def test_inspect_prints_the_python_of_one_skill(bundles: Path) -> None:
     arguments = ["inspect", str(bundles / "armadillo-finer"), "--stage", "python", "--skill", "pick"]
-    result = CliRunner().invoke(app, arguments)
+    result = aos(*arguments)
     assert "skill pick, project armadillo" in result.output
     assert "navigate" not in result.output
 
 
-def test_inspect_of_a_broken_bundle_raises_with_all_findings(app: typer.Typer, broken: Path) -> None:
-    result = CliRunner().invoke(app, ["inspect", str(broken)])
+def test_inspect_of_a_broken_bundle_raises_with_all_findings(broken: Path) -> None:
+    result = aos("inspect", broken)
     assert isinstance(result.exception, DocumentError)
     assert {d.code for d in result.exception.diagnostics if d.is_error} == {"AOS115", "AOS116"}
 
 
-def test_a_push_without_a_running_system_says_so(app: typer.Typer, bundles: Path, tmp_path: Path) -> None:
+def test_a_push_without_a_running_system_says_so(bundles: Path, tmp_path: Path) -> None:
     arguments = ["bundle", "push", str(bundles / "armadillo-finer"), "--runs", str(tmp_path)]
-    result = CliRunner().invoke(app, arguments)
+    result = aos(*arguments)
     assert "there is no run in" in str(result.exception)

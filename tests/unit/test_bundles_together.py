@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from commands import aos
 
 from aos_deploy.bundle_files import files_of_bundles, planned_of, project_of
-from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.events import Event, ServiceChanged
 from aos_deploy.mission_run import MissionRun
@@ -58,7 +57,7 @@ def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path: Path) -
     assert sorted(planned.files) == ["push.sd", "yard.ef"]
     assert [(value.name, value.text) for value in planned.values] == [("laps", "3")]
     assert [constraint.never.code for constraint in planned.constraints] == ["state.open"]
-    linted = CliRunner().invoke(aos_app(), ["lint", str(deploy), "--no-compile"])
+    linted = aos("lint", deploy, "--no-compile")
     assert (linted.exit_code, "0 errors" in linted.stdout) == (0, True)
 
 
@@ -76,10 +75,10 @@ def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path
     bundle(tmp_path, "skills", push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"
     deploy.write_text("aos: 1\nrobot: yard\nbundles: [world, skills]\n")
-    shown = CliRunner().invoke(aos_app(), ["inspect", str(deploy), "--stage", "model"])
+    shown = aos("inspect", deploy, "--stage", "model")
     assert (shown.exit_code, '"push"' in shown.stdout, '"open"' in shown.stdout) == (0, True, True)
     out = tmp_path / "json"
-    converted = CliRunner().invoke(aos_app(), ["convert", str(deploy), "--to", "json", "--out", str(out)])
+    converted = aos("convert", deploy, "--to", "json", "--out", out)
     assert (converted.exit_code, len(list(out.iterdir()))) == (0, 2)
 
 

@@ -11,10 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from commands import aos
 
 from aos_deploy.bus_socket import place_of_socket, remove_left_sockets, remove_socket
-from aos_deploy.cli import aos_app
 from aos_deploy.passes import Outsider, Passes
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.access import ADAPTER, OPERATOR, SOLVER, WATCHER, Party
@@ -92,7 +91,7 @@ def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Pat
         f"aos: 1\nrobot: r\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
         f"adapters:\n  arm: {written}\nbind: {{'*': arm}}\n"
     )
-    result = CliRunner().invoke(aos_app(), ["doctor", str(deploy)])
+    result = aos("doctor", deploy)
     assert result.exit_code != 0
     assert "credential" in f"{result.output}{result.exception}"
 
@@ -106,9 +105,7 @@ def test_a_unit_starts_a_mission_with_the_machine(
         f"aos: 1\nrobot: r\nproject: armadillo\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
         "bind: {'*': model}\n"
     )
-    result = CliRunner().invoke(
-        aos_app(), ["new", "unit", str(deploy), "--to", str(tmp_path), "--user", "robot"]
-    )
+    result = aos("new", "unit", deploy, "--to", tmp_path, "--user", "robot")
     assert result.exit_code == 0, result.output
     unit = tmp_path / "aos-r.service"
     lines = unit.read_text().splitlines()
@@ -121,7 +118,7 @@ def test_a_unit_starts_a_mission_with_the_machine(
     ):
         assert line in lines
     assert any(line.startswith("ExecStart=") and line.endswith(f"aos-up {deploy} --plain") for line in lines)
-    again = CliRunner().invoke(aos_app(), ["new", "unit", str(deploy), "--to", str(tmp_path)])
+    again = aos("new", "unit", deploy, "--to", tmp_path)
     assert again.exit_code != 0
     if shutil.which("systemd-analyze") is None:
         pytest.skip("needs systemd-analyze, which reads the unit as systemd does")

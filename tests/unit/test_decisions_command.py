@@ -3,10 +3,8 @@
 from pathlib import Path
 
 import pytest
+from commands import aos
 from long_run import write_long_run
-from typer.testing import CliRunner
-
-from aos_deploy.cli import aos_app
 
 
 @pytest.mark.parametrize("is_killed", [True, False])
@@ -15,7 +13,7 @@ def test_a_mission_that_was_killed_is_told_apart_from_one_that_has_ended(
 ) -> None:
     monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
     run = tmp_path / "runs" / write_long_run(tmp_path / "runs", 2, has_ended=not is_killed)
-    told = CliRunner().invoke(aos_app(), ["decisions", "--run", str(run)])
+    told = aos("decisions", "--run", run)
     assert told.exit_code == 0
     assert told.stdout.count("step  2") == 2
     assert ("aos-up --resume" in told.stderr, "mission ended" in told.stdout) == (is_killed, not is_killed)

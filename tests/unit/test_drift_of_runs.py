@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from commands import aos
 from decision_records import decision_record
 from typer.testing import CliRunner
 
@@ -55,11 +56,11 @@ def test_each_model_has_tests_of_its_own_and_the_newest_decides(
 ) -> None:
     worn = [write_run(tmp_path, number, *["stuck"] * 4) for number in (1, 2)]
     mended = write_run(tmp_path, 3, "pressed", "pressed", model="e")
-    told = CliRunner().invoke(aos_app(), ["drift", *map(str, worn), "--json"])
+    told = aos("drift", *worn, "--json")
     assert told.exit_code == 1
     ((pressed, stuck),) = [model["responses"] for model in json.loads(told.stdout)["models"]]
     assert (pressed["is_alarm"], stuck["uses"], stuck["modelled"]) == (True, 8, pytest.approx(0.1))
-    told = CliRunner().invoke(aos_app(), ["drift", *map(str, worn), str(mended)])
+    told = aos("drift", *worn, mended)
     assert told.exit_code == 0
     assert [line.split(":")[0] for line in told.stdout.splitlines() if line.startswith("model")] == [
         *("model d, revision 2", "model e, revision 3")

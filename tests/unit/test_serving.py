@@ -4,9 +4,8 @@ mistakes."""
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from commands import aos
 
-from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import Deployment, read_deploy_file
 from aos_deploy.serving import serving_program
 from aos_language.load import load_bundle
@@ -121,7 +120,7 @@ def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
 ) -> None:
     bundle = root / "deploy" / "bundles" / "armadillo-finer"
     command = ["new", "adapter", kind, "--in", str(bundle), "--to", str(tmp_path)]
-    made = CliRunner().invoke(aos_app(), command)
+    made = aos(*command)
     assert made.exit_code == 0, made.output
     (adapter,) = read_deploy_file(tmp_path / "armadillo.yaml").adapters
     assert (adapter.kind_name, adapter.serves_others) == (kind, True)
@@ -129,8 +128,6 @@ def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
 
 
 def test_an_example_brings_its_interfaces_along(tmp_path: Path) -> None:
-    made = CliRunner().invoke(
-        aos_app(), ["new", "example", "armadillo-robot", "--in", str(tmp_path / "robot")]
-    )
+    made = aos("new", "example", "armadillo-robot", "--in", tmp_path / "robot")
     assert made.exit_code == 0, made.output
     assert (tmp_path / "robot" / "interfaces" / "armadillo_skills" / "srv" / "Navigate.srv").is_file()

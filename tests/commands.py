@@ -1,0 +1,12 @@
+"""The command line, called within a test's process."""
+
+from pathlib import Path
+
+from typer.testing import CliRunner, Result
+
+from aos_deploy.cli import aos_app
+
+
+def aos(*arguments: str | Path) -> Result:
+    """The outcome of `aos` with these arguments."""
+    return CliRunner().invoke(aos_app(), [str(argument) for argument in arguments])
