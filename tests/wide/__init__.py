@@ -1,1 +1,7 @@
 """Problems whose states cannot be listed, each with a rule by hand as its reference."""
+
+import sys
+from pathlib import Path
+
+# `python -m tests.wide` and pytest find the same modules.
+sys.path.append(str(Path(__file__).resolve().parents[1]))

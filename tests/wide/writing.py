@@ -1,30 +1,8 @@
 """Documents and mappings of a bundle, from its skills."""
 
+from mappings import mapping_text
+
 Bundle = dict[str, str]  # file name to text
-
-
-def _mapping(
-    project: str, skill: str, parameters: list[str], responses: list[str], numbers: list[str]
-) -> str:
-    lines = [f"project: {project}", "", "module_activation: skill", f"path: /{skill}", "max_duration: 60"]
-    for name in parameters:
-        lines += [f"parameter: the_{name}", "code:", f"chosen_{name}", ""]
-    for name in parameters:
-        lines += [f"local_variable: chosen_{name}", f"action_parameter: {name}", ""]
-    lines += [
-        "local_variable: code",
-        "type: string",
-        "from_ros_service_response: true",
-        "code:",
-        "code = __input.code",
-        "",
-    ]
-    for name in numbers:
-        lines += [f"local_variable: {name}", "type: float", "from_ros_service_response: true", "code:"]
-        lines += [f"{name} = __input.{name}", ""]
-    for response in responses:
-        lines += [f"response: {response}", f'response_rule: code == "{response}"']
-    return "\n".join(lines) + "\n"
 
 
 class BundleWriter:
@@ -56,7 +34,10 @@ class BundleWriter:
             else ""
         )
         self.files[f"{name}.sd"] = f"project: {self.project}\n{values}\n{listed}\ndynamic_model:\n{model}\n"
-        self.files[f"{name}.am"] = _mapping(self.project, name, list(over), responses, numbers or [])
+        reports = dict.fromkeys(numbers or (), "float")
+        self.files[f"{name}.am"] = mapping_text(
+            *responses, project=self.project, skill=name, parameters=list(over), reports=reports
+        )
 
     def charger(self, battery: int) -> None:
         """A skill that fills the battery where `at` is 0."""
