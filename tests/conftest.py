@@ -46,6 +46,12 @@ def bundles() -> Path:
 
 
 @pytest.fixture(scope="session")
+def problems() -> Path:
+    """Problem files of our own."""
+    return TESTS / "data" / "problems"
+
+
+@pytest.fixture(scope="session")
 def corpus() -> Path:
     """The original AOS bundles, third-party data beside the checkout; tests skip where it is absent."""
     folder = ROOT.parent / "shared" / "corpus"

@@ -1,11 +1,15 @@
 """Looking at other processes: which are there, which have gone, who listens."""
 
 import asyncio
+import json
 import os
 import signal
+import subprocess
 import time
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 HANG_S = 120.0
 """Tests wait this long for one event, which takes a second on an idle machine: only a hang takes longer."""
@@ -91,3 +95,10 @@ def until_taking_over(run: Path, revision: int) -> None:
     while not all(text in (run / "logs" / "solver.log").read_text() for text in awaited):
         assert time.monotonic() < deadline_s, f"revision {revision} is not ready"
         time.sleep(0.02)
+
+
+def events_of(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
+    """The events that `aos-up --json` prints."""
+    assert process.stdout is not None
+    for line in process.stdout:
+        yield json.loads(line)

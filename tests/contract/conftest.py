@@ -11,7 +11,9 @@ import msgspec
 import pytest
 import pytest_asyncio
 from middleware_system import System, running_system
+from ros1_core import roscore, skip_without_ros1
 
+from aos_language.load import read_bundle_files
 from aos_protocol.keys import Keys
 from aos_runtime.bus import Bus
 from aos_runtime.lifecycle import ServiceSettings
@@ -67,3 +69,17 @@ async def system(
     """A middleware process that has our armadillo, and a skill that listens; `other` surrounds it."""
     async with running_system(bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer") as running:
         yield running
+
+
+@pytest.fixture
+def finer(bundles: Path) -> dict[str, bytes]:
+    """The documents of the finer Armadillo."""
+    return read_bundle_files(bundles / "armadillo-finer")[0]
+
+
+@pytest.fixture(scope="module")
+def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The URI of the module's roscore."""
+    skip_without_ros1()
+    with roscore(tmp_path_factory.mktemp("ros")) as uri:
+        yield uri

@@ -19,7 +19,6 @@ from processes import HANG_S
 from test_registry_service import current, push, running_registry, written_settings
 
 from aos_language.archive import read_archive
-from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
@@ -39,11 +38,6 @@ COMPRESSIONS = {"tar": bytes, "tar.gz": partial(gzip.compress, mtime=0), "tar.xz
 async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[tuple[Path, Child]]:
     async with running_registry(tmp_path / "run", endpoint, bus, keys) as child:
         yield tmp_path / "run", child
-
-
-@pytest.fixture
-def finer(bundles: Path) -> dict[str, bytes]:
-    return read_bundle_files(bundles / "armadillo-finer")[0]
 
 
 def mutated(data: bytes, chance: random.Random) -> bytes:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from test_registry_service import current, push, running_registry
 
-from aos_language.load import bundle_digest, read_bundle_files
+from aos_language.load import bundle_digest
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
 from aos_registry.catalogue import Catalogue, Revision
@@ -26,11 +26,6 @@ POLL_S = 0.005
 
 Accepted = dict[int, bytes]
 """The content of pick.sd in each accepted revision."""
-
-
-@pytest.fixture
-def finer(bundles: Path) -> dict[str, bytes]:
-    return read_bundle_files(bundles / "armadillo-finer")[0]
 
 
 async def push_on(bus: Bus, keys: Keys, pick: bytes, accepted: Accepted) -> None:

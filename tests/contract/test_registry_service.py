@@ -13,7 +13,6 @@ import pytest_asyncio
 from processes import HANG_S
 from starting import until_present
 
-from aos_language.load import read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DocumentError
 from aos_protocol.keys import Keys
@@ -62,11 +61,6 @@ async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> Async
     """The run directory of a running registry."""
     async with running_registry(tmp_path / "run", endpoint, bus, keys):
         yield tmp_path / "run"
-
-
-@pytest.fixture
-def finer(bundles: Path) -> dict[str, bytes]:
-    return read_bundle_files(bundles / "armadillo-finer")[0]
 
 
 async def push(bus: Bus, keys: Keys, files: dict[str, bytes]) -> BundleReport:

@@ -1,14 +1,14 @@
 """ROS 1 with a real roscore and a robot that knows nothing of AOS."""
 
 import asyncio
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import pytest_asyncio
 from processes import HANG_S
-from ros1_core import PYTHON, roscore, skip_without_ros1
+from ros1_core import PYTHON
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.children import Child, guarded
@@ -20,14 +20,6 @@ pytestmark = pytest.mark.slow
 ROBOT = Path(__file__).resolve().parents[1] / "ros1_robot.py"
 WITHOUT_ROS = ROBOT.parent / "data" / "python_without_ros.sh"
 TEST = "actionlib/action/Test"
-
-
-@pytest.fixture(scope="module")
-def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The URI of the module's roscore."""
-    skip_without_ros1()
-    with roscore(tmp_path_factory.mktemp("ros")) as uri:
-        yield uri
 
 
 @pytest_asyncio.fixture

@@ -7,7 +7,7 @@ import asyncio
 import importlib.util
 import itertools
 import random
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,6 @@ from processes import HANG_S
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
-from ros1_core import roscore, skip_without_ros1
 from texts import encoded
 
 from aos_language.load import load_files
@@ -113,14 +112,6 @@ KINDS = {
     "dds": ("aos_skills.ros.adapter:DdsAdapter", "interface"),
     "ros1": ("aos_skills.ros.adapter:Ros1Adapter", "master"),
 }
-
-
-@pytest.fixture(scope="module")
-def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The URI of the module's roscore."""
-    skip_without_ros1()
-    with roscore(tmp_path_factory.mktemp("ros")) as uri:
-        yield uri
 
 
 async def robot_of(kind: str, request: pytest.FixtureRequest, endpoint: str) -> tuple[Any, dict[str, Any]]:

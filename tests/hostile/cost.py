@@ -1,7 +1,6 @@
 """The cost of the sandbox: `python -m tests.hostile.cost`, of a child and of a decision."""
 
 import asyncio
-import resource
 import statistics
 import subprocess
 import sys
@@ -17,6 +16,8 @@ from aos_solver.building.project_build import build_project
 from aos_solver.child import engine_child
 from aos_solver.child.engine import Engine
 
+from .said import processor_s
+
 BUNDLE = Path(__file__).resolve().parents[2] / "deploy" / "bundles" / "turtlebot"
 CHILDREN = 100
 ROUNDS = 15
@@ -27,14 +28,9 @@ SIMULATIONS = 20_000
 def child_s(confinement: Confinement | None) -> float:
     """The processor time of a guarded program that does nothing, and of its guard."""
     command = guarded(["/bin/true"], Limits(), confinement)
-    before_s = _children_s()
+    before_s = processor_s()
     subprocess.run(command, check=True)
-    return _children_s() - before_s
-
-
-def _children_s() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+    return processor_s() - before_s
 
 
 async def decisions_s(built: BuiltModel) -> float:

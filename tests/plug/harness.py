@@ -134,3 +134,9 @@ async def harness(project: Project) -> AsyncIterator[Harness]:
             finally:
                 await asyncio.gather(*(child.stop(3.0) for child in made.children))
         await asyncio.gather(*(child.stop(3.0) for child in router.children))
+
+
+async def drained(stream: asyncio.StreamReader) -> None:
+    """Returns at the end of a stream that nobody reads."""
+    while await stream.read(2**16):
+        pass

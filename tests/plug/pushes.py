@@ -24,6 +24,7 @@ from aos_protocol.messages import (
 from aos_runtime.client import AosClient
 
 from .changes import Change, Project
+from .harness import drained
 
 _ROOT = Path(__file__).resolve().parents[2]
 _BIN = Path(sys.executable).parent
@@ -104,18 +105,13 @@ async def _up(folder: Path) -> AsyncIterator[None]:
         try:
             while b'"event":"decision"' not in (line := await process.stdout.readline()).replace(b" ", b""):
                 assert line, (folder / "aos-up.log").read_text()
-            draining = asyncio.create_task(_drain(process.stdout))
+            draining = asyncio.create_task(drained(process.stdout))
             yield
         finally:
             with contextlib.suppress(ProcessLookupError):
                 process.terminate()
             await process.wait()
         await draining
-
-
-async def _drain(stream: asyncio.StreamReader) -> None:
-    while await stream.read(2**16):
-        pass
 
 
 class _Game:

@@ -23,6 +23,8 @@ from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder
 
+from .harness import drained
+
 _ROOT = Path(__file__).resolve().parents[2]
 _BIN = Path(sys.executable).parent
 _LINE_BYTES = 2**24
@@ -143,7 +145,7 @@ async def _up(folder: Path, seed: int, *options: str) -> AsyncIterator[RunRecord
         try:
             while b'"event":"decision"' not in (line := await process.stdout.readline()).replace(b" ", b""):
                 assert line, (folder / "aos-up.log").read_text()
-            draining = asyncio.create_task(_drain(process.stdout))
+            draining = asyncio.create_task(drained(process.stdout))
             record = RunDirectory((folder / "runs" / "latest").resolve()).read_record()
             yield msgspec.structs.replace(record, pids={**record.pids, "aos-up": process.pid})
         finally:
@@ -151,11 +153,6 @@ async def _up(folder: Path, seed: int, *options: str) -> AsyncIterator[RunRecord
                 process.send_signal(signal.SIGINT)
             await process.wait()
         await draining
-
-
-async def _drain(stream: asyncio.StreamReader) -> None:
-    while await stream.read(2**16):
-        pass
 
 
 def _client(folder: Path) -> contextlib.AbstractAsyncContextManager[AosClient]:

@@ -1,14 +1,12 @@
 """Hot plug: skills that land in mid-mission are in use from the next decision on."""
 
-import json
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import until_taking_over
+from processes import events_of, until_taking_over
 
 BIN = Path(sys.executable).parent
 SENSING = ("observe_holding", "observe_arm_outstretched")
@@ -64,12 +62,6 @@ def deploy_file(root: Path, tmp_path: Path, picked: Path, monkeypatch: pytest.Mo
     return path
 
 
-def _events(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
-    assert process.stdout is not None
-    for line in process.stdout:
-        yield json.loads(line)
-
-
 def _push(bundle: Path, runs: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [BIN / "aos", "bundle", "push", bundle, "--runs", runs], capture_output=True, text=True, check=False
@@ -91,7 +83,7 @@ def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
     pushed: list[subprocess.CompletedProcess[str]] = []
     with subprocess.Popen([BIN / "aos-up", deploy_file, "--json"], stdout=subprocess.PIPE, text=True) as up:
         try:
-            for event in _events(up):
+            for event in events_of(up):
                 if event["event"] != "decision" or "outcome" in event:
                     continue
                 decisions.append(event)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import COMMAND_S, HANG_S
+from processes import COMMAND_S, HANG_S, events_of
 from ros1_core import roscore, skip_without_ros1
 
 from aos_runtime.parent import PARENT_VARIABLE
@@ -79,12 +79,6 @@ def up(arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
         finally:
             process.send_signal(signal.SIGINT)
             process.wait(HANG_S)
-
-
-def events_of(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
-    assert process.stdout is not None
-    for line in process.stdout:
-        yield json.loads(line)
 
 
 @pytest.mark.corpus

@@ -31,11 +31,6 @@ QUICK = SolvingLimits(precision=1e-3, cpu_s=1)
 
 
 @pytest.fixture
-def problems(root: Path) -> Path:
-    return root / "tests" / "data" / "problems"
-
-
-@pytest.fixture
 def published(root: Path) -> Path:
     folder = root.parent / "shared" / "problems"
     if not folder.is_dir():

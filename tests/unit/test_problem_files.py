@@ -14,11 +14,6 @@ from aos_protocol.errors import DocumentError, ModelError, PlanningError
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
 
 
-@pytest.fixture
-def problems(root: Path) -> Path:
-    return root / "tests" / "data" / "problems"
-
-
 def joint(model: ExplicitModel) -> Floats:
     """P(next state, observation | state, action) as a dense array [state, action, next, observation]."""
     size = model.size
