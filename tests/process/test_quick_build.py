@@ -1,12 +1,14 @@
 """The two builds of a model, quick and thorough."""
 
 from pathlib import Path
+from unittest.mock import AsyncMock
 
 import msgspec
 import pytest
 from kept_cache import link_engines
 from scripted_models import bundle_project, lowered
 
+from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.building.project_build import emitted_model
 from aos_solver.child.answers import Plan
@@ -25,6 +27,23 @@ async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_i
     assert (await build(emitted, cache_dir=tmp_path)).executable == thorough.executable
     assert await decided(quick) == await decided(thorough)
     assert await mean_reward(quick) == pytest.approx(await mean_reward(thorough), abs=0.3)
+
+
+async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known(
+    bundles: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    limits: list[int | None] = []
+
+    async def compiled(*_: object, cpu_s: int | None = None, **__: object) -> tuple[str, int]:
+        limits.append(cpu_s)
+        return "stopped by the test", 1
+
+    monkeypatch.setattr("aos_solver.building.build.run_compiler", compiled)
+    monkeypatch.setattr("aos_solver.building.build.build_engine", AsyncMock())
+    emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
+    with pytest.raises(ModelError, match="stopped by the test"):
+        await build(emitted, cache_dir=tmp_path)
+    assert set(limits) == {None}
 
 
 def test_documents_that_come_back_are_not_emitted_again(bundles: Path) -> None:

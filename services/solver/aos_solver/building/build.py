@@ -52,8 +52,9 @@ MODEL_CPU_S = 2.0
 ENGINE_SHARE = 1 / 20
 LINES_PER_CPU_S = 150
 """A quick build may take `MODEL_CPU_S` of processor time, or `ENGINE_SHARE` of the engine's where that is
-more, and a second more for `LINES_PER_CPU_S` lines. A model of 200 lines takes half a second, of 700 lines up
-to 3 s, all parts of the engine 35 s."""
+more, and a second more for `LINES_PER_CPU_S` lines. Before an engine is compiled nobody knows how slow the
+machine is, and what models include is not compiled ahead: then only the deadline counts. A model of 200 lines
+takes half a second, of 700 lines up to 3 s, all parts of the engine 35 s."""
 
 _LIMITS = ("-ftemplate-depth=100",)
 """Models' templates need a third of this depth. Document code that recurses without end is told at once."""
@@ -179,9 +180,9 @@ class _Build(msgspec.Struct, frozen=True):
     @property
     def _cpu_s(self) -> int | None:
         """The limit for a model that somebody waits for. Long models and slow machines have more."""
-        if self.kind != "quick":
-            return None
         engine_s = engine_seconds(self._ready_engine(STATE_BYTES[0]))
+        if self.kind != "quick" or not engine_s:
+            return None
         return int(max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self.emitted.cpp.count("\n") / LINES_PER_CPU_S)
 
     async def _compile(self, staging: Path) -> None:
