@@ -46,6 +46,12 @@ ROUTES = (
         ("options", "enough_ways", "tests_first", "learned_values"),
     ),
     Route(
+        "pomcp with values of many states",
+        "auto",
+        ("lists", "near_states", "options"),
+        ("wide_values", "first_state", "priced_information"),
+    ),
+    Route(
         "pomcp with learned values",
         "auto",
         (*_UNLISTED, "options"),
