@@ -18,15 +18,15 @@ inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {
 }
 
 // Makes action `a` the best one if its value is reliable, and higher or more reliable than that of the best so far.
-inline void take_better(HistoryNode& history, const ActionNode* actions, std::uint32_t a) {
+[[gnu::always_inline]] inline void take_better(HistoryNode& history, const ActionNode* actions, std::uint32_t a) {
   if (!is_well_visited(actions[a].n, history.max_visits)) return;
   const ActionNode& best = actions[history.best];
   if (!is_well_visited(best.n, history.max_visits) || actions[a].q > best.q) history.best = a;
 }
 
 // Renews the best action after a visit of one of the history's `count` actions.
-inline void renew_best(HistoryNode& history, const ActionNode* actions, std::uint32_t count, std::uint32_t visited,
-                       bool has_fallen) {
+[[gnu::always_inline]] inline void renew_best(HistoryNode& history, const ActionNode* actions, std::uint32_t count,
+                                              std::uint32_t visited, bool has_fallen) {
   const bool is_best = visited == history.best;
   if ((is_best && has_fallen) || !is_well_visited(actions[history.best].n, history.max_visits)) {
     history.best = visited;

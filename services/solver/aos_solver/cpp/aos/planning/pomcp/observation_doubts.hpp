@@ -62,8 +62,8 @@ class ObservationDoubts {
 };
 
 // What the observation after an action tells of the state, in nats, by the visits of its children. The entropy of few visits is
-// too low, so what is noise does not tell anything.
-inline double information_of(const SearchTree& tree, const ActionNode& action) {
+// too low, so what is noise does not tell anything. `doubt` is that of SearchTree::Told.
+inline double information_of(const SearchTree& tree, const ActionNode& action, double doubt) {
   double entropy = 0;
   double going_on = 0;
   for (std::uint32_t child = action.first_child; child != no_node; child = tree.history(child).sibling) {
@@ -71,7 +71,7 @@ inline double information_of(const SearchTree& tree, const ActionNode& action) {
     entropy += share_of_entropy(share);
     going_on += share;
   }
-  return std::max(entropy + share_of_entropy(1 - going_on) - action.doubt / action.n, 0.0);
+  return std::max(entropy + share_of_entropy(1 - going_on) - doubt / action.n, 0.0);
 }
 
 }  // namespace aos

@@ -35,7 +35,8 @@ struct HistoryNode {
   std::uint32_t best = 0;  // the best action among the well visited ones
 };
 
-struct ActionNode {
+// A choice looks at all actions of a history: each is one line of the processor's cache.
+struct alignas(64) ActionNode {
   union {
     double q;                // the value, from the first visit on
     double advantage = 0;    // before it: what the action is worth beyond its history, if known
@@ -44,8 +45,6 @@ struct ActionNode {
   double continuations = 0;  // sum over children of n * v
   double mean = 0;           // of the sampled returns
   double squares = 0;        // sum of the returns' squared deviations from their mean
-  double doubt = 0;          // sum over visits of what the observation leaves open in a known state, in nats
-  double information = 0;    // of the observation, in nats
   double share = 1;          // of the exploration; 1 is an even share
   std::uint32_t n = 0;
   std::uint32_t first_child = no_node;
@@ -54,11 +53,17 @@ struct ActionNode {
 
 class SearchTree {
  public:
+  // What an action tells, in nats. Known where information has a price.
+  struct Told {
+    double doubt = 0;  // sum over visits of what the observation leaves open in a known state
+    double information = 0;
+  };
+
   // The nodes take at most `bytes`. Memory is only taken as nodes use it.
   SearchTree(int action_count, std::size_t bytes)
       : action_count_(static_cast<std::uint32_t>(action_count)),
         histories_(with_room_for<HistoryNode>(bytes / 4 / sizeof(HistoryNode))),
-        actions_(with_room_for<ActionNode>(bytes / 4 * 3 / sizeof(ActionNode))) {
+        actions_(with_room_for<ActionNode>(bytes / 4 * 3 / (sizeof(ActionNode) + sizeof(Told)))) {
     clear();
   }
 
@@ -66,6 +71,7 @@ class SearchTree {
   void clear() {
     histories_.clear();
     actions_.clear();
+    told_.clear();
     index_ = {};
     histories_.push_back({});
   }
@@ -75,7 +81,13 @@ class SearchTree {
   // The actions of a history that has them, as an array.
   ActionNode* actions(const HistoryNode& history) { return actions_.data() + history.first_action; }
   const ActionNode* actions(const HistoryNode& history) const { return &actions_[history.first_action]; }
-  ActionNode& action(std::uint32_t number) { return actions_[number]; }
+  Told& told(const ActionNode& action) {
+    if (told_.size() < actions_.size()) {
+      told_.reserve(actions_.capacity());
+      told_.resize(actions_.size());
+    }
+    return told_[static_cast<std::size_t>(&action - actions_.data())];
+  }
   std::size_t size() const { return histories_.size(); }
 
   // Gives a history its actions. Returns false if there is no room for them.
@@ -148,6 +160,7 @@ class SearchTree {
     if (node.first_action == no_node || !give_actions(copy)) return;
     for (std::uint32_t a = 0; a < action_count_; ++a) {
       ActionNode& action = actions_[histories_[copy].first_action + a] = from.actions(node)[a];
+      if (node.first_action + a < from.told_.size()) told(action) = from.told_[node.first_action + a];
       action.first_child = no_node;
       action.children = 0;
     }
@@ -164,6 +177,7 @@ class SearchTree {
   std::uint32_t action_count_;
   std::vector<HistoryNode> histories_;
   std::vector<ActionNode> actions_;
+  std::vector<Told> told_;  // by action
   NumberIndex index_;
   std::vector<std::uint32_t> sources_;  // while copying: the original of each history
 };

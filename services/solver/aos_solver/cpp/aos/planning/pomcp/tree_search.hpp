@@ -133,7 +133,7 @@ class TreeSearch {
     std::uint32_t history;
     std::uint32_t action;
     double reward;
-    std::optional<double> doubt;  // see ActionNode; none if what is observed does not count
+    std::optional<double> doubt;  // see SearchTree::Told; none if what is observed does not count
   };
 
   static std::uint32_t action_count() { return static_cast<std::uint32_t>(Model::action_count()); }
@@ -143,29 +143,31 @@ class TreeSearch {
   // where this would be a tenth slower.
   template <class SimulatedState>
   [[gnu::optimize("O2")]] double descend(SimulatedState& state, std::uint32_t a, Sampler& random) {
-    visits_.clear();
+    std::size_t depth = 0;
     std::uint32_t history = 0;
     int left = horizon_;
     double value = state.value(left);
     double later = 0;
     double change = 0;  // of n * v of the history that the last action led to
-    ObservationCells::Drawn drawn{random};
+    std::optional<ObservationCells::Drawn> drawn;
+    if (reports_numbers_) drawn.emplace(random);
     while (true) {
       const std::optional<double> expected =
-          switches::expected_rewards && visits_.size() < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
+          switches::expected_rewards && depth < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
       const std::optional<double> doubt = price_ > 0 ? state.doubt(static_cast<int>(a), doubts_) : std::nullopt;
       Step step = step_of(state, static_cast<int>(a), random, drawn);
       if (expected) step.reward = *expected;
       work_ += step_cost_ + per_visit + per_action * action_count() + ((expected ? few_paths : 0) + (doubt ? few_paths : 0)) * step_cost_;
-      if (visits_.empty()) record_.add_reward(a, step.reward);
+      if (depth == 0) record_.add_reward(a, step.reward);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
       value = goes_on ? state.value(left) : 0;
-      visits_.push_back({history, a, step.reward + Model::discount * value - before, doubt});
+      if (depth == visits_.size()) visits_.resize(2 * depth + 64);
+      visits_[depth++] = {history, a, step.reward + Model::discount * value - before, doubt};
       if (!goes_on) break;
 
       const std::uint32_t action = tree_.history(history).first_action + a;
-      const Observation seen = switches::observation_cells && reports_numbers_ ? cells_.cell(action, step.observation, drawn) : step.observation;
+      const Observation seen = switches::observation_cells && reports_numbers_ ? cells_.cell(action, step.observation, *drawn) : step.observation;
       std::uint32_t child = tree_.find_child(action, seen);
       const bool is_new = child == no_node;
       if (is_new) {
@@ -181,7 +183,7 @@ class TreeSearch {
       history = child;
       a = choose(history);
     }
-    for (std::size_t i = visits_.size(); i-- > 0;) {
+    for (std::size_t i = depth; i-- > 0;) {
       later = visits_[i].reward + Model::discount * later;
       change = back_up(visits_[i], change, later);
     }
@@ -253,9 +255,10 @@ class TreeSearch {
 
   // Adds the worth of what an action tells to its value.
   void add_information(ActionNode& node, double doubt) {
-    node.doubt += doubt;
-    if (node.n < settled_visits || node.n % settled_visits == 0) node.information = information_of(tree_, node);
-    node.q += Model::discount * price_ * node.information;
+    SearchTree::Told& told = tree_.told(node);
+    told.doubt += doubt;
+    if (node.n < settled_visits || node.n % settled_visits == 0) told.information = information_of(tree_, node, told.doubt);
+    node.q += Model::discount * price_ * told.information;
   }
 
   // At the root the bounds decide only after every action was tried. Below it, they decide at once where something
@@ -279,17 +282,17 @@ class TreeSearch {
 
   // Takes a step and draws what it reports.
   template <class SimulatedState>
-  [[gnu::always_inline]] Step step_of(SimulatedState& state, int action, Sampler& random, ObservationCells::Drawn& drawn) const {
+  [[gnu::always_inline]] Step step_of(SimulatedState& state, int action, Sampler& random, std::optional<ObservationCells::Drawn>& drawn) const {
     if (!reports_numbers_) return state.step(action, random);
-    drawn.clear();
-    const ReportingTo reporting{random, drawn};
+    drawn->clear();
+    const ReportingTo reporting{random, *drawn};
     return state.step(action, random);
   }
 
   // With a prior, a history stays a leaf until it has as many visits as there are actions. Fully observable
   // values are too high, and less so the deeper the tree. With few visits below each of many actions, the
   // values would tell apart how deep these visits went, and not the actions.
-  bool stays_leaf(std::uint32_t number) const { return switches::asked_leaves && !prior_.empty() && tree_.history(number).n < visits_of_leaf(); }
+  [[gnu::always_inline]] bool stays_leaf(std::uint32_t number) const { return switches::asked_leaves && !prior_.empty() && tree_.history(number).n < visits_of_leaf(); }
   static std::uint32_t visits_of_leaf() { return std::max(action_count(), asked_states); }
 
   // With a prior, the states of a leaf's last visits tell what its actions are worth (QMDP). The prior itself is that of
@@ -311,10 +314,12 @@ class TreeSearch {
 
   // Gives a history its actions. Returns false if there is no room for them.
   template <class SimulatedState>
-  bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
-    const bool is_new = tree_.history(number).first_action == no_node;
+  [[gnu::always_inline]] bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
+    return tree_.history(number).first_action != no_node || give_new_actions(number, state, random);
+  }
+  template <class SimulatedState>
+  bool give_new_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
     if (!tree_.give_actions(number)) return false;
-    if (!is_new) return true;
     odds_.resize(action_count());
     ActionNode* const actions = tree_.actions(tree_.history(number));
     if (state.rollout_odds(odds_.data(), random)) {
@@ -343,7 +348,7 @@ class TreeSearch {
   ObservationDoubts<Model> doubts_;
   RootRecord record_;
   RootSpread spread_;
-  std::vector<Visit> visits_;  // of the simulation that runs
+  std::vector<Visit> visits_;  // the first ones are of the simulation that runs
   std::vector<double> odds_;
 };
 

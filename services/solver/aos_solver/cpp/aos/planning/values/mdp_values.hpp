@@ -60,7 +60,7 @@ class MdpValues final : public StateValues<Model> {
 
   double value(const State& state, int left) const override { return value(number_of(state), left); }
   // The value with `horizon` decisions to go.
-  double value(std::uint32_t number, int horizon) const {
+  [[gnu::always_inline]] double value(std::uint32_t number, int horizon) const {
     return number == no_state ? highest_ : layer(horizon)[number];
   }
 
@@ -147,7 +147,7 @@ class MdpValues final : public StateValues<Model> {
 
   double value_of(std::size_t row, const std::vector<double>& later) const { return backed_up(rows(), row, later); }
 
-  const std::vector<double>& layer(int horizon) const {
+  [[gnu::always_inline]] const std::vector<double>& layer(int horizon) const {
     return layers_[std::min(static_cast<std::size_t>(std::max(horizon, 0)), layers_.size() - 1)];
   }
 

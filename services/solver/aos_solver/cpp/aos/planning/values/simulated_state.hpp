@@ -32,7 +32,7 @@ class ComputedState {
   std::optional<double> doubt(int action, ObservationDoubts<Model>& doubts) const { return doubts.of(state_, action); }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
   // The value with `left` decisions to go; 0 if values are not known.
-  double value(int left) const { return values_ != nullptr ? values_->value(state_, left) : 0; }
+  [[gnu::always_inline]] double value(int left) const { return values_ != nullptr ? values_->value(state_, left) : 0; }
   // See StateValues. Values have to be known.
   void advantages(double* worths, Sampler& random) const { values_->advantages(state_, worths, random); }
   // The first return of a new history, beyond the value.
@@ -56,7 +56,7 @@ class ListedState {
   ListedState(const StepTable<Model>& steps, const MdpValues<Model>& values, Sampler& random)
       : steps_(steps), values_(values), number_(steps.start(random.bits())) {}
 
-  Step step(int action, Sampler& random) {
+  [[gnu::always_inline]] Step step(int action, Sampler& random) {
     const auto& outcome = steps_.outcome(number_, action, random.bits());
     number_ = outcome.next;
     return outcome.step;
@@ -64,7 +64,7 @@ class ListedState {
   std::optional<double> expected_reward(int, ExpectedRewards<Model>&) const { return {}; }
   std::optional<double> doubt(int, ObservationDoubts<Model>&) const { return {}; }
   bool has_ended() const { return number_ == StepTable<Model>::ended; }
-  double value(int left) const { return values_.value(number_, left); }
+  [[gnu::always_inline]] double value(int left) const { return values_.value(number_, left); }
   double leaf(int, Sampler&) const { return 0; }
   bool rollout_odds(double*, Sampler&) const { return false; }
   void advantages(double* worths, Sampler&) const { values_.advantages(number_, worths); }
