@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
-from texts import encoded
+from scripted_models import text_project
 
-from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
@@ -70,9 +69,7 @@ async def distribution(engine: Engine) -> dict[str, float]:
 
 
 def project() -> Project:
-    loaded = load_files(encoded(WALK))
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
+    return text_project(WALK)
 
 
 def after_time(places: list[float], steps: int) -> list[float]:

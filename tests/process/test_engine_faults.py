@@ -10,9 +10,8 @@ from hostile.counters import counting
 from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from processes import HANG_S
-from texts import encoded
+from scripted_models import text_project
 
-from aos_language.load import load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import EngineDefectError, ModelError
 from aos_protocol.messages import BeliefSummary
@@ -58,8 +57,7 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
     built = await built_text(LAMP, cache_dir)
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
     wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
-    project = load_files(encoded(wider)).project
-    assert project is not None
+    project = text_project(wider)
     async with engine_of(built) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
@@ -84,8 +82,7 @@ async def test_documents_whose_code_would_end_a_running_mission_are_refused(
 async def refused(documents: dict[str, str], cache_dir: Path) -> Diagnostic:
     """The one reason for which documents are not taken into a mission."""
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
-    project = load_files(encoded(documents)).project
-    assert project is not None
+    project = text_project(documents)
     good = counting("lamp", "press", steps="1000")
     async with engine_of_text(good, cache_dir) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))

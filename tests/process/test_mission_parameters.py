@@ -13,7 +13,7 @@ import pytest
 from commands import aos
 from models import built_bundle, built_text, engine_of
 from processes import COMMAND_S, HANG_S
-from texts import encoded
+from scripted_models import text_project
 
 from aos_deploy.run_directory import RunDirectory
 from aos_language.load import load_files
@@ -130,11 +130,8 @@ if (state.dock.near == soda) __reward += 1000;
 async def test_defaults_and_initial_values_follow_from_what_is_set(
     cache_dir: Path, options: list[str], value: float
 ) -> None:
-    loaded = load_files(encoded(PARTS))
-    assert loaded.project is not None, loaded.diagnostics
-    project = msgspec.structs.replace(
-        loaded.project, mission_values=tuple(map(mission_value_of_option, options))
-    )
+    values = tuple(map(mission_value_of_option, options))
+    project = msgspec.structs.replace(text_project(PARTS), mission_values=values)
     built = await build_project(project, cache_dir)
     async with engine_of(built) as engine:
         assert await exact_values(engine) == {"act": value}

@@ -7,10 +7,10 @@ import pytest
 from hall import HALL, changed, with_bell
 from models import built_text, engine_of_text
 from scripted_missions import Surroundings, observed
+from scripted_models import text_project
 from texts import encoded
 
 from aos_deploy.history_check.replayed import replayed
-from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionBegun, ModelAdopted, Outcome
@@ -90,9 +90,7 @@ async def whole(cache_dir: Path) -> Rows:
 
 
 async def documents(revision: int) -> Project:
-    project = load_files(encoded(REVISIONS[revision])).project
-    assert project is not None
-    return project
+    return text_project(REVISIONS[revision])
 
 
 def memory_of(rows: Rows) -> MissionMemory:

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from scripted_models import text_project
 from texts import encoded, write_texts
 
 from aos_deploy.bundle_files import project_of
@@ -96,9 +97,7 @@ DIALECTS = {
 
 
 def project(files: dict[str, str]) -> Project:
-    loaded = load_files(encoded({"act.sd": SKILL, **files}))
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
+    return text_project({"act.sd": SKILL, **files})
 
 
 def said(variable: StateVariable) -> tuple[object, ...]:

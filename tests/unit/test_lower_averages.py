@@ -3,8 +3,7 @@
 import re
 
 import pytest
-from mappings import mapping_of_model
-from scripted_models import text_project
+from acting import acting
 
 from aos_solver.emission.lower_averages import averaged_draws
 
@@ -19,15 +18,7 @@ state.level = int(AOS.SampleUniform(0, 3));
 
 def averaged(act: str, extrinsic: str = "", special: str = "") -> list[bool]:
     """Returns for each draw of a dynamic model, in order, whether it is known to count by its mean."""
-    environment = HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else "")
-    environment += f"reward_code:\n{special}\n" if special else ""
-    project = text_project(
-        {
-            "home.ef": environment,
-            "act.sd": f"project: test\ndynamic_model:\n{act}\n",
-            "act.am": mapping_of_model(act),
-        }
-    )
+    project = acting(HOME, act, extrinsic=extrinsic, special=special)
     (snippet,) = [part.code for part in project.skills[0].model.dynamic_model if part.code is not None]
     starts = averaged_draws(project).get(snippet, frozenset())
     return [at.start() in starts for at in re.finditer(r"AOS(Utils::|\.)", snippet.code)]

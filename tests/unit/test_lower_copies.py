@@ -1,8 +1,7 @@
 """The copies of the state that a step keeps: those that are read after a newer one is written."""
 
 import pytest
-from mappings import mapping_of_model
-from scripted_models import text_project
+from acting import acting
 
 from aos_solver.emission.lower_copies import Copies, copies_of
 
@@ -21,13 +20,7 @@ state.row = {1, 2};
 
 
 def copies(act: str, extrinsic: str = "") -> Copies:
-    project = text_project(
-        {
-            "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
-            "act.sd": f"project: test\ndynamic_model:\n{act}\n",
-            "act.am": mapping_of_model(act),
-        }
-    )
+    project = acting(HOME, act, extrinsic=extrinsic)
     return copies_of(project.skills[0].model, project.environment)
 
 

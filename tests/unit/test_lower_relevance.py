@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
-from mappings import mapping_of_model
-from scripted_models import bundle_project, text_project
+from acting import acting
+from scripted_models import bundle_project
 
 from aos_protocol.documents import Project
 from aos_solver.emission.lower_relevance import (
@@ -39,14 +39,7 @@ if (state.level > 3) {
 def idle(act: str, extrinsic: str = "", policy: str = "") -> set[str]:
     """Returns those of `known`, `count`, `row` and `cup` that do not matter; `level` always does."""
     rollout = f"rollout_policy:\n{policy}\n" if policy else ""
-    project = text_project(
-        {
-            "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
-            "act.sd": f"project: test\n{rollout}dynamic_model:\n{act}\n",
-            "act.am": mapping_of_model(act),
-        }
-    )
-    irrelevant = irrelevant_variables(project)
+    irrelevant = irrelevant_variables(acting(HOME, act, extrinsic=extrinsic, before=rollout))
     assert "level" not in irrelevant
     return set(irrelevant)
 
@@ -120,13 +113,7 @@ def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Pat
 def shaping(act: str) -> list[bool]:
     """Returns for each draw of a dynamic model, in order, whether it is known to shape only what is
     observed."""
-    project = text_project(
-        {
-            "home.ef": HOME,
-            "act.sd": f"project: test\ndynamic_model:\n{act}\n",
-            "act.am": mapping_of_model(act),
-        }
-    )
+    project = acting(HOME, act)
     (snippet,) = [part.code for part in project.skills[0].model.dynamic_model if part.code is not None]
     starts = sensing_draws(project)[snippet]
     return [at.start() in starts for at in re.finditer(r"AOS(Utils::|\.)", snippet.code)]
@@ -204,12 +191,12 @@ def test_groundings_differ_where_the_precondition_or_the_world_asks_for_them() -
     ],
 )
 def test_a_reward_is_certain_where_draws_shape_only_what_is_observed(act: str, is_certain: bool) -> None:
-    assert certain(acting(act)) == ({"act"} if is_certain else set())
+    assert certain(grounded(act)) == ({"act"} if is_certain else set())
 
 
 def test_no_reward_is_certain_where_the_world_draws() -> None:
-    assert certain(acting("__reward = -1;", extrinsic="state_.level += 1;")) == {"act"}
-    assert certain(acting("__reward = -1;", extrinsic="state_.level += AOS.Bernoulli(0.5);")) == set()
+    assert certain(grounded("__reward = -1;", extrinsic="state_.level += 1;")) == {"act"}
+    assert certain(grounded("__reward = -1;", extrinsic="state_.level += AOS.Bernoulli(0.5);")) == set()
 
 
 def certain(project: Project) -> frozenset[str]:
@@ -218,20 +205,14 @@ def certain(project: Project) -> frozenset[str]:
 
 def looking(act: str, extrinsic: str = "", precondition: str = "") -> frozenset[str]:
     """The skills of which all grounded actions do the same, among `act`."""
-    return skills_alike(acting(act, extrinsic, precondition))
+    return skills_alike(grounded(act, extrinsic, precondition))
 
 
-def acting(act: str, extrinsic: str = "", precondition: str = "") -> Project:
+def grounded(act: str, extrinsic: str = "", precondition: str = "") -> Project:
     """Documents of the skill `act`, which has a parameter `at`."""
-    parameter = (
+    before = (
         "parameter: int at\navailable_parameters_code:\n__possibleParameters.push_back(std::make_tuple(0));\n"
     )
-    return text_project(
-        {
-            "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
-            "act.sd": f"project: test\n{parameter}"
-            + (f"precondition:\n{precondition}\nviolate_penalty: -5\n" if precondition else "")
-            + f"dynamic_model:\n{act}\n",
-            "act.am": mapping_of_model(act),
-        }
-    )
+    if precondition:
+        before += f"precondition:\n{precondition}\nviolate_penalty: -5\n"
+    return acting(HOME, act, extrinsic=extrinsic, before=before)
