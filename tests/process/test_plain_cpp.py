@@ -43,6 +43,16 @@ state_variable: vector<bool> flags
 code:
 state.flags = {true, false, true};
 
+state_variable: std::pair<int, int> spot
+code:
+state.spot = {2, 5};
+
+state_variable: set<pair<int, int>> kept
+code:
+state.kept = {{3, 1}, {1, 2}, {3, 1}};
+
+state_variable: std::unordered_map<Chosen, set<int>> sorted
+
 state_variable: Parameters first
 
 state_variable: Parameters second
@@ -101,6 +111,17 @@ CODE = {
         "auto copy = state.row; std::erase_if(copy, [](int n) { return n < 3; });"
         "vector<int>* list = &state__.other; __reward = list->size() * 10 + copy.size() + all->size();",
         21,
+    ),
+    "sorted": (
+        "auto [x, y] = state.spot; state__.sorted[Red] = {y, x, y}; state__.kept.emplace(9, amount);"
+        "std::set<std::pair<int, int>> mine = state__.kept; mine.erase({3, 1});"
+        "for (const auto& [key, values] : state__.sorted) __reward += 10 * values.size() + *values.begin();"
+        "std::pair<int, int> spot{1, 2}; bool is_kept = state.kept.find(spot) != state.kept.end();"
+        "if (is_kept && !state__.sorted.count(Blue)) __reward += mine.size();"
+        "state__.kept = state.kept; state__.kept.erase(spot); __reward += 100 * (state__.kept < state.kept);"
+        "spot = state.spot; __reward += spot.second + 1000 * state.kept.contains(state.spot);"
+        "try { state__.sorted.at(Blue).insert(1); } catch (const std::out_of_range&) { __reward += 0.5; }",
+        20 + 2 + 2 + 0 + 5 + 0.5,
     ),
     "method": (
         "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
-from aos_solver.emission.lower_capacities import Capacities
+from aos_solver.emission.lower_capacities import GROWING_CAPACITY, Capacities
 from aos_solver.emission.program import Axis, Enum
 
 _PLAIN = frozenset({
@@ -17,6 +17,7 @@ _PLAIN = frozenset({
     "unsigned short int",
 })  # fmt: skip
 _OVER_ENUM = re.compile(r"(.+)\[([A-Za-z_]\w*)\]")
+_SORTED = re.compile(r"(pair(?=<.+,)|(?:unordered_)?(?:map(?=<.+,)|set))<(.+)>")
 _RANGE = re.compile(r"\(\s*(-?\d+)\s*,\s*(-?\d+)\s*,\s*([1-9]\d*)\s*\)")
 
 
@@ -109,16 +110,32 @@ class Types:
         array = re.fullmatch(r"array<(.+),\s*(\d+)\s*>", text)
         if array is not None:
             return f"std::array<{self._stored(array[1], name, span, level + 1)}, {array[2]}>"
+        if (sorted_type := _SORTED.fullmatch(text)) is not None:
+            return self._sorted(
+                sorted_type[1].removeprefix("unordered_"), _arguments(sorted_type[2]), name, span, level
+            )
         if text == "string":
             return "aos::Text"
         if text in self._named or text in _PLAIN:
             return self._qualified(text)
         if re.search(r"\w\s*<", text) or text.endswith(("*", "&")):
-            hint = "Use vector<...>, a compound type, or a map variable over finite keys"
+            hint = "Use vector, pair, set or map, a compound type, or a map variable over finite keys"
             self._findings.error("AOS124", f"a state cannot hold a `{text}`", span, hint)
         else:
             self._unknown(text, span)
         return "int"
+
+    def _sorted(self, kind: str, arguments: list[str], name: str, span: Span, level: int) -> str:
+        """A pair; or a set or a map, of as many keys as an enum has values, else as a vector elements."""
+        stored = [self._stored(argument, name, span, level + 1) for argument in arguments[:2]]
+        element = f"aos::Pair<{', '.join(stored)}>" if kind in ("pair", "map") else stored[0]
+        if kind == "pair":
+            return element
+        keys = self._enums.get(arguments[0])
+        # Code that indexes a map makes it grow.
+        capacity = max(self._capacities.capacity(name, level), GROWING_CAPACITY if kind == "map" else 0)
+        capacity = len(keys.values) if keys is not None else capacity
+        return f"aos::{kind.title()}<aos::Vector<{element}, {capacity}>>"
 
     def _over_enum(self, enum: str, element: str, span: Span) -> str:
         """The type of an array over an enum."""
@@ -141,6 +158,18 @@ class Types:
 def _normal(text: str) -> str:
     text = " ".join(text.replace("std::", "").split())
     return re.sub(r"\s*([<>,\[\]])\s*", r"\1", text)
+
+
+def _arguments(text: str) -> list[str]:
+    """The arguments of a template, which are divided by commas outside inner brackets."""
+    arguments, depth = [""], 0
+    for character in text:
+        depth += (character == "<") - (character == ">")
+        if character == "," and depth == 0:
+            arguments.append("")
+        else:
+            arguments[-1] += character
+    return arguments
 
 
 def _element_type(text: str) -> str | None:

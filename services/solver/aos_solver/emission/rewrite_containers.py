@@ -11,7 +11,7 @@ from aos_language.cpp.flow import STATES
 from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind
 
 _CONTAINER_REFERENCE = re.compile(
-    r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
+    r"((?:std\s*::\s*)?(?:vector|map|set|pair)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
 )
 _CONTAINER_POINTER = re.compile(_CONTAINER_REFERENCE.pattern.replace("&", r"\*"))
 _FUNCTION_OF_REFERENCE = re.compile(
@@ -20,7 +20,7 @@ _FUNCTION_OF_REFERENCE = re.compile(
 _STD = re.compile(r"std\s*::\s*")
 _OF_VECTORS = frozenset({"erase", "erase_if", "swap"})
 _ITERATOR = re.compile(
-    r"((?:std\s*::\s*)?(?:vector|map|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
+    r"((?:std\s*::\s*)?(?:vector|map|set|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
 )
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})

@@ -19,6 +19,7 @@
 #include "aos/model/model_table.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/reporting.hpp"
+#include "aos/model/sorted.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/text.hpp"

@@ -1,0 +1,144 @@
+// Pairs, sets and maps of fixed storage, with the part of the standard ones' interface that documents use.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+#include "aos/model/containers.hpp"
+
+namespace aos {
+
+// It converts from and to std::pair.
+template <class First, class Second>
+struct Pair {
+  First first{};
+  Second second{};
+
+  Pair() = default;
+  Pair(const First& one, const Second& other) : first(one), second(other) {}
+  template <class One, class Other>
+  Pair(const std::pair<One, Other>& pair) : first(pair.first), second(pair.second) {}
+  template <class One, class Other>
+  operator std::pair<One, Other>() const {
+    return {first, second};
+  }
+  template <class Self, class Visit>
+  static void aos_fields(Self& self, Visit&& visit) {
+    visit("first", self.first);
+    visit("second", self.second);
+  }
+  bool operator==(const Pair&) const = default;
+  auto operator<=>(const Pair&) const = default;
+};
+
+// A Vector in the order of its elements' keys, each of which is there once: those of pairs in a map, else the elements
+// themselves. It converts from and to the standard containers. More keys than the capacity are a ModelFault.
+template <class Store, class Key>
+class Sorted : public Store {
+  using T = typename Store::value_type;
+
+ public:
+  using key_type = Key;
+  using iterator = typename Store::iterator;
+  using Store::begin;
+  using Store::end;
+  using Store::erase;
+
+  Sorted() = default;
+  Sorted(std::initializer_list<T> elements) { insert(elements.begin(), elements.end()); }
+  template <class Iterator>
+  Sorted(Iterator first, Iterator last) {
+    insert(first, last);
+  }
+  template <class Other>
+    requires requires { typename Other::node_type; }
+  Sorted(const Other& other) : Sorted(other.begin(), other.end()) {}
+  template <class Other>
+    requires requires { typename Other::node_type; }
+  operator Other() const {
+    return Other(begin(), end());
+  }
+
+  iterator lower_bound(const Key& key) {
+    return std::partition_point(begin(), end(), [&](const T& each) { return key_in(each) < key; });
+  }
+  iterator find(const Key& key) {
+    const iterator at = lower_bound(key);
+    return at != end() && key_in(*at) == key ? at : end();
+  }
+  const T* lower_bound(const Key& key) const { return mine().lower_bound(key); }
+  const T* find(const Key& key) const { return mine().find(key); }
+  bool contains(const Key& key) const { return find(key) != end(); }
+  std::size_t count(const Key& key) const { return contains(key); }
+
+  std::pair<iterator, bool> insert(const T& element) {
+    const iterator at = lower_bound(key_in(element));
+    if (at != end() && key_in(*at) == key_in(element)) return {at, false};
+    return {Store::insert(at, element), true};
+  }
+  iterator insert(const T* /*hint*/, const T& element) { return insert(element).first; }
+  template <class Iterator>
+  void insert(Iterator first, Iterator last) {
+    for (; first != last; ++first) insert(T(*first));
+  }
+  void insert(std::initializer_list<T> elements) { insert(elements.begin(), elements.end()); }
+  template <class... Arguments>
+  std::pair<iterator, bool> emplace(Arguments&&... arguments) {
+    return insert(T(std::forward<Arguments>(arguments)...));
+  }
+  std::size_t erase(const Key& key) {
+    const iterator at = find(key);
+    if (at == end()) return 0;
+    Store::erase(at);
+    return 1;
+  }
+
+  friend bool operator==(const Sorted& left, const Sorted& right) {
+    return static_cast<const Store&>(left) == static_cast<const Store&>(right);
+  }
+
+ protected:
+  static const Key& key_in(const T& element) {
+    if constexpr (std::is_same_v<Key, T>) {
+      return element;
+    } else {
+      return element.first;
+    }
+  }
+
+ private:
+  Sorted& mine() const { return const_cast<Sorted&>(*this); }
+};
+
+template <class Store>
+using Set = Sorted<Store, typename Store::value_type>;
+
+template <class Store>
+class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type::first)>> {
+  using Base = Sorted<Store, std::remove_cvref_t<decltype(Store::value_type::first)>>;
+  using Key = typename Base::key_type;
+
+ public:
+  using Base::Base;
+  Map() = default;
+
+  auto& operator[](const Key& key) { return this->insert({key, {}}).first->second; }
+  auto& at(const Key& key) { return found(this->find(key)); }
+  const auto& at(const Key& key) const { return found(this->find(key)); }
+  auto insert_or_assign(const Key& key, const auto& value) {
+    (*this)[key] = value;
+    return this->find(key);
+  }
+
+ private:
+  auto& found(auto at) const {
+    if (at == this->end()) out_of_range(-1, this->size());
+    return at->second;
+  }
+};
+
+}  // namespace aos
