@@ -33,7 +33,7 @@ class SplitDraws final : public DirectedDraws {
   // Goes to the next path. Returns false after the last one.
   bool advance() {
     choices_.resize(depth_);
-    if (!is_certain_) learn_last_draws();
+    if (!at_.is_certain) learn_last_draws();
     while (!choices_.empty() && choices_.back().following < 0) choices_.pop_back();
     if (choices_.empty()) return false;
     choices_.back().taken = choices_.back().following;
@@ -42,52 +42,58 @@ class SplitDraws final : public DirectedDraws {
   }
 
   // The weight of the path, times that of the numbers that it reports.
-  double weight() const { return weight_ * weight_of_numbers(); }
+  double weight() const { return at_.weight * weight_of_numbers(); }
   // Whether no draw of the path was left to chance.
-  bool is_certain() const { return is_certain_; }
+  bool is_certain() const { return at_.is_certain; }
   std::size_t draws() const { return depth_; }
 
-  int choose(const double* weights, int count, double total) override {
+  [[gnu::optimize("O2")]] int choose(const double* weights, int count, double total) override {
     const bool is_sensing = takes_sensing();
+    // All choices but the last one are those of the path before.
+    if (depth_ + 1 < choices_.size()) return choices_[depth_++].taken;
     if (depth_ == choices_.size()) {
       if (depth_ == max_draws_of_path) throw NotEnumerable{"a step draws too often"};
-      const bool is_heavy = weight_ >= threshold_;
-      const bool is_split = is_heavy || ((is_sensing || depth_ >= last_draws_) && branches_ * count <= max_light_branches);
-      if (is_split) {
-        choices_.push_back({next_outcome(weights, count, -1), none, count, !is_heavy});
-      } else {
-        choices_.push_back({random_.choose(weights, count, total), drawn, count, false});
+      const bool is_heavy = at_.weight >= threshold_;
+      const bool is_split = is_heavy || ((is_sensing || depth_ >= last_draws_) && at_.branches * count <= max_light_branches);
+      if (!is_split) {
+        choices_.push_back({random_.choose(weights, count, total), none, count, false, at_});
+        ++depth_;
+        at_.is_certain = false;
+        return choices_.back().taken;
       }
+      choices_.push_back({next_outcome(weights, count, -1), none, count, !is_heavy, at_});
+    } else {
+      at_ = choices_[depth_].before;
     }
     Choice& choice = choices_[depth_++];
-    if (choice.following == drawn) {
-      is_certain_ = false;
-      return choice.taken;
-    }
     choice.following = next_outcome(weights, count, choice.taken);
-    weight_ *= weights[choice.taken] / total;
-    if (choice.is_light) branches_ *= count;
+    at_.weight *= weights[choice.taken] / total;
+    if (choice.is_light) at_.branches *= count;
     return choice.taken;
   }
   double uniform() override { throw NotEnumerable{"a draw is continuous"}; }
 
  private:
   static constexpr int none = -1;
-  static constexpr int drawn = -2;
-  static constexpr long max_light_branches = 12;
+  static constexpr long max_light_branches = 6;
 
+  // What holds of a path up to a draw.
+  struct Way {
+    double weight;
+    long branches;  // of a light path
+    bool is_certain;
+  };
   struct Choice {
     int taken;
-    int following;  // the outcome to walk next; `none` after the last one, `drawn` where chance took the only one
+    int following;  // the outcome to walk next; `none` after the last one, and where chance took the only one
     int count;
     bool is_light;  // a split of a light path
+    Way before;
   };
 
   void begin_path() {
     depth_ = 0;
-    weight_ = start_weight_;
-    branches_ = 1;
-    is_certain_ = true;
+    at_ = {start_weight_, 1, true};
     begin_numbers();
   }
   // The last draws are as many as have few combinations.
@@ -108,11 +114,9 @@ class SplitDraws final : public DirectedDraws {
   double threshold_ = 0;
   std::vector<Choice> choices_;
   std::size_t depth_ = 0;
-  double weight_ = 1;
-  long branches_ = 1;  // of a light path
+  Way at_{1, 1, true};
   std::size_t last_draws_ = max_draws_of_path;  // the place of the first of them
   std::size_t next_last_draws_ = max_draws_of_path;
-  bool is_certain_ = true;
 };
 
 }  // namespace aos

@@ -34,7 +34,7 @@ namespace aos {
 inline constexpr std::size_t max_weighted_states = 100'000;
 inline constexpr std::size_t max_weighted_bytes = std::size_t{64} << 20;
 inline constexpr int max_initial_paths = 1'000'000;
-inline constexpr std::size_t max_enumerated_paths = 4'000'000;  // of one update of an exact belief
+inline constexpr std::size_t max_enumerated_paths = 1'000'000;  // of one update of an exact belief
 inline constexpr std::size_t max_predicted_paths = 200'000;  // beyond these a prediction is drawn
 inline constexpr double negligible_weight = 1e-12;
 inline constexpr double negligible_error = 1e-6;  // of a belief that counts as exact

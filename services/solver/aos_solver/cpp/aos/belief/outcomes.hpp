@@ -12,7 +12,7 @@ namespace aos {
 
 // Calls `visit(before, next, observation, weight)` for nearly every outcome of an action. Returns the weight
 // of the others. `numbers` takes the numbers that steps report. Throws NotEnumerable if a step cannot be
-// enumerated, or if there are more than `max_paths` paths, which the first states often tell.
+// enumerated, or if there are more than `max_paths` paths, which the states so far often tell.
 template <class Model, class Visit>
 double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int action, NumberSink& numbers,
                           std::size_t max_paths, Visit&& visit) {
@@ -33,7 +33,7 @@ double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int act
     left_out += particle.weight * draws.for_nearly_each_path(run, [&](Enumerator& path) {
       visit(particle.state, next, step.observation, particle.weight * path.probability());
     });
-    if (++states == telling && paths / telling > 2 * max_paths / particles.size()) {
+    if (++states % telling == 0 && paths / states > 2 * max_paths / particles.size()) {
       throw NotEnumerable{"too many outcomes"};
     }
   }

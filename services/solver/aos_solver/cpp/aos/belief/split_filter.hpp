@@ -18,8 +18,8 @@
 
 namespace aos {
 
-inline constexpr double split_paths = 400'000;             // of one update, about
-inline constexpr std::size_t max_split_work = 8'000'000;  // in draws; after as many, less is split
+inline constexpr double split_paths = 200'000;             // of one update, about
+inline constexpr std::size_t max_split_work = 4'000'000;  // in draws; after as many, less is split
 
 template <class Model>
 class SplitFilter {
