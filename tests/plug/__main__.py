@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import latency, missions, monitored, stopping, takeovers
+from . import faults, latency, load, missions, modelled, monitored, presence, stopping, takeovers
 
 
 class Part(NamedTuple):
@@ -24,6 +24,12 @@ class Part(NamedTuple):
 
 PARTS: Mapping[str, Part] = {
     "latency": Part("activations on the way to a skill and back", latency.add_options, latency.measure),
+    "faults": Part("adapters that do everything wrong", faults.add_options, faults.measure),
+    "load": Part("many skills, topics at a high rate", load.add_options, load.measure),
+    "presence": Part("adapters that leave and come back", presence.add_options, presence.measure),
+    "modelled": Part(
+        "missions that the model plays, and simulated ones", modelled.add_options, modelled.measure
+    ),
     "stopping": Part("skills that are stopped while they run", stopping.add_options, stopping.measure),
     "missions": Part("missions one after the other", missions.add_options, missions.measure),
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),
