@@ -17,10 +17,9 @@ double told(const std::vector<std::uint32_t>& visits, double doubt_of_visit) {
   tree.give_actions(0);
   const std::uint32_t action = tree.history(0).first_action;
   tree.action(action).n = 100;
-  tree.action(action).doubt = 100 * doubt_of_visit;
   aos::Observation seen = 0;
   for (const std::uint32_t n : visits) tree.history(tree.add_child(action, seen++)).n = n;
-  return aos::information_of(tree, tree.action(action));
+  return aos::information_of(tree, tree.action(action), 100 * doubt_of_visit);
 }
 
 TEST("An observation that is certain in each state tells its whole entropy, and one that is noise tells nothing") {

@@ -47,6 +47,7 @@ TEST("A copied subtree has what is below its root, and nothing else") {
   tree.history(root).n = 11;
   tree.give_actions(root);
   tree.action(action_of(tree, root, 1)).q = 2.5;
+  tree.told(tree.action(action_of(tree, root, 1))).information = 0.5;
   for (int observation = 0; observation < 9; ++observation) {
     const std::uint32_t child = tree.add_child(action_of(tree, root, 1), observation);
     tree.history(child).v = observation;
@@ -58,6 +59,7 @@ TEST("A copied subtree has what is below its root, and nothing else") {
   EXPECT_EQUAL(copy.size(), 10u);
   EXPECT_EQUAL(copy.history(0).n, 11u);
   EXPECT_EQUAL(copy.action(action_of(copy, 0, 1)).q, 2.5);
+  EXPECT_EQUAL(copy.told(copy.action(action_of(copy, 0, 1))).information, 0.5);
   for (int observation = 0; observation < 9; ++observation) {
     const std::uint32_t child = copy.find_child(action_of(copy, 0, 1), observation);
     EXPECT(child != aos::no_node);

@@ -81,6 +81,7 @@ class SearchTree {
   // The actions of a history that has them, as an array.
   ActionNode* actions(const HistoryNode& history) { return actions_.data() + history.first_action; }
   const ActionNode* actions(const HistoryNode& history) const { return &actions_[history.first_action]; }
+  ActionNode& action(std::uint32_t number) { return actions_[number]; }
   Told& told(const ActionNode& action) {
     if (told_.size() < actions_.size()) {
       told_.reserve(actions_.capacity());
