@@ -53,6 +53,10 @@ state.kept = {{3, 1}, {1, 2}, {3, 1}};
 
 state_variable: std::unordered_map<Chosen, set<int>> sorted
 
+state_variable: map<int, int> stock
+code:
+state.stock = {{1, 5}, {4, 6}};
+
 state_variable: Parameters first
 
 state_variable: Parameters second
@@ -122,6 +126,15 @@ CODE = {
         "spot = state.spot; __reward += spot.second + 1000 * state.kept.contains(state.spot);"
         "try { state__.sorted.at(Blue).insert(1); } catch (const std::out_of_range&) { __reward += 0.5; }",
         20 + 2 + 2 + 0 + 5 + 0.5,
+    ),
+    "found": (
+        "auto at = state__.stock.find(4); at->second += amount;"
+        "auto [low, high] = state__.stock.equal_range(1);"
+        "for (auto it = low; it != high; ++it) it->second = 0;"
+        "auto [old, is_new] = state__.stock.try_emplace(4, 1);"
+        "__reward = old->second + 10 * is_new + 100 * (state__.stock.upper_bound(1) == at);"
+        "for (const auto& [key, value] : state__.stock) __reward += value;",
+        9 + 100 + 9,
     ),
     "method": (
         "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"

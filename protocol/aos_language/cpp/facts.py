@@ -9,12 +9,14 @@ from aos_language.cpp.tokens import Extent, Fault
 
 CHANGING_METHODS = frozenset({
     "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "insert", "insert_or_assign",
-    "pop", "pop_back", "push", "push_back", "reserve", "resize", "swap",
+    "pop", "pop_back", "push", "push_back", "reserve", "resize", "swap", "try_emplace",
 })  # fmt: skip
-HANDLE_METHODS = frozenset({"begin", "data", "end", "rbegin", "rend"})
+HANDLE_METHODS = frozenset({
+    "begin", "data", "end", "equal_range", "find", "lower_bound", "rbegin", "rend", "upper_bound",
+})  # fmt: skip
 READING_METHODS = frozenset({
-    "at", "back", "c_str", "compare", "contains", "count", "empty", "find", "front", "length", "rfind",
-    "size", "str", "substr", "top",
+    "at", "back", "c_str", "compare", "contains", "count", "empty", "front", "length", "rfind", "size", "str",
+    "substr", "top",
 })  # fmt: skip
 READING_FUNCTIONS = frozenset({
     "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",

@@ -70,7 +70,13 @@ class Sorted : public Store {
     const iterator at = lower_bound(key);
     return at != end() && key_in(*at) == key ? at : end();
   }
+  iterator upper_bound(const Key& key) {
+    const iterator at = lower_bound(key);
+    return at != end() && key_in(*at) == key ? std::next(at) : at;
+  }
+  std::pair<iterator, iterator> equal_range(const Key& key) { return {lower_bound(key), upper_bound(key)}; }
   const T* lower_bound(const Key& key) const { return mine().lower_bound(key); }
+  const T* upper_bound(const Key& key) const { return mine().upper_bound(key); }
   const T* find(const Key& key) const { return mine().find(key); }
   bool contains(const Key& key) const { return find(key) != end(); }
   std::size_t count(const Key& key) const { return contains(key); }
@@ -129,6 +135,11 @@ class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type:
   auto& operator[](const Key& key) { return this->insert({key, {}}).first->second; }
   auto& at(const Key& key) { return found(this->find(key)); }
   const auto& at(const Key& key) const { return found(this->find(key)); }
+  auto try_emplace(const Key& key, auto&&... arguments) {
+    const auto at = this->find(key);
+    if (at != this->end()) return std::pair{at, false};
+    return this->insert({key, {std::forward<decltype(arguments)>(arguments)...}});
+  }
   auto insert_or_assign(const Key& key, const auto& value) {
     (*this)[key] = value;
     return this->find(key);
