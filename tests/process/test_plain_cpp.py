@@ -138,8 +138,8 @@ CODE = {
     ),
     "method": (
         "struct Half { int n; Half(int m) : n(m / 2) {} }; static int const four = 4; Half half(amount);"
-        "__reward = half.n * four;",
-        4,
+        "int most(std::max(amount, half.n)); __reward = half.n * four + most;",
+        7,
     ),
     "headers": (
         "std::any value = 3; std::forward_list<int> list{1, 2}; std::vector<int> sums(3);"

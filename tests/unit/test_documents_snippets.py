@@ -39,6 +39,9 @@ def mentions(code: str) -> list[tuple[str, Access]]:
         ("std::swap(state__.a, b);", "state__.a", Access.BIND),
         ("state__.m[make_tuple(1, 2)] = 3;", "state__.m[]", Access.WRITE),
         ("(flag ? state__.a : state__.b) = 1;", "state__.b", Access.WRITE),
+        ("Row row(amount * 2, state.count);", "amount", Access.READ),
+        ("Row row(nearest(amount));", "nearest", Access.CALL),
+        ("for (int n(std::max(low, high)); n > 0;) n--;", "high", Access.READ),
     ],
 )
 def test_an_access_path_says_what_happens_to_it(code: str, text: str, access: Access) -> None:

@@ -19,8 +19,6 @@ from aos_language.cpp.nodes import text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
-_OUTSIDE_FUNCTIONS = frozenset({"declaration_list", "translation_unit"})
-_SIGNS = frozenset({"abstract_array", "pointer", "reference"})
 
 
 class TreeReader:
@@ -246,13 +244,6 @@ class TreeReader:
             type_text += {"reference_declarator": "&", "pointer_declarator": "*"}.get(inner.type, "[]")
             inner = inner.child_by_field_name("declarator") or inner.named_children[-1]
         names = inner.named_children if inner.type == "structured_binding_declarator" else [inner]
-        if values := _values_read_as_types(inner):
-            self._push(value for value in values if value.type != "type_identifier")
-            for value in (value for value in values if value.type == "type_identifier"):
-                place = self.extent(value)
-                self.mentions.append(Mention((text_of(value),), Access.READ, place, place))
-            initial = inner.child_by_field_name("parameters")
-            names = [_child(inner, "declarator")]
         for name in names:
             if name.type == "identifier":
                 extent = self.extent(initial) if initial is not None else None
@@ -372,22 +363,6 @@ def _is_type(node: tree_sitter.Node | None) -> bool:
     while node is not None and node.type == "qualified_identifier":
         node = node.child_by_field_name("name")
     return node is not None and node.type in ("type_identifier", "template_type")
-
-
-def _values_read_as_types(node: tree_sitter.Node) -> list[tree_sitter.Node]:
-    """The values of `Row row(amount, a * b);` in a function's body, read as a function's declaration."""
-    outer = node.parent.parent if node.parent is not None else None
-    if node.type != "function_declarator" or outer is None or outer.type in _OUTSIDE_FUNCTIONS:
-        return []
-    parameters = node.child_by_field_name("parameters")
-    values = []
-    for part in parameters.named_children if parameters is not None else []:
-        kind, *rest = part.named_children
-        is_value = all(each.type.rpartition("_")[0] in _SIGNS for each in rest)
-        if kind.type != "type_identifier" or not is_value:
-            return []
-        values += [kind, *rest]
-    return values
 
 
 def _child(node: tree_sitter.Node, field: str) -> tree_sitter.Node:

@@ -9,28 +9,65 @@ MAX_CPU_S = 2.0
 """A text that is far from C++ takes the parser time that grows faster than the text."""
 _SHORT_BYTES = 10_000
 _PIECE_BYTES = 65536
-_PARSER = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language()))
+_LANGUAGE = tree_sitter.Language(tree_sitter_cpp.language())
+_PARSER = tree_sitter.Parser(_LANGUAGE)
+_DECLARED = "(declaration declarator: (function_declarator) @declared)"
+_LOCAL_FUNCTIONS = tree_sitter.Query(
+    _LANGUAGE,
+    f"[(compound_statement {_DECLARED}) (case_statement {_DECLARED}) (for_statement {_DECLARED})]",
+)
 
 
 def tree_of(text: str) -> tree_sitter.Node:
-    """The root of the tree of any text; places in it count bytes of UTF-8."""
-    return _PARSER.parse(text.encode("utf-8", "replace")).root_node
+    """The root of the tree of any text; places in it count bytes of UTF-8.
+
+    `Row row(amount);` in a body, which might declare a function, is read as `Row row{amount};`.
+    """
+    data = text.encode("utf-8", "replace")
+    return _with_variables(_PARSER.parse(data).root_node, data)
 
 
 def tree_soon(text: str) -> tree_sitter.Node | None:
     """The same; None where that takes more than `MAX_CPU_S` of processor time."""
     data = text.encode("utf-8", "replace")
     if len(data) <= _SHORT_BYTES:
-        return _PARSER.parse(data).root_node
+        return _with_variables(_PARSER.parse(data).root_node, data)
     started_s = time.thread_time()
 
     def is_over(*_: object) -> bool:
         return time.thread_time() - started_s > MAX_CPU_S
 
     try:
-        return _PARSER.parse(
+        root = _PARSER.parse(
             lambda offset, _: data[offset : offset + _PIECE_BYTES], progress_callback=is_over
         ).root_node
     except ValueError:
         _PARSER.reset()
         return None
+    return _with_variables(root, data)
+
+
+def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
+    """The tree with the variables that the parser has taken for functions."""
+    declared = tree_sitter.QueryCursor(_LOCAL_FUNCTIONS).captures(root).get("declared", ())
+    lists = [node.child_by_field_name("parameters") for node in declared]
+    starts = [values for values in lists if values is not None and _are_values(values)]
+    if not starts:
+        return root
+    text = bytearray(data)
+    for values in starts:
+        text[values.start_byte : values.start_byte + 1] = b"{"
+        text[values.end_byte - 1 : values.end_byte] = b"}"
+    return _PARSER.parse(bytes(text)).root_node
+
+
+def _are_values(parameters: tree_sitter.Node) -> bool:
+    """Returns whether what was read as parameters has neither names nor types of C++ alone."""
+    for part in parameters.named_children:
+        declarator = part.child_by_field_name("declarator")
+        is_named = declarator is not None and declarator.type == "identifier"
+        kind = part.child_by_field_name("type")
+        is_type = declarator is None and kind is not None and kind.type == "primitive_type"
+        if part.type != "parameter_declaration" or is_named or is_type:
+            return False
+    return parameters.named_child_count > 0

@@ -138,7 +138,8 @@ class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type:
   auto try_emplace(const Key& key, auto&&... arguments) {
     const auto at = this->find(key);
     if (at != this->end()) return std::pair{at, false};
-    return this->insert({key, {std::forward<decltype(arguments)>(arguments)...}});
+    using Value = std::remove_reference_t<decltype(at->second)>;
+    return this->insert({key, Value(std::forward<decltype(arguments)>(arguments)...)});
   }
   auto insert_or_assign(const Key& key, const auto& value) {
     (*this)[key] = value;
