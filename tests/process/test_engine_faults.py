@@ -90,20 +90,22 @@ async def refused(documents: dict[str, str], cache_dir: Path) -> Diagnostic:
     return refusal
 
 
-SLOW = "double root = 1; for (int i = 0; i < 50000000; ++i) root = std::sqrt(root + 1); COUNT += root > 9;"
+def slow(name: str, rounds: int) -> str:
+    """Code that takes so many rounds, of some 10 ns, to leave a variable as it is."""
+    return (
+        f"double root = 1; for (int i = 0; i < {rounds}; ++i) root = std::sqrt(root + 1); {name} += root > 9;"
+    )
 
 
 async def test_code_that_makes_steps_slow_is_told_at_its_statement(cache_dir: Path) -> None:
-    code = f"int quick = 1;\nquick += 2;\n{SLOW.replace('COUNT', 'state__.count')}"
+    code = f"int quick = 1;\nquick += 2;\n{slow('state__.count', 40_000_000)}"
     refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
     assert (refusal.code, str(refusal.span)) == ("AOS211", "press.sd:7:53")
     assert "of that here" in refusal.message
 
 
 async def test_of_slow_code_in_many_places_the_environment_document_is_told(cache_dir: Path) -> None:
-    changes, moves, earns = (
-        SLOW.replace("COUNT", name) for name in ("state_.count", "state__.count", "__reward")
-    )
+    changes, moves, earns = (slow(name, 15_000_000) for name in ("state_.count", "state__.count", "__reward"))
     documents = counting("lamp", "press", code=moves, steps="1000")
     documents["lamp.ef"] += f"{earns}\n\nextrinsic_code:\n{changes}\n"
     refusal = await refused(documents, cache_dir)
