@@ -118,11 +118,11 @@ def epoch_of_solver(bus: Bus, keys: Keys) -> Callable[[str], Awaitable[int | Non
     return asked
 
 
-async def is_given_up(bus: Bus, keys: Keys, id: ActivationId) -> bool:
-    """Asks the solver on the bus whether its mission has begun this activation and does not wait for it.
+async def is_waited_for(bus: Bus, keys: Keys, id: ActivationId) -> bool | None:
+    """Asks the solver on the bus whether it waits for this activation; None where it does not answer.
 
-    Whoever asks may just have lost its own link, and asks for a while. Of calls by hand, and where no solver
-    answers, nobody says so.
+    Whoever asks may just have lost its own link, and asks for a while. A call by hand is none of the
+    solver's: whoever made it waits for it.
     """
     state = await _state_of_solver(bus, keys)
     for _ in range(_LINK_TIMES):
@@ -130,9 +130,9 @@ async def is_given_up(bus: Bus, keys: Keys, id: ActivationId) -> bool:
             break
         await asyncio.sleep(_LINK_S)
         state = await _state_of_solver(bus, keys)
-    if state is None or state.mission != id.mission:
-        return False
-    return state.phase != "acting" or state.step != id.step
+    if state is None:
+        return None
+    return state.mission != id.mission or (state.phase == "acting" and state.step == id.step)
 
 
 async def _state_of_solver(bus: Bus, keys: Keys) -> MissionState | None:

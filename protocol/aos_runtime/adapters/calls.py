@@ -19,7 +19,7 @@ from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.adapters.results import result_of
 from aos_runtime.adapters.running_call import RunningCall, last_progress
 from aos_runtime.adapters.settings import AdapterSettings, Binding
-from aos_runtime.fence import Fence, epoch_of_solver, is_given_up
+from aos_runtime.fence import Fence, epoch_of_solver, is_waited_for
 from aos_runtime.lifecycle import Service
 from aos_runtime.older_python import timeout
 from aos_runtime.subscription import Subscription
@@ -142,20 +142,26 @@ class Calls:
     async def _check_that_it_is_wanted(self, request: SkillCall) -> None:
         """Refuses a call that would begin now, and may have come while this process stood still.
 
-        Its middleware has perhaps given it up, and the mission holds or does something else.
+        Its middleware has perhaps given it up, and the mission holds or does something else. A robot that
+        moves while nobody looks is worse than one that is asked twice.
         """
         if not self._has_solver or not self._pauses.was_there_one:
             return
         is_running = self._running is not None and self._running.call.id == request.id
         if is_running or self._ledger.stored(request.id) is not None:
             return
-        if await is_given_up(self._bus, self._keys, request.id):
-            raise SkillError(
-                f"the call {request.id} of {request.path} comes too late: {self._settings.service} stood "
-                "still, and the mission does not wait for it any more",
-                code="AOS506",
-                hint="Nothing has moved; call it again if it is still wanted",
-            )
+        is_wanted = await is_waited_for(self._bus, self._keys, request.id)
+        if is_wanted:
+            return
+        reason = (
+            "nobody tells whether the mission waits" if is_wanted is None else "the mission does not wait"
+        )
+        raise SkillError(
+            f"the call {request.id} of {request.path} may be outdated: {self._settings.service} stood still, "
+            f"and {reason} for it",
+            code="AOS506",
+            hint="Nothing has moved; call it again if it is still wanted",
+        )
 
     def _begin(self, call: Call) -> RunningCall:
         task = asyncio.create_task(self._answer_of(self._adapter, call))
