@@ -36,6 +36,7 @@ def copies(act: str, extrinsic: str = "") -> Copies:
         "state__.level = state__.other = state.level + state.other;",
         "for (int i = 0; i < 2; i++) state__.row[i] = state.level;",
         "__reward = state.level;",
+        "int n = std::abs(state.level); const bool is_full = state.cup.full; state__.level = is_full + n;",
     ],
 )
 def test_one_object_does_where_all_is_read_before_it_is_written(act: str) -> None:
@@ -59,6 +60,15 @@ def test_one_object_does_where_all_is_read_before_it_is_written(act: str) -> Non
         "for (Cup* cup : state__.CupObjects) cup->full = true;\n__reward = state.cup.full;",
         "state__.row.clear(); __reward = state.row.size();",
         "state__ = state; state__.level = state.level;",
+        "auto cup = state.CupObjects[0]; state__.cup.full = true; __reward = cup->full;",
+        "vector<Cup*> cups = state.CupObjects; state__.cup.full = true; __reward = cups[0]->full;",
+        "const int& level(state.level); state__.level = 5; __reward = level;",
+        "int& level(state__.level); level = 5; __reward = state.level;",
+        "auto [low, high] = std::minmax(state.level, state.other); state__.level = 5; __reward = low;",
+        "auto at = std::ranges::find(state.row, 2); state__.row[1] = 5; __reward = *at;",
+        "auto turned = state.row | std::views::reverse; state__.row[1] = 5; __reward = *turned.begin();",
+        "struct Now { const int& level; }; Now now{state.level}; state__.level = 5; __reward = now.level;",
+        "std::span<int> row(state__.row); row[0] = 5; __reward = state.row[0];",
     ],
 )
 def test_the_old_state_is_kept_where_it_may_be_read_afterwards(act: str) -> None:

@@ -84,6 +84,22 @@ ALL = {"known", "count", "row", "cup"}
         ("int sum = std::accumulate(state.row.begin(), state.row.end(), 0); __reward = sum;", {"row"}),
         ("state__.level = state__.known = state.count;", {"known", "count"}),
         ("int was = state.known; { int now = was + 1; if (now > 3) __reward = -1; }", {"known"}),
+        ("for (Cup* cup : state__.CupObjects) cup->marks = state.known; __reward = state__.cup.marks;",
+         {"known", "cup"}),
+        ("vector<Cup*> all; for (auto c : state__.CupObjects) all.push_back(c); for (auto one : all)"
+         "one->full = state.known; if (state__.cup.full) __reward = 1;", {"known", "cup"}),
+        ("auto pay = [&] { __reward = 5; }; if (state.known) pay();", {"known"}),
+        ("vector<std::function<void()>> all{[&] { __reward = 1; }}; if (state.known) all[0]();", {"known"}),
+        ("int& level(state__.level); level = state.known;", {"known"}),
+        ("int* level(&state__.level); *level = state.known;", {"known"}),
+        ("int sum = 0; auto [a, b] = std::tie(sum, state.level); a = state.known; __reward = sum;",
+         {"known"}),
+        ("int sums[2] = {}; auto sum = sums + 1; *sum = state.known; __reward = sums[1];", {"known"}),
+        ("struct Sum { int& n; }; int all = 0; Sum sum{all}; sum.n = state.known; __reward = all;",
+         {"known"}),
+        ("vector<int>::iterator at; at = state__.row.begin(); *at = state.known; __reward = state__.row[0];",
+         {"known", "row"}),
+        ("std::stringstream text; text << state.known; int n; text >> n; __reward = n;", {"known"}),
     ],
 )  # fmt: skip
 def test_a_variable_matters_if_what_is_earned_or_observed_may_depend_on_it(

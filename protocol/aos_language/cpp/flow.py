@@ -6,7 +6,7 @@ leads from to what is used has an effect on nothing.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 
 import msgspec
 import tree_sitter
@@ -56,16 +56,19 @@ class Flows(msgspec.Struct, frozen=True):
     is_opaque: bool = False
 
 
-def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset()) -> Flows:
-    """The flows of the statements of a function body; `reading` are functions that change nothing."""
+def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset(), shared: frozenset[str] = frozenset()) -> Flows:
+    """The flows of the statements of a function body; `reading` are functions that change nothing, `shared`
+    those that change at most what they are given."""
     if cpp.is_empty:
         return Flows()
     complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
     root = tree_of(f"void f() {{{complete}\n}}")
     if cpp.faults or root.has_error:
         return Flows(is_opaque=True)
-    walk = _Reading(reading - {declaration.name for declaration in cpp.declarations})
+    own = {declaration.name for declaration in cpp.declarations}
+    walk = _Reading(_Functions(READING_FUNCTIONS | (reading - own), shared - own))
     walk.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
+    walk.flows += walk.flows_through_handles()
     draws = sorted(part.start_byte for part in below(root) if is_draw(part))
     return Flows(
         tuple(walk.flows),
@@ -78,6 +81,13 @@ def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset()) -> Flows:
 _Control = frozenset[Name]
 
 
+class _Functions(msgspec.Struct, frozen=True):
+    """Functions by name: those that only read, and those that see nothing but what they are given."""
+
+    reading: frozenset[str]
+    shared: frozenset[str]
+
+
 class _Reading:
     """One walk over the statements.
 
@@ -85,11 +95,27 @@ class _Reading:
     where a `break` would leave one.
     """
 
-    def __init__(self, reading: frozenset[str]) -> None:
-        self._reading = READING_FUNCTIONS | reading
+    def __init__(self, functions: _Functions) -> None:
+        self._functions = functions
         self.flows: list[Flow] = []
         self.used: set[Name] = set()
         self.looped: set[Name] = set()
+        self._made_of: dict[Name, set[Name]] = {}
+        self._handles: set[Name] = set()
+        self._values: set[Name] = set()
+
+    def flows_through_handles(self) -> Iterator[Flow]:
+        """Yields what changes where something is changed through a handle: what it is made of, also by way of
+        other variables."""
+        waiting = list(self._handles)
+        seen = set(waiting)
+        while waiting:
+            handle = waiting.pop()
+            for name in self._made_of.get(handle, ()):
+                yield Flow(name, frozenset({handle}))
+                if not name.is_of_state and name not in seen | self._values:
+                    seen.add(name)
+                    waiting.append(name)
 
     def statement(
         self, node: tree_sitter.Node | None, control: _Control, switch_control: _Control | None
@@ -165,7 +191,8 @@ class _Reading:
         self._no_effects(whole, control)
         inner = control | names_in(whole)
         self.looped |= inner
-        self._declare(declarator, inner, is_handle="reference" in declarator.type, of=names_in(whole))
+        is_handle = declarator.type in _HANDLE_DECLARATORS or _gives_handle(whole)
+        self._declare(declarator, inner, is_handle, of=names_in(whole))
         self.statement(node.child_by_field_name("body"), inner, None)
 
     def _declaration(self, node: tree_sitter.Node, control: _Control) -> None:
@@ -179,9 +206,12 @@ class _Reading:
             if value is not None:
                 self._no_effects(value, control)
             is_handle = any(part.type in _HANDLE_DECLARATORS for part in below(inner)) or (
-                value is not None and _gives_handle(value)
+                value is not None and (_gives_handle(value) or _has_effects(value, self._functions))
             )
-            self._declare(inner, control | initial, is_handle, of=initial)
+            is_value = _is_value_type(node.child_by_field_name("type")) and inner.type == "identifier"
+            if is_value:
+                self._values.add(Name(text_of(inner)))
+            self._declare(inner, control | initial, is_handle and not is_value, of=initial)
 
     def _declare(
         self, declarator: tree_sitter.Node, sources: _Control, is_handle: bool, of: frozenset[Name]
@@ -192,8 +222,10 @@ class _Reading:
                 continue
             local = Name(text_of(part))
             self.flows.append(Flow(local, sources))
+            self._made_of.setdefault(local, set()).update(of)
             if is_handle:
-                self.flows += [Flow(name, sources | {local}) for name in of]
+                self._handles.add(local)
+                self.flows += [Flow(name, sources) for name in of]
 
     # --- expressions -----------------------------------------------------------------------------------
 
@@ -212,30 +244,35 @@ class _Reading:
         elif (target := _changed_by_method(node)) is not None:
             arguments = node.child_by_field_name("arguments")
             self._change(node, target, arguments.named_children if arguments is not None else [], control)
-        elif _has_effects(node, self._reading):
+        elif _has_effects(node, self._functions):
             self.used |= control | names_in(node)
 
     def _change(
         self,
         node: tree_sitter.Node,
         target: tree_sitter.Node | None,
-        values: Iterable[tree_sitter.Node | None],
+        values: Sequence[tree_sitter.Node | None],
         control: _Control,
     ) -> None:
         name = _root(target)
         if (
             name is None
             or target is None
-            or any(_has_effects(part, self._reading) for part in (target, *values) if part)
+            or any(_has_effects(part, self._functions) for part in (target, *values) if part)
         ):
             self.used |= control | names_in(node)
             return
+        if not name.is_of_state and not name.text.startswith("__"):
+            made_of = (names_in(value) for value in values)
+            self._made_of.setdefault(name, set()).update(*made_of)
+            if _is_dereferenced(target) or any(_gives_handle(value) for value in values if value is not None):
+                self._handles.add(name)
         # The target's own name is a source as well, of an update as of an element among others.
         self.flows.append(Flow(name, control | names_in(node)))
 
     def _no_effects(self, node: tree_sitter.Node, control: _Control) -> None:
         """Notes an effect on the side as a doubt, where a value is expected."""
-        if _has_effects(node, self._reading):
+        if _has_effects(node, self._functions):
             self.used |= control | names_in(node)
 
 
@@ -295,6 +332,19 @@ def _of_state(node: tree_sitter.Node) -> Name | None:
     return Name(text_of(field), is_of_state=True)
 
 
+def _is_dereferenced(target: tree_sitter.Node) -> bool:
+    """Returns whether a change goes through what a variable refers to, or may do so."""
+    return target.type != "identifier"
+
+
+_NUMBERS = frozenset({"bool", "char", "double", "float", "int", "long", "short", "size_t", "unsigned"})
+
+
+def _is_value_type(node: tree_sitter.Node | None) -> bool:
+    """Returns whether a variable of the type, without `&` and `*`, refers to nothing else."""
+    return node is not None and text_of(node).split()[-1] in _NUMBERS
+
+
 def _root(node: tree_sitter.Node | None) -> Name | None:
     """Returns the name that changes when a place changes: `state__.x[i].y` is a part of `x`."""
     while node is not None:
@@ -330,19 +380,20 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
     return function.child_by_field_name("argument") if function is not None else None
 
 
-def _has_effects(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
-    """Returns whether evaluating it may change anything that is named in it; calls of `reading` functions
-    do not."""
-    return any(_is_effect(part, reading) for part in below(node))
+def _has_effects(node: tree_sitter.Node, functions: _Functions) -> bool:
+    """Returns whether evaluating it may change anything that is named in it."""
+    return any(_is_effect(part, functions) for part in below(node))
 
 
-def _is_effect(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
+def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
     if node.type == "pointer_expression":
         return node.children[0].type == "&"
-    return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node, reading))
+    if node.type == "binary_expression" and text_of(node.children[1]) in ("<<", ">>"):
+        return node.children[0].type == "identifier"  # It may be a stream.
+    return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node, functions))
 
 
-def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
+def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
     """Returns whether a call may change its object or an argument."""
     function = call.child_by_field_name("function")
     if function is None or function.type == "primitive_type":
@@ -351,8 +402,11 @@ def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
         is_draw = text_of(function).split(".")[0].strip() == "AOS" and method in _DRAWS
         return not is_draw and method not in READING_METHODS | HANDLE_METHODS
     name = text_of(function).split("<")[0].removeprefix("std::")
-    if name in reading or name.removeprefix("AOSUtils::") in _DRAWS:
+    if name in functions.reading or name.removeprefix("AOSUtils::") in _DRAWS:
         return False
+    is_global = function.type in ("qualified_identifier", "template_function") or name in functions.shared
+    if not is_global:
+        return True  # A lambda changes what it captures.
     return bool(names_in(call.child_by_field_name("arguments")))
 
 

@@ -236,6 +236,8 @@ class TreeReader:
     ) -> None:
         initial = node.child_by_field_name("value") if node.type == "init_declarator" else None
         inner = _child(node, "declarator") if node.type == "init_declarator" else node
+        if inner.type in ("reference_declarator", "pointer_declarator"):
+            initial = _within_brackets(initial)
         binds = inner.type == "reference_declarator" and not is_constant
         self._push([initial], Access.BIND if binds else Access.READ)
         while inner.type in ("reference_declarator", "pointer_declarator", "array_declarator"):
@@ -363,6 +365,13 @@ def _is_type(node: tree_sitter.Node | None) -> bool:
     while node is not None and node.type == "qualified_identifier":
         node = node.child_by_field_name("name")
     return node is not None and node.type in ("type_identifier", "template_type")
+
+
+def _within_brackets(initial: tree_sitter.Node | None) -> tree_sitter.Node | None:
+    """The place that a reference is bound to: `x` of `int& one{x}`."""
+    if initial is None or initial.type not in ("argument_list", "initializer_list"):
+        return initial
+    return initial.named_children[0] if initial.named_child_count == 1 else initial
 
 
 def _child(node: tree_sitter.Node, field: str) -> tree_sitter.Node:

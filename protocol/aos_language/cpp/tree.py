@@ -11,7 +11,10 @@ _SHORT_BYTES = 10_000
 _PIECE_BYTES = 65536
 _LANGUAGE = tree_sitter.Language(tree_sitter_cpp.language())
 _PARSER = tree_sitter.Parser(_LANGUAGE)
-_DECLARED = "(declaration declarator: (function_declarator) @declared)"
+_DECLARED = (
+    "(declaration declarator: [(function_declarator) @declared (reference_declarator (function_declarator)"
+    " @declared) (pointer_declarator declarator: (function_declarator) @declared)])"
+)
 _LOCAL_FUNCTIONS = tree_sitter.Query(
     _LANGUAGE,
     f"[(compound_statement {_DECLARED}) (case_statement {_DECLARED}) (for_statement {_DECLARED})]",
@@ -21,7 +24,8 @@ _LOCAL_FUNCTIONS = tree_sitter.Query(
 def tree_of(text: str) -> tree_sitter.Node:
     """The root of the tree of any text; places in it count bytes of UTF-8.
 
-    `Row row(amount);` in a body, which might declare a function, is read as `Row row{amount};`.
+    `Row row(amount);` and `int& one(total);` in a body, which might declare a function, are read as `Row
+    row{amount};` and `int& one{total};`.
     """
     data = text.encode("utf-8", "replace")
     return _with_variables(_PARSER.parse(data).root_node, data)
@@ -64,8 +68,11 @@ def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
 def _are_values(parameters: tree_sitter.Node) -> bool:
     """Returns whether what was read as parameters has neither names nor types of C++ alone."""
     for part in parameters.named_children:
+        if part.is_error:
+            continue
         declarator = part.child_by_field_name("declarator")
         is_named = declarator is not None and declarator.type == "identifier"
+        is_named = is_named and not any(child.is_error for child in part.children)  # Else it is `state.x`.
         kind = part.child_by_field_name("type")
         is_type = declarator is None and kind is not None and kind.type == "primitive_type"
         if part.type != "parameter_declaration" or is_named or is_type:

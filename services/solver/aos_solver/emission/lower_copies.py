@@ -9,13 +9,24 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from aos_language.cpp.snippets import Access, Cpp, Extent, Mention, strip_comments
+from aos_language.cpp.facts import READING_FUNCTIONS
+from aos_language.cpp.snippets import Access, Call, Cpp, DeclarationKind, Extent, Mention, strip_comments
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_solver.emission.lower_writes import LAMBDA
 
 _WHOLE_STATE = "*"
+_RESULTS = frozenset({"__reward", "__moduleResponse", "__moduleResponseStr"})
 _READING_METHODS = frozenset({"at", "back", "contains", "count", "empty", "front", "length", "size"})
+_VALUES = frozenset({
+    "array", "auto", "bool", "char", "const", "constexpr", "double", "float", "int", "int64_t", "long", "map",
+    "optional", "pair", "set", "short", "signed", "size_t", "static", "std", "string", "tuple", "uint8_t",
+    "unordered_map", "unordered_set", "unsigned", "vector",
+})  # fmt: skip
+"""The words in types of variables that refer to nothing else, whatever they start with."""
+_GIVING_VALUES = READING_FUNCTIONS | {
+    "accumulate", "all_of", "any_of", "binary_search", "count", "count_if", "distance", "equal", "none_of",
+}  # fmt: skip
 _REPEATED = re.compile(r"\b(?:for|while|do|goto)\b")
 """Words after which, as in lambdas, the order of the text is not that of the run."""
 
@@ -39,6 +50,15 @@ class _Use(msgspec.Struct, frozen=True):
     is_handle: bool = False
 
 
+class _Names(msgspec.Struct, frozen=True):
+    """Shared functions that may give a handle to what they are given, functions that give plain values, and
+    the words of types of such values."""
+
+    giving_handles: frozenset[str]
+    giving_values: frozenset[str]
+    types: frozenset[str]
+
+
 class _Uses(msgspec.Struct, frozen=True):
     """All uses in a section. The text of `unordered` snippets is not in the order of the run."""
 
@@ -50,30 +70,32 @@ class _Uses(msgspec.Struct, frozen=True):
 def copies_of(model: SkillModel, environment: Environment) -> Copies:
     """Returns the copies that a step of this skill needs; models with one state have no copies."""
     dynamic = model.dynamic_model
-    shared = shared_code_of(environment).changing
+    shared = shared_code_of(environment)
+    names = _Names(
+        shared.changing,
+        _GIVING_VALUES | shared.reading,
+        _VALUES | {enum.name for enum in environment.enums} | {each.name for each in environment.compounds},
+    )
     extrinsic = environment.extrinsic_changes
     if all(cpp.is_empty for _, cpp in snippets_of(extrinsic)):
-        return Copies(_reads_changed(dynamic, ("state", "state_"), "state__", shared), keeps_state_=False)
-    changed_before = {use.variable for use in _uses(extrinsic, ("state",), "state_", shared).writes}
-    read_after = {use.variable for use in _uses(dynamic, ("state",), "state__", shared).reads}
+        return Copies(_reads_changed(dynamic, ("state", "state_"), "state__", names), keeps_state_=False)
+    changed_before = {use.variable for use in _uses(extrinsic, ("state",), "state_", names).writes}
+    read_after = {use.variable for use in _uses(dynamic, ("state",), "state__", names).reads}
     return Copies(
         keeps_state=_overlap(changed_before, read_after)
-        or _reads_changed(extrinsic, ("state",), "state_", shared)
-        or _reads_changed(dynamic, ("state",), "state__", shared),
-        keeps_state_=_reads_changed(dynamic, ("state_",), "state__", shared),
+        or _reads_changed(extrinsic, ("state",), "state_", names)
+        or _reads_changed(dynamic, ("state",), "state__", names),
+        keeps_state_=_reads_changed(dynamic, ("state_",), "state__", names),
     )
 
 
 def _reads_changed(
-    section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, shared: frozenset[str]
+    section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, names: _Names
 ) -> bool:
-    """Returns whether the section may read an older copy of a variable after it has changed the newer one.
-
-    `shared` are functions that may give a handle to what they are given.
-    """
+    """Returns whether the section may read an older copy of a variable after it has changed the newer one."""
     if any(assignment.over_previous or assignment.over_next for assignment in section):
         return True
-    uses = _uses(section, older, newer, shared)
+    uses = _uses(section, older, newer, names)
     reads: dict[str, list[_Use]] = {}
     for read in uses.reads:
         reads.setdefault(read.variable, []).append(read)
@@ -101,23 +123,21 @@ def _is_before(read: _Use, write: _Use, unordered: frozenset[int]) -> bool:
     return read.extent.start < write.extent.start or is_in_path or _covers(write.assigned, read.extent)
 
 
-def _uses(
-    section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, shared: frozenset[str]
-) -> _Uses:
+def _uses(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, names: _Names) -> _Uses:
     reads, writes, unordered = [], [], set()
     for number, (_, cpp) in enumerate(snippets_of(section)):
         code = strip_comments(cpp.code)
         has_lambda = LAMBDA.search(code) is not None
         if has_lambda or _REPEATED.search(code):
             unordered.add(number)
-        bound = [*_bound(cpp), *_given_to(shared, cpp)]
+        bound = [*_bound(cpp, names), *_given_to(names.giving_handles, cpp)]
         for mention in cpp.mentions:
             variable = _variable(mention)
             if mention.path[0] in older:
                 is_bound = any(_covers(extent, mention.extent) for extent in bound)
                 is_handle = has_lambda or is_bound or _makes_handle(mention)
                 reads.append(_Use(variable, number, mention.extent, is_handle=is_handle))
-            elif mention.path[0] == newer and not _only_reads(mention, cpp):
+            elif mention.path[0] == newer and not _only_reads(mention, cpp, bound):
                 writes.append(_Use(variable, number, mention.extent, mention.assigned))
     return _Uses(reads, writes, frozenset(unordered))
 
@@ -129,15 +149,39 @@ def _variable(mention: Mention) -> str:
 
 def _makes_handle(mention: Mention) -> bool:
     """Returns whether the mention's value may be looked at later, when the variable has changed."""
+    is_counted = mention.method in ("size", "empty")
     is_method = bool(mention.method) and mention.method not in _READING_METHODS
-    return mention.access is not Access.READ or is_method
+    is_object = _variable(mention) == _WHOLE_STATE and mention.path[2:] in ((), ("[]",)) and not is_counted
+    return mention.access is not Access.READ or is_method or is_object
 
 
-def _bound(cpp: Cpp) -> Iterator[Extent]:
-    """Yields the expressions that references and pointers are made of, also those to constants."""
+def _bound(cpp: Cpp, names: _Names) -> Iterator[Extent]:
+    """Yields the expressions that references, pointers, iterators and views are made of."""
+    types = names.types | {enum.name for enum in cpp.declarations if enum.kind is DeclarationKind.ENUM}
     for declaration in cpp.declarations:
-        if declaration.initial is not None and declaration.type.endswith(("&", "*", "_view")):
+        if declaration.initial is None:
+            continue
+        words = re.findall(r"[A-Za-z_]\w*", declaration.type)
+        if not types.issuperset(words) or not {"&", "*"}.isdisjoint(declaration.type):
             yield declaration.initial
+        elif "auto" in words:
+            yield from _views_in(cpp, declaration.initial, names)
+    for mention in cpp.mentions:
+        if mention.assigned is not None and len(mention.path) == 1 and mention.path[0] not in _RESULTS:
+            yield from _views_in(cpp, mention.assigned, names)
+
+
+def _views_in(cpp: Cpp, value: Extent, names: _Names) -> Iterator[Extent]:
+    """Yields the parts of an expression that may still be looked at when it has been evaluated."""
+    if "views" in cpp.code[value.start : value.end]:
+        yield value
+    for call in cpp.calls:
+        if _covers(value, call.extent) and not _gives_value(call, names):
+            yield from call.arguments
+
+
+def _gives_value(call: Call, names: _Names) -> bool:
+    return bool(call.name) and (call.name[0] in ("AOS", "AOSUtils") or call.name[-1] in names.giving_values)
 
 
 def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:
@@ -147,10 +191,10 @@ def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:
             yield from call.arguments
 
 
-def _only_reads(mention: Mention, cpp: Cpp) -> bool:
+def _only_reads(mention: Mention, cpp: Cpp, bound: Iterable[Extent]) -> bool:
     """Returns whether nothing can change through this mention of a copy that may be changed."""
     arguments = (argument for call in cpp.calls for argument in call.arguments)
-    is_passed_on = any(_covers(argument, mention.extent) for argument in arguments)
+    is_passed_on = any(_covers(extent, mention.extent) for extent in (*arguments, *bound))
     return mention.access is Access.READ and _variable(mention) != _WHOLE_STATE and not is_passed_on
 
 

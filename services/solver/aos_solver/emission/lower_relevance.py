@@ -155,6 +155,7 @@ class _Influence:
         self._observations_matter = observations_matter
         self._shared = shared_code_of(environment)
         self._variables = frozenset(variable.name for variable in environment.variables)
+        self._compounds = frozenset(compound.name for compound in environment.compounds)
         self._types = {variable.name: variable.type for variable in environment.variables}
         self._sources: dict[tuple[int, Name], set[tuple[int, Name]]] = {}
         self._used: set[tuple[int, Name]] = set()
@@ -201,7 +202,8 @@ class _Influence:
 
     def flows(self, cpp: Cpp) -> Flows:
         """Returns what flows where in a snippet; shared functions that only read are looked through."""
-        return flows_of(read_cpp(looked_through(cpp, self._shared)), self._shared.reading)
+        shared = self._shared
+        return flows_of(read_cpp(looked_through(cpp, shared)), shared.reading, shared.all_names)
 
     # --- one snippet -----------------------------------------------------------------------------------
 
@@ -245,7 +247,9 @@ class _Influence:
             elif name.text in self._variables:
                 places.add((0, name))
             else:
-                places |= {(0, Name(variable, is_of_state=True)) for variable in self._variables}
+                listed = name.text.removesuffix("Objects") if name.text.endswith("Objects") else ""
+                variables = self._of_type(listed) if listed in self._compounds else self._variables
+                places |= {(0, Name(variable, is_of_state=True)) for variable in variables}
         return places
 
     def _of_type(self, type_name: str) -> list[str]:
