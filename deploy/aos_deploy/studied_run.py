@@ -30,9 +30,8 @@ T = TypeVar("T")
 class StudiedRun:
     """One mission of a run directory, which may still run: what its journal has now counts."""
 
-    def __init__(self, run: Path, file: str, mission: RecordedMission, settings: Settings) -> None:
+    def __init__(self, run: Path, mission: RecordedMission, settings: Settings) -> None:
         self.run = run
-        self.file = file
         self.mission = mission
         self.settings = settings
         self.documents = _Catalogued(run / "catalogue.db", settings.project)
@@ -65,7 +64,7 @@ class StudiedRun:
         with Journal.read(run / file) as journal:
             mission = recorded(journal.walk())
         settings = msgspec.structs.replace(settings, cache_dir=str(cache_dir()))
-        return cls(run, file, mission, settings)
+        return cls(run, mission, settings)
 
     async def study(self, ask: Callable[[Study], Awaitable[T]]) -> T:
         """The answer to one question about the mission."""

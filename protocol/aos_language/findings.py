@@ -36,8 +36,8 @@ class Findings:
     def warning(self, code: str, message: str, span: Span, hint: str = "", mend: Mend | None = None) -> None:
         self.add(Diagnostic(Severity.WARNING, code, message, span, hint, mend=mend))
 
-    def remark(self, code: str, message: str, span: Span, hint: str = "", mend: Mend | None = None) -> None:
-        self.add(Diagnostic(Severity.REMARK, code, message, span, hint, mend=mend))
+    def remark(self, code: str, message: str, span: Span, hint: str = "") -> None:
+        self.add(Diagnostic(Severity.REMARK, code, message, span, hint))
 
     def unknown(
         self,

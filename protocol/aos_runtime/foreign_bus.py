@@ -40,8 +40,7 @@ class Packet(NamedTuple):
 class ForeignBus(Closing):
     """A client's session on a router that may be of others. Belongs to the event loop that opened it."""
 
-    def __init__(self, session: zenoh.Session, endpoint: str) -> None:
-        self.endpoint = endpoint
+    def __init__(self, session: zenoh.Session) -> None:
         self.id = str(session.info.zid())
         self._session = session
         self._loop = asyncio.get_running_loop()
@@ -59,7 +58,7 @@ class ForeignBus(Closing):
             hint="With rmw_zenoh, start it with: ros2 run rmw_zenoh_cpp rmw_zenohd",
         )
         config = client_config(endpoint, stamps=True)
-        return cls(await opened_session(config, connect_timeout_s, _RETRY_S, fault), endpoint)
+        return cls(await opened_session(config, connect_timeout_s, _RETRY_S, fault))
 
     async def close(self) -> None:
         """Ends all that was declared here and running handlers. Closing twice does nothing."""

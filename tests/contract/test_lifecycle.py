@@ -20,6 +20,13 @@ from aos_runtime.children import PIPE, Child
 from aos_runtime.service_settings import fault_path
 
 TESTS = Path(__file__).parents[1]
+PROGRAM = ("-m", "small_service")
+IMPATIENT = """
+from aos_runtime import lifecycle
+from small_service import Settings, serve
+lifecycle.ROUTER_S = 0.1
+lifecycle.run_service(Settings, serve)
+"""
 
 
 class Host:
@@ -38,8 +45,10 @@ class Host:
         return path
 
     @asynccontextmanager
-    async def running(self, service: str, mood: str = "good") -> AsyncIterator[Child]:
-        argv = [sys.executable, "-m", "small_service", str(self.settings(service, mood))]
+    async def running(
+        self, service: str, mood: str = "good", program: tuple[str, str] = PROGRAM
+    ) -> AsyncIterator[Child]:
+        argv = [sys.executable, *program, str(self.settings(service, mood))]
         child = await Child.start(argv, env={"PYTHONPATH": str(TESTS)}, stderr=PIPE)
         try:
             yield child
@@ -94,7 +103,7 @@ async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys:
 
 async def test_a_service_without_a_router_says_so(tmp_path: Path, unused_tcp_port: int) -> None:
     host = Host(tmp_path, f"tcp/127.0.0.1:{unused_tcp_port}")
-    async with host.running("garden") as child:
+    async with host.running("garden", program=("-c", IMPATIENT)) as child:
         assert await child.wait() == 1
     assert host.fault("garden").code == "AOS605"
 

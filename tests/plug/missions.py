@@ -10,7 +10,7 @@ import random
 import tempfile
 from pathlib import Path
 
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_deploy.program import cache_dir
 from aos_runtime.mission_folders import mission_folder
 
@@ -50,7 +50,7 @@ async def _measured(options: argparse.Namespace) -> int:
 async def _many(missions: int, seed: int) -> bool:
     with tempfile.TemporaryDirectory() as folder:
         result = await stayed(Path(folder), missions, pushes=True, kills=True, chance=random.Random(seed))
-        broken = violations_of_run(result.run)
+        broken = check_run(result.run).violations
     unpushed = sorted(s for number, s in result.start_s.items() if number not in result.pushed)
     most_s = unpushed[-1]
     endings = {

@@ -18,7 +18,7 @@ import pytest
 from gateway import slow_deploy_file
 from processes import HANG_S, descendants, is_running, until_ended
 
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_deploy.run_end import account_of
 from aos_runtime.journal import Journal
 
@@ -239,7 +239,7 @@ async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch:
         os.kill(running.process.pid, signal.SIGKILL)
         running.process.wait()
     await until_ended(running.pids)
-    assert violations_of_run(latest(deploy_file)) == []
+    assert check_run(latest(deploy_file)).violations == []
     assert not has_a_bus(latest(deploy_file))
     assert not files_left(scratch)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
+from test_mission_tests import MISSIONS
 from typer.testing import CliRunner
 
 from aos_deploy import cli
@@ -22,18 +23,6 @@ from aos_lab.trials.trial import Trial
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
-
-MISSIONS = f"""
-aos: 1
-tests:
-  finer:
-    deploy: {DEPLOY}/armadillo.yaml
-    bundles: [{DEPLOY}/bundles/armadillo-finer]
-    seeds: 5
-    simulations: 100
-    step_limit: 2
-    claims: [{{says: it never picks, never: pick}}]
-"""
 
 
 def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
@@ -81,7 +70,7 @@ def test_ctrl_c_tells_after_how_many_missions_of_a_test(
 
     monkeypatch.setattr(ModelPlayer, "play", third_interrupted)
     file = tmp_path / "missions.yaml"
-    file.write_text(MISSIONS)
+    file.write_text(MISSIONS.replace("seeds: 2", "seeds: 5"))
     command = ["test", str(file), *(["--keep", str(tmp_path / "kept")] if keeps else [])]
     done = CliRunner().invoke(cli.aos_app(), command)
     assert done.exit_code == 130

@@ -17,7 +17,7 @@ import pytest
 from gateway import write_slow_tiger
 from processes import COMMAND_S, HANG_S, kill, until_taking_over
 
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import BundleReport, PushBundle
@@ -194,7 +194,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> 
         (f"{name}-3", "step_limit"),
         (f"{name}-4", "step_limit"),
     ]
-    assert violations_of_run(stays.run) == []
+    assert check_run(stays.run).violations == []
     (listed,) = json.loads(stays.aos("runs", "--json")[1])
     assert (listed["ending"], listed["steps"]) == ("stopped", 10)
     assert [each["ending"] for each in listed["missions"]] == ["cancelled", *["step_limit"] * 3]
@@ -207,7 +207,7 @@ async def test_ctrl_c_in_a_mission_of_a_system_that_stays_ends_it_as_cancelled(s
     assert stays.interrupt() == 130
     (entry,) = entries_of(stays.run)
     assert entry.ending == "cancelled"
-    assert violations_of_run(stays.run) == []
+    assert check_run(stays.run).violations == []
 
 
 async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_has_the_same_belief(
@@ -234,7 +234,7 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
         assert again.run == run
         assert again.interrupt() == 0
     assert again.beliefs(2)[0] == again.beliefs(1)[-1]
-    assert violations_of_run(run) == []
+    assert check_run(run).violations == []
 
 
 def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays(stays: System) -> None:
@@ -278,4 +278,4 @@ async def test_the_next_mission_has_other_parameters_and_newer_documents(root: P
         actions = {json.loads(row.payload)["action"] for row in journal.walk("decision")}
     assert "give(to=bob)" in actions
     assert "give(to=alice)" not in actions
-    assert violations_of_run(run) == []
+    assert check_run(run).violations == []

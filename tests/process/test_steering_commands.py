@@ -9,7 +9,7 @@ import pytest
 from processes import kill
 from test_missions import up
 
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import SteeringError
 from aos_runtime.client import AosClient
@@ -48,7 +48,7 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         code, _, error = system.aos("mission", "hold")
         assert "AOS517: no mission runs" in error
         assert system.interrupt() == 0
-        assert violations_of_run(system.run) == []
+        assert check_run(system.run).violations == []
         with Journal.read(mission_folder(system.run, 1) / "journal.db") as journal:
             decisions = [json.loads(row.payload) for row in journal.walk("decision")]
             rows = [json.loads(row.payload) for row in journal.walk("steered")]
@@ -74,4 +74,4 @@ async def test_a_program_steers_and_stop_cancels_motion_at_once(root: Path, tmp_
             with pytest.raises(SteeringError, match="the mission has ended before: cancelled"):
                 await asked
         assert system.interrupt() == 0
-        assert violations_of_run(system.run) == []
+        assert check_run(system.run).violations == []

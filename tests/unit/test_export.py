@@ -23,7 +23,7 @@ from aos_deploy.commands.export import export
 from aos_deploy.export.kept_missions import kept_missions
 from aos_deploy.export.layouts import curves_of, foxglove_layout, plotjuggler_layout
 from aos_deploy.export.run_bundle import opened_bundle, write_bundle
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_deploy.living_runs import chosen_run, chosen_runs
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import (
@@ -251,7 +251,7 @@ def test_a_file_of_a_run_is_opened_like_its_directory_and_lets_nobody_in(run: Pa
     opened = chosen_run(target, None)
     assert opened.path.name == "a-run"
     assert not opened.is_running
-    assert violations_of_run(opened.path) == violations_of_run(run)
+    assert check_run(opened.path).violations == check_run(run).violations
     before = [row.payload for row in kept_missions(run)[0].rows()]
     assert [row.payload for row in kept_missions(opened.path)[0].rows()] == before
 

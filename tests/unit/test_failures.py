@@ -142,24 +142,16 @@ def test_a_new_adapter_begins_a_new_row() -> None:
     assert not mission.set_aside
 
 
-def test_an_adapter_that_ends_in_each_call_is_no_new_one() -> None:
+@pytest.mark.parametrize("outcome", ["unknown", "timed_out"], ids=["ends", "has to be ended"])
+def test_an_adapter_that_ends_in_or_after_each_call_is_no_new_one(outcome: str) -> None:
     mission = Mission()
     for start in (1, 2, 3):
         mission.announced = {"take": start}
-        mission.take("take", "unknown")
+        mission.take("take", outcome)
     mission.announced = {"take": 4}
     assert mission.set_aside == {"take"}
     mission.now_s = 300.0
     assert not mission.set_aside
-
-
-def test_an_adapter_that_has_to_be_ended_after_each_call_is_no_new_one() -> None:
-    mission = Mission()
-    for start in (1, 2, 3):
-        mission.announced = {"take": start}
-        mission.take("take", "timed_out")
-    mission.announced = {"take": 4}
-    assert mission.set_aside == {"take"}
 
 
 def test_somebody_who_starts_an_adapter_again_after_a_row_of_timeouts_ends_the_pause() -> None:

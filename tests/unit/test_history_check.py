@@ -9,8 +9,7 @@ import pytest
 from decision_records import decision_record
 
 from aos_deploy.history_check import check
-from aos_deploy.history_check.check import violations
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.rules import RULES
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol.messages import (
@@ -122,7 +121,8 @@ class History:
     def broken_rules(self) -> set[str]:
         """The names of the rules that are broken."""
         files = {"adapter-robot.db": rows(self.robot), "adapter-other.db": rows(self.other)}
-        found = violations(MISSION, rows(self.journal), rows(self.middleware), files, self.summary)
+        history = check.History(MISSION, rows(self.journal), self.summary)
+        found = check.check_histories([history], rows(self.middleware), files).violations
         assert all(violation.text for violation in found)
         return {violation.rule for violation in found}
 
@@ -421,7 +421,8 @@ def test_a_journal_that_had_no_space_for_its_end_agrees_with_a_summary_that_tell
 
 def test_a_removed_row_is_caught() -> None:
     history = History()
-    found = violations(MISSION, [row for row in rows(history.journal) if row.seq != 4])
+    left = [row for row in rows(history.journal) if row.seq != 4]
+    found = check.check_histories([check.History(MISSION, left)]).violations
     assert found[0].rule == "rows"
     assert found[0].row == 5
 
@@ -430,11 +431,11 @@ def test_a_journal_that_cannot_be_read_is_a_violation(tmp_path: Path) -> None:
     with Journal.open(tmp_path / "journal.db") as journal:
         for entry in History().journal:
             journal.append(entry.kind, entry.payload)
-    assert violations_of_run(tmp_path) == []
+    assert check_run(tmp_path).violations == []
     whole = (tmp_path / "journal.db").read_bytes()
     (tmp_path / "journal.db").write_bytes(whole.replace(b'"go"', b'"g\xff"'))
-    (violation,) = violations_of_run(tmp_path)
+    (violation,) = check_run(tmp_path).violations
     assert (violation.rule, violation.file) == ("rows", "journal.db")
     assert "journal" not in violation.text
     (tmp_path / "journal.db").unlink()
-    assert [(violation.rule, violation.row) for violation in violations_of_run(tmp_path)] == [("rows", 0)]
+    assert [(violation.rule, violation.row) for violation in check_run(tmp_path).violations] == [("rows", 0)]

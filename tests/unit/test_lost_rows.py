@@ -8,7 +8,7 @@ import pytest
 from decision_records import decision_record
 
 from aos_deploy.deploy_file import read_deploy_file, without_a_robot
-from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.files import check_run
 from aos_deploy.run_end import account_of
 from aos_deploy.run_record import RunRecord
 from aos_deploy.taking_up import take_up, worlds_text
@@ -100,7 +100,7 @@ def test_a_flipped_bit_of_a_journal_is_refused_or_changes_nothing_but_the_last_r
 def rows_read(run: Path) -> list[JournalRow] | None:
     """The rows of a run's journal, which all that read it can read; None where it is refused."""
     try:
-        violations_of_run(run)
+        check_run(run)
         account_of(run).verdict()
         with Journal.read(run / "journal.db") as journal:
             return journal.rows()

@@ -9,7 +9,6 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower
-from aos_solver.emission.outline import outline
 from aos_solver.emission.program import Program
 
 HOME = """project: test
@@ -172,13 +171,6 @@ def test_what_no_state_can_hold_is_refused(stored: str) -> None:
     )
     project = text_project({"home.json": text, "act.sd": ACT, "act.am": mapping_text()})
     assert [d.code for d in errors_of(project)] == ["AOS124"]
-
-
-def test_the_outline_shows_the_decisions() -> None:
-    text = outline(program_of(project_of()))
-    assert "a particle holds\n  total: int\n" in text
-    assert "  count: int { state.count = 4; }  [home.ef:9:1]" in text
-    assert "skill act() observes nothing\n  dynamic model\n    [act.sd:3:1]" in text
 
 
 def errors_of(project: Project) -> list[Diagnostic]:

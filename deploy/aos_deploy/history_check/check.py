@@ -59,17 +59,6 @@ class _Clock:
         return self.set_back_ns > SET_BACK_NS
 
 
-def violations(
-    run: str,
-    journal: Iterable[JournalRow],
-    middleware: Iterable[JournalRow] | None = None,
-    adapters: Mapping[str, Iterable[JournalRow]] | None = None,
-    summary: Verdict | None = None,
-) -> list[Violation]:
-    """The violations of a run with one mission, which has its name `run`; see `check_histories`."""
-    return check_histories([History(run, journal, summary)], middleware, adapters).violations
-
-
 def check_histories(
     histories: Iterable[History],
     middleware: Iterable[JournalRow] | None = None,

@@ -6,7 +6,6 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, Checked, History, check_histories
-from aos_deploy.history_check.rules import Violation
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_summary import Summary
 from aos_deploy.verdict import Verdict
@@ -14,13 +13,8 @@ from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import mission_folders, mission_name, stays
 
 
-def violations_of_run(run: Path) -> list[Violation]:
-    """Returns the violations in the files of a run that is over; a file that cannot be read is one."""
-    return check_run(run).violations
-
-
 def check_run(run: Path) -> Checked:
-    """Checks the files of a run that is over, as `violations_of_run` does."""
+    """Checks the files of a run that is over; a file that cannot be read is a violation."""
     middleware = _rows(run / MIDDLEWARE) if (run / MIDDLEWARE).exists() else None
     adapters = {path.name: _rows(path) for path in run.glob("adapter-*.db")}
     return check_histories(_histories(run), middleware, adapters)

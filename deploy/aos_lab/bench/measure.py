@@ -37,7 +37,7 @@ async def search_rate(engine: Engine, repetitions: int, seed: int) -> list[float
     A first search warms up.
     """
     rates = []
-    simulations = await _simulations_for(engine, SIMULATIONS, seed)
+    simulations = await _simulations_for(engine, seed)
     for turn in range(repetitions + 1):
         await engine.reset_belief()
         plan = await engine.plan(simulations=simulations, seed=seed + turn, planner="pomcp")
@@ -45,12 +45,12 @@ async def search_rate(engine: Engine, repetitions: int, seed: int) -> list[float
     return rates[1:]
 
 
-async def _simulations_for(engine: Engine, descents: int, seed: int) -> int:
-    """The budget that is used up by about so many descents: a simulation may be several of these."""
+async def _simulations_for(engine: Engine, seed: int) -> int:
+    """The budget that `SIMULATIONS` descents use up, about: a simulation may be several of these."""
     await engine.reset_belief()
-    sample = max(descents // 16, 1)
+    sample = SIMULATIONS // 16
     sizing = await engine.plan(simulations=sample, seed=seed, planner="pomcp")
-    return max(1, round(sample * descents / max(_descents(sizing), 1)))
+    return max(1, round(sample * SIMULATIONS / max(_descents(sizing), 1)))
 
 
 def _descents(plan: Plan) -> int:
@@ -65,7 +65,7 @@ async def threaded_search_rates(
 
     The engines search in turns. A first search of each warms up.
     """
-    least = await _simulations_for(engines[1], SIMULATIONS, seed)
+    least = await _simulations_for(engines[1], seed)
     await engines[1].reset_belief()
     sizing = await engines[1].plan(simulations=least, seed=seed, planner="pomcp")
     simulations = max(least, round(THREADED_SEARCH_S * sizing.simulations / sizing.cpu_seconds))

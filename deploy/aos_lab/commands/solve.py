@@ -179,7 +179,7 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
 
 
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
-    with _progress("states") as on_progress:
+    with _progress() as on_progress:
         model = read_problem(
             path, max_states=max_states, on_progress=lambda known: on_progress(Listed(known, known))
         )
@@ -200,7 +200,7 @@ async def _enumerated(
         if not is_exported:  # A file may have any discount.
             wanted = engine.description.discount if discount is None else discount
             check_discount(engine.description.project, wanted)
-        with _progress("states") as on_progress:
+        with _progress() as on_progress:
             found = await enumerate_model(
                 engine, max_states=max_states, discount=discount, on_progress=on_progress
             )
@@ -265,12 +265,12 @@ def _write_graph(drawn: PolicyGraph, graph: Path | None, header: Path | None) ->
 
 
 @contextmanager
-def _progress(what: str) -> Iterator[Callable[[Listed], None]]:
-    """A bar on stderr of how much of what is known is done with; it goes away in the end."""
+def _progress() -> Iterator[Callable[[Listed], None]]:
+    """A bar on stderr of how many of the known states are listed; it goes away in the end."""
     extent = TextColumn("{task.completed:,} of {task.total:,}")
     columns = (TextColumn("{task.description}"), BarColumn(), extent)
     with progress(*columns) as bar:
-        task = bar.add_task(what, total=1)
+        task = bar.add_task("states", total=1)
         yield lambda found: bar.update(task, completed=found.listed, total=found.known)
 
 

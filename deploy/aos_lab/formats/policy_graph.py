@@ -154,7 +154,6 @@ class _Matrices:
     """The outcomes of each action, by observation."""
 
     def __init__(self, model: ExplicitModel) -> None:
-        self._model = model
         lengths = np.diff(model.likelihoods.first)[model.sensings]
         elements = np.repeat(np.arange(len(model.sensings)), lengths)
         before = np.r_[0, np.cumsum(lengths)[:-1]]

@@ -72,7 +72,6 @@ class _Reading:
     def __init__(self, roots: list[tree_sitter.Node]) -> None:
         self.count = 0
         self.edits: list[list[tuple[int, int, str]]] = [[] for _ in roots]
-        self._roots = roots
         self._nodes = [(number, node) for number, root in enumerate(roots) for node in below(root)]
         self._numbers = {node.id: number for number, node in self._nodes}
         self._read: set[tuple[str, bool]] = set()

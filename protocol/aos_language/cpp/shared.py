@@ -140,7 +140,6 @@ class _Reading:
         self._data = code.encode()
         self._lines = Lines(code)
         self._cpp = cpp
-        self._compounds = compounds
         self._names: list[SharedName] = []
         self._functions: list[SharedFunction] = []
         self._misuses: list[SharedMisuse] = []

@@ -52,13 +52,6 @@ class Text(msgspec.Struct, frozen=True):
         """Returns the text behind the first `offset` characters."""
         return Text(self.text[offset:], Span(self.span.file, self.span.line, self.span.column + offset))
 
-    def words(self) -> list[Text]:
-        """The words between blanks."""
-        return [
-            Text(match.group(), Span(self.span.file, self.span.line, self.span.column + match.start()))
-            for match in re.finditer(r"\S+", self.text)
-        ]
-
     def snippet(self) -> Snippet:
         return Snippet(self.text, (self.span,))
 

@@ -19,7 +19,7 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault, Progress
 from aos_solver.child.belief_answers import BeliefUpdate, Believed, Conditioned
 from aos_solver.child.belief_draws import BeliefDraws
-from aos_solver.child.command_line import command_line, with_field
+from aos_solver.child.command_line import command_line, with_change
 from aos_solver.child.engine_child import (
     EngineChild,
     EngineStart,
@@ -207,7 +207,7 @@ class Asking:
 
     async def _change_belief(self, command: str, kind: type[B]) -> B:
         """The answer to a command that changes the belief."""
-        answer = await self._ask(with_field(command, "change", self._changes + 1), kind)
+        answer = await self._ask(with_change(command, self._changes + 1), kind)
         self._changes += 1
         return answer
 

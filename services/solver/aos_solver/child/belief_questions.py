@@ -18,7 +18,7 @@ from aos_solver.child.belief_answers import (
     ExportedBeliefs,
     Prediction,
 )
-from aos_solver.child.command_line import command_line, with_field
+from aos_solver.child.command_line import command_line, with_change
 from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.observed_numbers import numbers_field
 
@@ -155,7 +155,7 @@ class BeliefQuestions(Asking):
         if fault not in self._correction_faults:
             assert self._child is not None
             error = self._child.fault(fault.code, fault.text, fault.piece)
-            again = with_field(command, "change", before + 1)
+            again = with_change(command, before + 1)
             self._correction_faults[fault] = await self._at_its_statement(error, before, [again])
         return self._correction_faults[fault]
 

@@ -23,10 +23,10 @@ def command_line(command: str, items: Iterable[object] | None = None, /, **field
     return "\t".join(parts)
 
 
-def with_field(command: str, name: str, value: object) -> str:
-    """The line of a command with one field more."""
+def with_change(command: str, change: int) -> str:
+    """The line of a command with the number of the change that it makes."""
     before, tab, rest = command.partition("\t")
-    return f"{before}\t{name}={_text(value)}{tab}{rest}"
+    return f"{before}\tchange={change}{tab}{rest}"
 
 
 def _text(value: object) -> str:

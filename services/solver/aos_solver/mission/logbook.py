@@ -53,7 +53,6 @@ class Logbooks:
 
     def __init__(self, run: Path, seed: int, *, stay: bool) -> None:
         self.run = run
-        self.stay = stay
         self._seed = seed
         self._entries: dict[int, MissionEntry] = {}
         if not stay:

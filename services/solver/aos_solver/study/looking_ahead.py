@@ -24,7 +24,6 @@ async def tree_below(replay: ReplayedMission, decision: DecisionRecord, query: T
 class _Growing:
     def __init__(self, replay: ReplayedMission, decision: DecisionRecord, query: TreeQuery) -> None:
         self._replay = replay
-        self._decision = decision
         self._query = query
         self._valuing = Valuing(replay, decision)
         self._nodes = 0
