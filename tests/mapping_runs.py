@@ -30,7 +30,7 @@ def running(text: str) -> LoadedMapping:
 
 def loaded(mapping: EmittedMapping, allowed_imports: tuple[str, ...] | None = None) -> LoadedMapping:
     """The module, ready for activations."""
-    return LoadedMapping(Load(mapping.python, mapping.file_name, 60.0, 60.0, allowed_imports))
+    return LoadedMapping(Load(mapping.python, mapping.file_name, 60.0, 60.0, allowed_imports, mapping.truths))
 
 
 def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]:

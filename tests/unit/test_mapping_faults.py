@@ -1,6 +1,10 @@
 """Faults of mapping code: what is said, and at which place of the document."""
 
-from mapping_runs import emitted_with, fields, loaded, running
+import math
+from typing import Any
+
+import pytest
+from mapping_runs import emitted_with, fields, loaded, observed, running
 
 from aos_middleware.frames import Begin, Finish, Raised, Take
 
@@ -60,6 +64,29 @@ succes = __input.success
     assert isinstance(answer, Raised)
     assert "success" in answer.error
     assert emission.locate(answer.line).line == 4
+
+
+@pytest.mark.parametrize("success", ["yes", "", math.nan, -1, [True], {"ok": True}])
+def test_what_is_neither_true_nor_false_is_no_value_of_the_type_bool(success: Any) -> None:
+    emission = emitted_with("""\
+response: done
+response_rule: success
+response: not_done
+response_rule: True
+local_variable: success
+type: bool
+from_ros_service_response: true
+code:
+success = __input.success
+""")
+    mapping = loaded(emission)
+    fields(mapping, {})
+    answer = mapping.answer(Finish({"success": success}))
+    assert isinstance(answer, Raised)
+    assert answer.error.startswith("TypeError: success has the type bool and is ")
+    assert str(emission.locate(answer.line, answer.column)) == "look.am:12:1"
+    for value, response in ((1, "done"), (0.0, "not_done"), (None, "not_done")):
+        assert observed(mapping, {}, [], {"success": value}).response == response
 
 
 def test_leaving_the_program_ends_only_the_evaluation() -> None:

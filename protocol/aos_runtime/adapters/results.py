@@ -15,10 +15,20 @@ from aos_runtime.adapters.settings import Binding
 def result_of(
     call: Call, binding: Binding, answer: Any, published: dict[str, int], adapter: str
 ) -> SkillResult:
-    """The result of a call whose adapter has given this answer; SkillError AOS510 if the bus cannot carry it.
+    """The result of a call whose adapter has given this answer.
 
-    `published` is the number of messages so far on each topic.
+    SkillError AOS504 if the bus cannot carry it: the skill has run, and nobody knows how it ended. `published` is the
+    number of messages so far on each topic.
     """
+    try:
+        return _result_of(call, binding, answer, published, adapter)
+    except SkillError as error:
+        raise SkillError(error.message, code="AOS504", hint=error.hint) from error
+
+
+def _result_of(
+    call: Call, binding: Binding, answer: Any, published: dict[str, int], adapter: str
+) -> SkillResult:
     if isinstance(answer, Observed):
         what = f"the observation of {call.path}"
         response = sendable({"response": answer.response}, what)["response"]

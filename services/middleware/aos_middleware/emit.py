@@ -51,6 +51,11 @@ class EmittedMapping(msgspec.Struct, frozen=True):
         """The module's name in tracebacks and in the folder of generated modules."""
         return f"{self.skill}.py"
 
+    @property
+    def truths(self) -> tuple[str, ...]:
+        """The local variables of the type bool."""
+        return tuple(variable.name for variable in self.mapping.local_variables if variable.type == "bool")
+
     def locate(self, line: int, column: int = 1) -> Span:
         """The document place of a line and column of the module, both from 1."""
         if not 1 <= line <= len(self.origins):

@@ -121,6 +121,7 @@ class Evaluator:
             limits.load_s,
             limits.evaluation_s,
             limits.allowed_imports,
+            self.emitted.truths,
         )
         try:
             await self._ask(load, Done, limits.load_s)
@@ -216,24 +217,22 @@ class Evaluator:
 
     def _raised(self, answer: Raised) -> MappingFault:
         place = self.emitted.locate(answer.line, answer.column) if answer.line else None
+        unset = self._unset(answer)
         return self._fault(
             "AOS401",
-            answer.error,
+            f"{answer.error}; {unset}" if unset else answer.error,
             place,
-            hint=self._unset_hint(answer),
+            hint=f"Send it, or give the variable an initial_value in {self.emitted.skill}.am" if unset else "",
             local_variables=answer.local_variables,
         )
 
-    def _unset_hint(self, answer: Raised) -> str:
+    def _unset(self, answer: Raised) -> str:
         """Most type errors in rules are about a topic that said nothing."""
         if not answer.error.startswith(("TypeError", "AttributeError")):
             return ""
         for variable in self.emitted.mapping.local_variables:
             if variable.name in answer.unset and variable.source is LocalSource.TOPIC:
-                return (
-                    f"{variable.name} had no value: no message came on {variable.topic}, "
-                    "and the document gives no initial value"
-                )
+                return f"{variable.name} has no value, for no message came on {variable.topic}"
         return ""
 
     async def _why_it_ended(self, child: Child, limit_s: float) -> MappingFault:

@@ -13,7 +13,9 @@ from aos_protocol.messages import SkillResult, TopicMessage
 from aos_runtime.bus import Subscription
 
 CATCH_UP_S = 0.5
-"""An activation waits so long, after the call, for topic messages that were sent during it."""
+"""An activation waits so long, after the call, for topic messages that were sent during it, and for a first one
+where a variable has no value without it: a node of ROS sends what it publishes beside its answer, and later.
+"""
 
 QUEUE_SIZE = 4096
 _BATCH = 256
@@ -34,10 +36,14 @@ class HeardTopics:
         self._around = around
         self._published_before = around.published
         self._stop = stop
-        self._topic_of = {
-            around.keys.topic(variable.topic): variable.topic
+        heard = [
+            variable
             for variable in evaluator.emitted.mapping.local_variables
             if variable.source is LocalSource.TOPIC
+        ]
+        self._topic_of = {around.keys.topic(variable.topic): variable.topic for variable in heard}
+        self._awaited = {
+            around.keys.topic(variable.topic) for variable in heard if variable.initial_value is None
         }
         self._last_numbers: dict[str, int] = {}
         self._has_received = asyncio.Event()
@@ -79,9 +85,10 @@ class HeardTopics:
             for key, topic in self._topic_of.items()
             if topic.strip("/") in spoken
         }
+        first = set() if result.response else self._awaited  # A skill that its document plays sends nothing.
         try:
             async with asyncio.timeout(CATCH_UP_S):
-                while any(self._last_numbers.get(key, 0) < number for key, number in sent.items()):
+                while (first - self._last_numbers.keys()) or any(self._last_numbers.get(key, 0) < number for key, number in sent.items()):
                     self._has_received.clear()
                     await self._has_received.wait()
         except TimeoutError:
@@ -89,6 +96,6 @@ class HeardTopics:
                 _log.info("%s: message %d did not come, seen %d", key, number, self._last_numbers.get(key, 0))
         monitors = self._around.monitors
         await monitors.catch_up(spoken, CATCH_UP_S)
-        if not result.response:  # A skill that its document plays sends nothing.
+        if not result.response:
             own = {topic: key in self._last_numbers for key, topic in self._topic_of.items()}
             self._around.silent.take_call(monitors.has_heard() | own, published)

@@ -85,6 +85,11 @@ def put(values: dict[str, Any], path: str, value: Any) -> None:
         inner[last] = value
 
 
+def is_truth(value: Any) -> bool:
+    """Returns whether a value is True or False; those of numpy have no common class with Python's."""
+    return isinstance(value, bool) or type(value).__name__ in ("bool", "bool_")
+
+
 def text_of(value: Any) -> str:
     """A local variable's value for people and records: JSON where it is plain data, else its `repr`."""
     try:

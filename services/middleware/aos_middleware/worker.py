@@ -13,6 +13,7 @@ import signal
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from numbers import Number
 from types import CodeType
 from typing import Any
 
@@ -31,10 +32,13 @@ from aos_middleware.frames import (
     read_question,
 )
 from aos_middleware.raised import NoTruthValue, raised
-from aos_middleware.values import message_from, plain_from, put, text_of
+from aos_middleware.values import is_truth, message_from, plain_from, put, text_of
 from aos_middleware.worker_pipes import take_over_pipes
+from aos_protocol.spelling import shortened
 
 Function = Callable[..., Any]
+
+_TOLD_CHARACTERS = 100
 
 
 class ImportRefused(Exception):
@@ -123,8 +127,7 @@ class LoadedMapping:
             return False
         with _watched(self._load.evaluation_s):
             value = self._call(stop_when)
-            # The truth values of numpy have no common class with Python's.
-            if not isinstance(value, bool) and type(value).__name__ not in ("bool", "bool_"):
+            if not is_truth(value):
                 raise NoTruthValue(f"stop_when is {text_of(value)}, which is neither True nor False", code)
         held, self._holds = self._holds, bool(value)
         self._has_stopped = self._holds and "request" in self._namespace
@@ -147,7 +150,10 @@ class LoadedMapping:
     def _update(self, functions: Mapping[str, Function], message: Any) -> None:
         for name, function in functions.items():
             with _watched(self._load.evaluation_s):
-                self._values[name] = self._call(function, message)
+                value = self._call(function, message)
+                if name in self._load.truths:
+                    _check_truth(name, value, function.__code__)
+                self._values[name] = value
             self._silent.discard(name)
 
     def _call(self, function: Function, *message: Any) -> Any:
@@ -171,6 +177,17 @@ class LoadedMapping:
 
     def _texts(self) -> dict[str, str]:
         return {name: text_of(value) for name, value in self._values.items()}
+
+
+def _check_truth(name: str, value: Any, code: CodeType) -> None:
+    """NoTruthValue where a value of a variable of the type bool is none: a text would hold as a rule, `no` too.
+
+    None is no value, and 0 and 1 are what messages without truth values send.
+    """
+    if value is None or is_truth(value) or (isinstance(value, Number) and value in (0, 1)):
+        return
+    said = shortened(repr(value), _TOLD_CHARACTERS)
+    raise NoTruthValue(f"{name} has the type bool and is {said}, which is neither True nor False", code)
 
 
 @contextmanager

@@ -216,7 +216,8 @@ class RosAdapter:
         if end.status == "succeeded":
             return end.result
         code = "AOS507" if end.status == "canceled" else "AOS510"
-        raise SkillError(f"the action {way.name} was {end.status}: {end.result}", code=code)
+        why = ": ".join(str(part) for part in (end.text, end.result) if part)
+        raise SkillError(f"the action {way.name} was {end.status}: {why}", code=code)
 
 
 class Ros2Adapter(RosAdapter):

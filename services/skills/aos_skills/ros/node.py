@@ -53,10 +53,11 @@ class ActionRequest(NamedTuple):
 
 
 class ActionEnd(NamedTuple):
-    """The end of a goal: `succeeded`, `canceled` or `aborted`, and the result's fields."""
+    """The end of a goal: `succeeded`, `canceled` or `aborted`, the result's fields, and what its node says of it."""
 
     status: str
     result: Fields
+    text: str = ""
 
 
 RunGoal = Callable[[Fields, asyncio.Event, Callable[[Fields], None]], Awaitable[Fields]]

@@ -139,7 +139,7 @@ class Ros1Node(RosNode):
         end = answer.result()
         if is_late:
             raise not_ended(action, timeout_s)
-        return ActionEnd(end["status"], end["result"])
+        return ActionEnd(end["status"], end["result"], end["text"])
 
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
         self._goals[action] = run

@@ -127,6 +127,7 @@ class Robot:
         return {
             "status": STATUS.get(status, "aborted"),
             "result": plain(result) if result is not None else {},
+            "text": client.get_goal_status_text(),
         }
 
     def do_cancel(self, number: int, of: int) -> None:
