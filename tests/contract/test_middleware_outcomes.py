@@ -84,6 +84,25 @@ async def test_a_silent_topic_has_its_initial_value_not_that_of_the_last_activat
     assert (await system.activate("sense", 2)).response == "quiet"
 
 
+async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: System) -> None:
+    async def publish_behind(call: SkillCall) -> dict[str, Any]:
+        if call.id.step == 1:
+            asyncio.get_running_loop().call_later(0.02, system.adapter.publish, "/level", {"data": 9})
+        return {}
+
+    project = system.registry.current.project
+    sense = skill_of(SENSE.replace("initial_value: 0\n", ""), "sense.am")
+    others = [skill for skill in project.skills if skill.name != "sense"]
+    system.registry.announce(msgspec.structs.replace(project, skills=(*others, sense)))
+    await system.state(2)
+    await system.adapter.serve("/sense", publish_behind)
+    assert (await system.activate("sense", 1)).response == "heard"
+    silent = await system.activate("sense", 2)
+    assert silent.status == "unknown"
+    assert silent.fault is not None
+    assert silent.fault.message.endswith("; level has no value, for no message came on /level")
+
+
 async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System) -> None:
     async def publish_elsewhere(_: SkillCall) -> dict[str, Any]:
         system.adapter.publish("/levels", {"data": 9})

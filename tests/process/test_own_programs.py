@@ -269,6 +269,17 @@ def test_a_call_that_comes_again_from_a_new_middleware_is_joined(project: Path) 
     assert "refused" not in done.stdout
 
 
+def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path) -> None:
+    robot = project / "fetch_robot.py"
+    robot.write_text(robot.read_text().replace("    for share", "    time.sleep(1000)\n    for share"))
+    deploy = project / "fetch.yaml"
+    rule = "skills: {look: {timeout_s: 1, on_failure: end, retries: 1}}\n"
+    deploy.write_text(deploy.read_text() + rule)
+    done = up()
+    assert done.returncode == 9, done.stdout + done.stderr
+    assert "/look may still be moving: it does not say that it has stopped (the robot still" in done.stdout
+
+
 def test_a_mission_whose_output_is_closed_runs_all_the_same(project: Path) -> None:
     words = ["sh", "-c", 'exec "$@" >&-', "sh", BIN / "aos-up", "fetch.yaml", "--model"]
     done = subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)

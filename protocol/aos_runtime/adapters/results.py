@@ -17,8 +17,8 @@ def result_of(
 ) -> SkillResult:
     """The result of a call whose adapter has given this answer.
 
-    SkillError AOS504 if the bus cannot carry it: the skill has run, and nobody knows how it ended. `published` is the
-    number of messages so far on each topic.
+    SkillError AOS504 if the bus cannot carry it: the skill has run, and nobody knows how it ended.
+    `published` is the number of messages so far on each topic.
     """
     try:
         return _result_of(call, binding, answer, published, adapter)

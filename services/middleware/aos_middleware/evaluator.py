@@ -218,11 +218,12 @@ class Evaluator:
     def _raised(self, answer: Raised) -> MappingFault:
         place = self.emitted.locate(answer.line, answer.column) if answer.line else None
         unset = self._unset(answer)
+        hint = f"Send it, or give the variable an initial_value in {self.emitted.skill}.am"
         return self._fault(
             "AOS401",
             f"{answer.error}; {unset}" if unset else answer.error,
             place,
-            hint=f"Send it, or give the variable an initial_value in {self.emitted.skill}.am" if unset else "",
+            hint=hint if unset else "",
             local_variables=answer.local_variables,
         )
 

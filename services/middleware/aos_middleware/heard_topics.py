@@ -13,8 +13,10 @@ from aos_protocol.messages import SkillResult, TopicMessage
 from aos_runtime.bus import Subscription
 
 CATCH_UP_S = 0.5
-"""An activation waits so long, after the call, for topic messages that were sent during it, and for a first one
-where a variable has no value without it: a node of ROS sends what it publishes beside its answer, and later.
+"""An activation waits so long, after the call, for topic messages that were sent during it.
+
+As long it waits for a first one where a variable has no value without it: a node of ROS sends what it
+publishes beside its answer, and later.
 """
 
 QUEUE_SIZE = 4096
@@ -88,7 +90,9 @@ class HeardTopics:
         first = set() if result.response else self._awaited  # A skill that its document plays sends nothing.
         try:
             async with asyncio.timeout(CATCH_UP_S):
-                while (first - self._last_numbers.keys()) or any(self._last_numbers.get(key, 0) < number for key, number in sent.items()):
+                while (first - self._last_numbers.keys()) or any(
+                    self._last_numbers.get(key, 0) < number for key, number in sent.items()
+                ):
                     self._has_received.clear()
                     await self._has_received.wait()
         except TimeoutError:

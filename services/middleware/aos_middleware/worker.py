@@ -180,11 +180,12 @@ class LoadedMapping:
 
 
 def _check_truth(name: str, value: Any, code: CodeType) -> None:
-    """NoTruthValue where a value of a variable of the type bool is none: a text would hold as a rule, `no` too.
+    """NoTruthValue where a value of a variable of the type bool is none: as a rule, the text `no` would hold.
 
     None is no value, and 0 and 1 are what messages without truth values send.
     """
-    if value is None or is_truth(value) or (isinstance(value, Number) and value in (0, 1)):
+    is_number = isinstance(value, Number)
+    if value is None or is_truth(value) or (is_number and value in (0, 1)):
         return
     said = shortened(repr(value), _TOLD_CHARACTERS)
     raise NoTruthValue(f"{name} has the type bool and is {said}, which is neither True nor False", code)

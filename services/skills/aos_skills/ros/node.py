@@ -53,7 +53,7 @@ class ActionRequest(NamedTuple):
 
 
 class ActionEnd(NamedTuple):
-    """The end of a goal: `succeeded`, `canceled` or `aborted`, the result's fields, and what its node says of it."""
+    """The end of a goal: `succeeded`, `canceled` or `aborted`, the result's fields, its node's words."""
 
     status: str
     result: Fields
