@@ -1,9 +1,11 @@
 """A run that a signal ends: in order by the first, at once by any further one.
 
-It also ends in order where nobody reads any more what it tells, as in `aos-up | head`.
+It also ends in order where nobody reads any more what it tells, as in `aos-up | head` and in a terminal that
+was closed.
 """
 
 import asyncio
+import errno
 import os
 import signal
 import sys
@@ -29,18 +31,25 @@ class Stoppable(Protocol):
 
 
 def told_while_read(report: Report, is_unread: asyncio.Event) -> Report:
-    """The report, which sets `is_unread` once the pipe that it prints to has no reader, and then is mute."""
+    """The report. It sets `is_unread` once its pipe or terminal is gone, and is mute from then on."""
 
     def tell(event: Event) -> None:
         try:
             report(event)
-        except BrokenPipeError:
+        except OSError as error:
+            if error.errno not in (errno.EPIPE, errno.EIO):
+                raise
             is_unread.set()
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, sys.stdout.fileno())
-            os.close(nowhere)
+            _mute()
 
     return tell
+
+
+def _mute() -> None:
+    """Lets whatever is printed from now on go nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
 
 
 async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) -> int:
@@ -51,6 +60,7 @@ async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) ->
     process and to its group. A signal after the end changes nothing: the process ignores it from then on.
     """
     loop = asyncio.get_running_loop()
+    is_terminal = sys.stdout is not None and sys.stdout.isatty()  # None where it was closed before.
     work = loop.create_task(mission.run())
     interrupted_s: float | None = None
 
@@ -74,6 +84,8 @@ async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) ->
         return (await work).exit_code
     finally:
         reader.cancel()
+        if is_terminal and not sys.stdout.isatty():
+            _mute()  # It was closed, and a view still has to end.
         for number in _STOPPING:
             loop.remove_signal_handler(number)
             signal.signal(number, signal.SIG_IGN)

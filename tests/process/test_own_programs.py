@@ -3,6 +3,7 @@
 import asyncio
 import json
 import os
+import pty
 import re
 import signal
 import socket
@@ -284,6 +285,22 @@ def test_a_mission_whose_output_is_closed_runs_all_the_same(project: Path) -> No
     words = ["sh", "-c", 'exec "$@" >&-', "sh", BIN / "aos-up", "fetch.yaml", "--model"]
     done = subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_closed_terminal_ends_the_mission_in_order(project: Path) -> None:
+    robot = project / "fetch_robot.py"
+    waits = '    open("moves", "x").close()\n    STOP.wait()\n    for share'
+    robot.write_text(robot.read_text().replace("    for share", waits))
+    terminal, inside = pty.openpty()
+    with subprocess.Popen([BIN / "aos-up", "fetch.yaml"], stdout=inside, stderr=subprocess.PIPE) as running:
+        os.close(inside)
+        while not (project / "moves").exists():
+            os.read(terminal, 65536)
+        os.close(terminal)
+        running.send_signal(signal.SIGHUP)
+        _, said = running.communicate(timeout=COMMAND_S)
+    assert (running.returncode, said) == (130, b"")
+    assert json.loads(Path("runs/latest/summary.json").read_text())["ending"] == "cancelled"
 
 
 def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Path) -> None:

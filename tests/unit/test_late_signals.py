@@ -1,5 +1,7 @@
-"""Signals that come when the mission is over, and two that are one."""
+"""Signals that come when the mission is over, two that are one, and a terminal that is closed."""
 
+import os
+import pty
 import subprocess
 import sys
 
@@ -59,3 +61,27 @@ def test_a_signal_that_comes_twice_at_once_is_one() -> None:
         [sys.executable, "-c", TWICE], timeout=HANG_S, capture_output=True, check=False, text=True
     )
     assert (ended.stdout, ended.stderr) == ("stopped in order\n", "")
+
+
+TELLS = """
+import asyncio, sys
+from aos_deploy.interruption import told_while_read
+
+is_unread = asyncio.Event()
+tell = told_while_read(lambda event: print(event, flush=True), is_unread)
+input()
+tell("one")
+tell("another")
+sys.exit(7 if is_unread.is_set() else 1)
+"""
+
+
+def test_a_terminal_that_is_closed_reads_no_more() -> None:
+    terminal, inside = pty.openpty()
+    with subprocess.Popen(
+        [sys.executable, "-c", TELLS], stdin=subprocess.PIPE, stdout=inside, stderr=subprocess.PIPE
+    ) as telling:
+        os.close(inside)
+        os.close(terminal)
+        _, said = telling.communicate(b"\n", timeout=HANG_S)
+    assert (telling.returncode, said) == (7, b"")
