@@ -35,6 +35,7 @@ def piece_of(code: str) -> Piece:
         "vector<int> a{1, 2}; sort(a.begin(), a.end());",
         "vector<int> a{1, n};",
         "const tBox* box = other; int* n = 0;",
+        "auto f = [&, m] { return AOS.Bernoulli(0.5); }; auto g = [=] { return n; };",
         "vector<int> local; vector<int>& row = local;",
     ],
 )
@@ -54,6 +55,13 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
         ("auto f = [&](string& s, int i) { s += i; };", "auto f = [&](auto& s, int i) { s += i; };"),
         ("vector<int> a{1, eRed}; n = a[0];", "static const vector<int> a{1, eRed}; n = a[0];"),
         ("state->x = 1;", "state.x = 1;"),
+        ("auto all = state.tBoxObjects;", "auto all = aos::listed(state.tBoxObjects());"),
+        ("auto f = [n](double p) { return AOS.Bernoulli(p); };",
+         "auto f = [n, &AOS](double p) { return AOS.Bernoulli(p); };"),
+        ("auto f = [] { return AOSUtils::Bernoulli(row[i] (2)); };",
+         "auto f = [&AOSUtils] { return AOSUtils.Bernoulli(row[i] (2)); };"),
+        ("std::vector<tBox*> a = state__.tBoxObjects; n = state.tBoxObjects.size();",
+         "std::vector<tBox*> a = state__.tBoxObjects(); n = state.tBoxObjects().size();"),
         ("for (tBox* box : state.tBoxObjects) n++;", "for (auto* box : state.tBoxObjects()) n++;"),
         ("auto f = [](tBox* box) { return box->x; };", "auto f = [](auto* box) { return box->x; };"),
         ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = AOS.template SampleDiscrete<tColour>({1, 2});"),
@@ -67,7 +75,7 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
             "o = AOS.SampleOf({Odd::three, Odd::seven}, {1, 1});",
         ),
     ],
-)
+)  # fmt: skip
 def test_what_documents_may_write_becomes_cpp(code: str, text: str) -> None:
     assert rewritten(code) == text
 

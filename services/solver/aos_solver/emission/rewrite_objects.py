@@ -22,6 +22,7 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
     - `tCup* best = NULL` becomes `aos::Pointer<tCup, decltype(state)> best`, of the copy that it is set from
     - `vector<tCup*> cups` becomes `vector<aos::Pointer<tCup, decltype(state)>> cups` in the same way
     - `tCup& cup = *state.tCupObjects[0]` becomes `auto& cup`
+    - `auto cups = state.tCupObjects` becomes a vector, which may be sorted
     """
     if not object_types:
         return
@@ -38,6 +39,9 @@ def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, 
         elif reference is not None and reference[2] in object_types and not reference[1]:
             is_object = initial is not None and bool(_copies_in(cpp, reference[2], initial))
             yield from [(reference.start(2), reference.end(2), "auto")] if is_object else []
+        elif declaration.type == "auto" and initial is not None and _is_list(cpp, initial, object_types):
+            yield initial.start, initial.start, "aos::listed("
+            yield initial.end, initial.end, ")"
     yield from _within_types(cpp, object_types)
 
 
@@ -45,13 +49,26 @@ def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int,
     """Pointers among the arguments of a template or a function's type, and as what a lambda returns."""
     code = strip_comments(cpp.code)
     for name in sorted(object_types):
-        copies = _copies_in(cpp, name) - {_ALWAYS_WRITTEN}
-        if len(copies) != 1:
-            continue
         pattern = rf"(?<!const )\b{name}\s*\*(?=\s*[,>)])|(?<=->){name}\s*\*|(?<=-> ){name}\s*\*"
         for found in re.finditer(pattern, code):
-            if not any(literal.start <= found.start() < literal.end for literal in cpp.literals):
+            declared = next((d for d in cpp.declarations if d.extent.start > found.start()), None)
+            is_of_it = declared is not None and ";" not in code[found.start() : declared.extent.start]
+            initial = declared.initial if declared is not None and is_of_it else None
+            copies = set[str]() if initial is None else _copies_in(cpp, name, initial)
+            copies = copies or _copies_in(cpp, name) - {_ALWAYS_WRITTEN}
+            is_literal = any(literal.start <= found.start() < literal.end for literal in cpp.literals)
+            if len(copies) == 1 and _ALWAYS_WRITTEN not in copies and not is_literal:
                 yield found.start(), found.end(), f"aos::Pointer<{name}, decltype({min(copies)})>"
+
+
+def _is_list(cpp: Cpp, initial: Extent, object_types: frozenset[str]) -> bool:
+    """Returns whether a variable starts as a list of objects, and not as one of them."""
+    lists = {f"{name}Objects" for name in object_types}
+    return any(
+        mention.extent == initial and mention.path[0] in STATES and mention.path[1] in lists
+        for mention in cpp.mentions
+        if len(mention.path) == 2
+    )
 
 
 def _waits_for_its_object(cpp: Cpp, declaration: Declaration) -> bool:

@@ -86,6 +86,12 @@ Objects<State, T, Members...> objects(State& state) {
   return Objects<State, T, Members...>{state};
 }
 
+// The pointers of such a list, which may be put into another order.
+template <class List>
+std::vector<typename List::Pointer> listed(const List& list) {
+  return list;
+}
+
 // The values that parameters of one type take, by the name `state.<variable>`. An unknown name is a ModelFault.
 template <class T>
 struct NamedValues : std::map<std::string, T, std::less<>> {
