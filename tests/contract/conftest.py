@@ -4,6 +4,7 @@ import os
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 from middleware_system import System, running_system
+from processes import HANG_S, has_listener
 from ros1_core import roscore, skip_without_ros1
 
 from aos_language.load import read_bundle_files
@@ -29,7 +31,7 @@ def free_endpoint() -> str:
 
 @pytest.fixture(scope="module")
 def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The address of the module's router; clients wait for it by themselves."""
+    """The address of the module's router, which listens by then, however long its start takes."""
     folder: Path = tmp_path_factory.mktemp("router")
     settings = ServiceSettings(robot="test", service="router", endpoint=free_endpoint(), run_dir=str(folder))
     path = folder / "router.json"
@@ -38,6 +40,10 @@ def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         [sys.executable, "-m", "aos_runtime.router", str(path)],
         env={**os.environ, PARENT_VARIABLE: str(os.getpid()), "AOS_LOG": "WARNING"},
     ) as router:
+        port, deadline_s = int(settings.endpoint.rpartition(":")[2]), time.monotonic() + HANG_S
+        while not has_listener(port) and router.poll() is None:
+            assert time.monotonic() < deadline_s, "the router does not listen"
+            time.sleep(0.02)
         yield settings.endpoint
         router.terminate()
 
