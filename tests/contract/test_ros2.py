@@ -157,7 +157,7 @@ async def test_an_action_gives_feedback_and_its_result(robot: Node, node: Node) 
     end = await node.run_action(
         ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S, on_feedback=feedback.append)
     )
-    assert end == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
+    assert end[:2] == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
     assert feedback[-1] == {"sequence": [0, 1, 1, 2, 3, 5]}
 
 
@@ -173,7 +173,7 @@ async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) 
             on_feedback=lambda _: cancelled.set(),
         )
     )
-    assert end == ("canceled", {"sequence": [0, 1, 1]})
+    assert end[:2] == ("canceled", {"sequence": [0, 1, 1]})
 
 
 async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robot: Node, node: Node) -> None:
