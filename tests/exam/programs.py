@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
-from aos_solver.building.engine_build import NUMBERS, SOURCES, build_engine, number_object
+from aos_solver.building.engine_build import NUMBERS, SOURCES, build_engine, object_of
 
 PATIENCE_S = 800.0
 """Another process that compiles the same is waited for."""
@@ -28,8 +28,8 @@ async def built_program(cache_dir: Path, source: Path, *options: str, includes: 
     async def make(staging: Path) -> None:
         compilation = compiler.compilation(str(source), "part.o", str(SOURCES), *more)
         await asyncio.to_thread(run, compilation, staging)
-        numbers = (str(engine / number_object(part)) for part in NUMBERS)
-        run(compiler.linking(["part.o", *numbers], source.stem), staging)
+        numbers = str(engine / object_of(NUMBERS))
+        run(compiler.linking(["part.o", numbers], source.stem), staging)
 
     name = f"{source.stem}-{digest_of([source.name, *more, *what_decides(compiler, *folders)])}"
     return await BuildCache(cache_dir).fill(name, make, patience_s=PATIENCE_S) / source.stem

@@ -17,7 +17,7 @@ from scripted_models import bundle_project, lowered
 from aos_deploy.constraints import constrained, constraint_of_option
 from aos_protocol.documents import Project
 from aos_solver.building.compiler import Compiler, find_compiler
-from aos_solver.building.engine_build import NUMBERS, SOURCES
+from aos_solver.building.engine_build import FUNCTIONS, NUMBERS, SOURCES
 from aos_solver.emission.emit import MODEL_FILE
 
 UNOPTIMIZED = ("-O0", "-DAOS_QUICK")
@@ -50,8 +50,8 @@ def test_clang_compiles_a_model_with_a_costly_constraint(
     compile_model(msgspec.structs.replace(project, constraints=(costly,)), clang, tmp_path)
 
 
-@pytest.mark.parametrize("part", NUMBERS)
-def test_clang_compiles_what_the_engine_has_of_numbers(part: str, clang: Compiler, tmp_path: Path) -> None:
+@pytest.mark.parametrize("part", [NUMBERS, FUNCTIONS])
+def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, tmp_path: Path) -> None:
     run(clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0"), tmp_path)
 
 

@@ -16,6 +16,7 @@ from scripted_models import bundle_project, json_text, lowered, text_project
 
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as build_module
+from aos_solver.building import engine_build as engine_build_module
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.building.build_cache import BuildCache
 from aos_solver.building.compiler import Compiler, find_compiler
@@ -112,6 +113,26 @@ async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
     step = f"state__.row[3] = {len(ready)};"
     await build(emitted_skill(step, HOME + row), cache_dir=cache_dir)
     assert sizes == [64, chosen]
+
+
+async def test_an_engine_has_a_compiler_for_each_processor_and_its_longest_part_begins(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begun: list[str] = []
+    ended: list[str] = []
+
+    async def compiled(_: Compiler, command: list[str], *__: Any, **___: Any) -> tuple[str, int]:
+        begun.append(Path(command[-1]).name)
+        assert len(begun) - len(ended) <= 2
+        await asyncio.sleep(0)
+        ended.append(begun[-1])
+        return "", 0
+
+    monkeypatch.setattr(engine_build_module, "run_compiler", compiled)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    await build_engine(tmp_path)
+    assert begun[:2] == ["engine.o", "numbers.o"]
+    assert len(ended) == 4
 
 
 async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) -> None:

@@ -22,8 +22,6 @@ from aos_solver.building.compiler_messages import read_messages, without_line_di
 from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, ran_out, run_compiler, together
 from aos_solver.building.engine_build import (
     ANY_SIZE,
-    ENGINE_OBJECT,
-    NUMBERS,
     QUICK,
     SOURCES,
     STATE_BYTES,
@@ -33,7 +31,7 @@ from aos_solver.building.engine_build import (
     engine_deadline_s,
     engine_name,
     engine_seconds,
-    number_object,
+    objects_of,
 )
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
@@ -163,8 +161,7 @@ class _Build(msgspec.Struct, frozen=True):
         usual, _ = await together(self._engine(STATE_BYTES[0]), self._compile(staging))
         state_bytes = self._state_bytes(staging / _OBJECT)
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
-        numbers = [usual / number_object(part) for part in NUMBERS]
-        await self._link(staging, [engine / ENGINE_OBJECT, *numbers])
+        await self._link(staging, objects_of(usual, engine))
 
     def _ready_engine(self, state_bytes: int) -> Path | None:
         return self.cache.find(engine_name(self.compiler, state_bytes))

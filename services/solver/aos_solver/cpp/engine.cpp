@@ -2,6 +2,5 @@
 // with one of these models.
 #include "aos/child/child.hpp"
 #include "aos/model/erased_model.hpp"
-#include "aos/model/support.hpp"
 
 int main(int argc, char** argv) { return aos::run_child<aos::ErasedModel<AOS_STATE_BYTES>>(argc, argv); }
