@@ -115,24 +115,46 @@ async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
     assert sizes == [64, chosen]
 
 
+@pytest.mark.parametrize(("processors", "gigabytes", "at_once"), [(2, 8, 2), (2, 1, 1), (1, 8, 1), (4, 4, 2)])
 async def test_an_engine_has_a_compiler_for_each_processor_and_its_longest_part_begins(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, processors: int, gigabytes: int, at_once: int
 ) -> None:
     begun: list[str] = []
     ended: list[str] = []
+    most = 0
 
     async def compiled(_: Compiler, command: list[str], *__: Any, **___: Any) -> tuple[str, int]:
+        nonlocal most
         begun.append(Path(command[-1]).name)
-        assert len(begun) - len(ended) <= 2
+        most = max(most, len(begun) - len(ended))
         await asyncio.sleep(0)
         ended.append(begun[-1])
         return "", 0
 
     monkeypatch.setattr(engine_build_module, "run_compiler", compiled)
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(processors)))
+    monkeypatch.setattr(os, "sysconf", {"SC_PAGE_SIZE": 1 << 10, "SC_PHYS_PAGES": gigabytes << 20}.get)
     await build_engine(tmp_path)
-    assert begun[:2] == ["engine.o", "numbers.o"]
-    assert len(ended) == 4
+    assert (begun[:2], len(ended), most) == (["engine.o", "numbers.o"], 4, at_once)
+
+
+async def test_a_part_of_the_engine_that_fails_stops_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended: list[str] = []
+
+    async def compiled(_: Compiler, command: list[str], *__: Any, **___: Any) -> tuple[str, int]:
+        if command[-1] == "engine.o":
+            await asyncio.sleep(600)
+            ended.append(command[-1])
+        return "g++: fatal error: Killed signal terminated program cc1plus", 1
+
+    monkeypatch.setattr(engine_build_module, "run_compiler", compiled)
+    monkeypatch.setattr(engine_build_module, "_at_once", lambda: 2)
+    with pytest.raises(ModelError, match="Killed signal") as caught:
+        await build_engine(tmp_path)
+    assert "machine is too busy or too small" in str(caught.value.hint)
+    assert not ended
 
 
 async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) -> None:

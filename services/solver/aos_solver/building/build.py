@@ -142,7 +142,7 @@ async def build(
 
 def _patience_s(compiler: Compiler, deadline_s: float) -> float:
     """Returns how long another process is waited for that makes the same model: as long as it may take."""
-    return engine_deadline_s(compiler) + 2 * deadline_s
+    return 2 * (engine_deadline_s(compiler) + deadline_s)
 
 
 class _Build(msgspec.Struct, frozen=True):

@@ -28,12 +28,15 @@ QUICK = ("-O1", "-DAOS_QUICK")
 """The options of a quick build, with which what models include is precompiled."""
 
 ENGINE = "engine"
-"""The part of the engine that holds states: each of its sizes has its own. It takes two thirds of the time."""
+"""The part that holds states: each size of them has its own. It takes two thirds of the time."""
 NUMBERS = "numbers"
 """The part that knows models as numbers only: mostly loops."""
 FUNCTIONS = "support"
 """The part with the functions that models call."""
 _NUMBERS_OPTION = "-O3"
+
+_PART_BYTES = 1500 << 20
+"""The longest part takes 1.3 GB of memory."""
 
 _MODEL_DEADLINES = 5
 """The engine has so many times a model's deadline: our own sources are known to end, and only a busy machine
@@ -70,28 +73,29 @@ async def build_engine(
         deadline_s = engine_deadline_s(compiler)
         before_s = _children_cpu_s()
         ours: Given = {"reads": [SOURCES], "is_ours": True}
-        processors = asyncio.Semaphore(len(os.sched_getaffinity(0)))
+        places = asyncio.Semaphore(_at_once())
 
-        async def run(command: list[str]) -> tuple[str, int]:
-            async with processors:
-                return await run_compiler(compiler, command, staging, deadline_s, "the engine", **ours)
+        async def compile_part(command: list[str]) -> None:
+            async with places:
+                run = run_compiler(compiler, command, staging, deadline_s, "the engine", **ours)
+                output, status = await run
+                if status != 0:
+                    raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
 
         # The longest come first and keep a processor each. They would end later if all began together.
-        for output, status in await together(*(run(command) for command in commands)):
-            if status != 0:
-                raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
+        await together(*(compile_part(command) for command in commands))
         (staging / _SECONDS).write_text(f"{_children_cpu_s() - before_s:.1f}")
 
     return await BuildCache(cache_dir).fill(
         engine_name(compiler, state_bytes),
         make,
-        patience_s=engine_deadline_s(compiler),
+        patience_s=2 * engine_deadline_s(compiler),
         on_wait=lambda: on_progress("waiting for the engine, which another process compiles"),
     )
 
 
 def engine_deadline_s(compiler: Compiler) -> float:
-    """Returns how long the compilation of the engine may take."""
+    """Returns how long the longest part of the engine may take; all others take less than that together."""
     return _MODEL_DEADLINES * compiler.deadline_s
 
 
@@ -131,6 +135,12 @@ def circumstances(compiler: Compiler) -> str:
 def _part(compiler: Compiler, part: str, *options: str) -> list[str]:
     """The command that compiles a part of the engine."""
     return compiler.compilation(str(SOURCES / f"{part}.cpp"), object_of(part), str(SOURCES), *options)
+
+
+def _at_once() -> int:
+    """Returns how many parts are compiled at a time: as many as there are processors and memory for."""
+    memory_bytes = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    return max(1, min(len(os.sched_getaffinity(0)), memory_bytes // _PART_BYTES))
 
 
 def _children_cpu_s() -> float:
