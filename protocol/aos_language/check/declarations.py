@@ -69,11 +69,23 @@ def _check_unique(names: Iterable[tuple[str, Span]], what: str, findings: Findin
         first.setdefault(name, span)
 
 
+INSTEAD = {
+    "bitset": 'Declare an array of bool: `bool name []` in SDL, `"IsArray": true` in JSON',
+    "optional": "Declare the value, and beside it a bool that says whether there is one",
+    "variant": "Declare a variable of each type, and an enum that says which of them counts",
+}
+"""Types of the standard library that no state holds, and what to declare in their place."""
+
+
 def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool:
     unknown = scope.unknown_type_name(name)
     if not unknown:
         return True
     otherwise = f"The types are {quoted(scope.type_names)}"
+    if unknown in INSTEAD:
+        a = "an" if unknown[0] in "aeiou" else "a"
+        findings.error("AOS110", f"no state can hold {a} `{unknown}`", span, INSTEAD[unknown])
+        return False
     findings.unknown(unknown, scope.type_names, f"unknown type `{unknown}`", span, otherwise)
     return False
 

@@ -74,7 +74,7 @@ class Scope(msgspec.Struct, frozen=True):
         return cls(
             enums={enum.name: enum for enum in enums},
             compounds={compound.name: compound for compound in compounds},
-            variables={variable.name: variable for variable in variables},
+            variables={variable.name: variable for variable in reversed(variables)},  # The first of a name.
             enum_values={value: enum.name for enum in enums for value in enum.values},
             skills=assembly.models,
             low_level_names=frozenset(c.name for c in low_level.constants) if low_level else frozenset(),
