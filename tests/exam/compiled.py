@@ -93,7 +93,7 @@ async def _mission(
     running = 1.0
     for step in range(world.horizon):
         brackets = truth.report(problem)["values"]
-        claimed = [value.q / running for value in (await engine.exact()).actions]
+        claimed = [value.q / running for value in (await engine.exact_values()).actions]
         false += [
             f"step {step}: exact value of action {action} is {value!r}, but it is {bracket}"
             for action, (value, bracket) in enumerate(zip(claimed, brackets, strict=True))

@@ -33,7 +33,7 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
             await engine.reset_world(seed=walk)
             ending = ""
             for _ in range(STEPS_OF_A_WALK):
-                for value in (await engine.exact(horizon=1)).actions:
+                for value in (await engine.exact_values(horizon=1)).actions:
                     assert value.q == pytest.approx(expected_reward(model, belief, value.action), abs=1e-9)
                 index = draws.randrange(len(model.actions))
                 action = engine.description.actions[index].name

@@ -44,7 +44,7 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
         await engine.plan(seed=1, simulations=10, within=Restriction(barred=()), planner="pomcp")
         await engine.ponder(0, seed=1, time_s=0.0)
         await engine.count_processor_time(False)
-        await engine.exact(2)
+        await engine.exact_values(2)
         await engine.reach(0.1, 5)
         await engine.may_reach_goal()
         await engine.list_states(100)

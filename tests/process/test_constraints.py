@@ -220,7 +220,7 @@ async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path) ->
     values = []
     for model in (free, costs):
         async with engine_of(model) as engine:
-            values.append({action.action: action.q for action in (await engine.exact(1)).actions})
+            values.append({action.action: action.q for action in (await engine.exact_values(1)).actions})
     assert values[0]["touch"] == pytest.approx(10)
     assert values[1]["touch"] == pytest.approx(10 - 0.3 * 100)
 

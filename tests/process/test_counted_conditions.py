@@ -44,5 +44,5 @@ async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(
     end = "state__.doors[2] = 1;\nstate__.is_ready = true;\n__moduleResponse = ok;\n"
     writer.skill("close", ["ok"], code + end)
     async with engine_of_text(writer.files, cache_dir) as engine:
-        exact = await engine.exact(1)
+        exact = await engine.exact_values(1)
     assert exact.values[0].q == pytest.approx(17)

@@ -50,7 +50,7 @@ async def test_values_are_those_of_the_same_model_with_flags(cache_dir: Path) ->
         "grab.sd": files["grab.sd"].replace("AOS.SampleUniform(0, 1) < 0.8", "AOS.Bernoulli(0.8)"),
     }
     async with engine_of_text(twin, cache_dir) as engine:
-        exact = await engine.exact(horizon=10)
+        exact = await engine.exact_values(horizon=10)
     best = max(value.q for value in exact.actions)
     assert plan.best.q == pytest.approx(best, abs=0.05)
     assert 0 < plan.best.stderr < 1

@@ -219,7 +219,7 @@ async def test_beliefs_and_values_after_loops_are_closed_forms(cache_dir: Path) 
 
 
 async def check_values(engine: Engine) -> None:
-    values = {value.action: value.q for value in (await engine.exact(1)).actions}
+    values = {value.action: value.q for value in (await engine.exact_values(1)).actions}
     for name, (_, odds) in EXACT.items():
         mean = sum((value * probability for value, probability in odds.items()), Fraction())
         assert values[name] == pytest.approx(float(mean), abs=1e-9), name
@@ -248,7 +248,7 @@ async def check_counter(engine: Engine) -> None:
     assert after.is_exact
     assert 0 < after.error_bound < 1e-6
     assert spots(after)["0"] == pytest.approx(2 / 3, abs=1e-6)
-    values = await engine.exact(2)
+    values = await engine.exact_values(2)
     assert values.error > 2 * after.error_bound, "the largest reward is more than 1"
     await engine.reset_belief()
 

@@ -139,7 +139,7 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
     files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
     async with engine_of_text(files, cache_dir) as engine:
         # The reward before the loop is not earned.
-        values = await engine.exact(horizon=1)
+        values = await engine.exact_values(horizon=1)
         assert values.values[0].q == pytest.approx(0.25 * 9 + 0.375 * 5 - 0.375 * 4)
         prediction = await engine.predict(0)
         odds = {predicted.response: predicted.probability for predicted in prediction.predicted}

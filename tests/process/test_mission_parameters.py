@@ -32,7 +32,7 @@ BIN = Path(sys.executable).parent
 
 
 async def exact_values(engine: Engine) -> dict[str, float]:
-    return {value.action: value.q for value in (await engine.exact()).actions}
+    return {value.action: value.q for value in (await engine.exact_values()).actions}
 
 
 def with_constant(bundle: Path, person: str) -> dict[str, str]:

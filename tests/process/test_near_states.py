@@ -98,7 +98,7 @@ async def test_a_count_that_matters_to_nothing_moves_no_bound(
 ) -> None:
     plain = await built_bundle(bundles / "bench" / "tiger", cache_dir)
     async with engine_of(plain) as engine, engine_of(counted_tiger) as counted:
-        exact = {value.action: value.q for value in (await engine.exact(6)).actions}
+        exact = {value.action: value.q for value in (await engine.exact_values(6)).actions}
         plan = await decide(counted, 6)
         assert "that 12 decisions can lead to are listed" in plan.why
         for action in plan.actions:

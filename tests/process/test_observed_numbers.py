@@ -305,7 +305,7 @@ async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path)
     )
     async with engine_of_text(files, cache_dir) as engine:
         with pytest.raises(ModelError, match="what is observed are numbers") as raised:
-            await engine.exact()
+            await engine.exact_values()
         assert raised.value.code == "AOS220"
         with pytest.raises(ModelError, match="what is observed are numbers"):
             await engine.list_states(1000)

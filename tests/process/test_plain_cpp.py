@@ -170,7 +170,7 @@ async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path) -> None:
         files[f"{name}.sd"] = SKILL.format(code=code)
         files[f"{name}.am"] = mapping_text("done: True", project="odd", skill=name)
     async with engine_of_text(files, cache_dir) as engine:
-        values = await engine.exact(horizon=1)
+        values = await engine.exact_values(horizon=1)
     rewards = {value.action.split("(")[0]: value.q for value in values.values}
     assert rewards == {name: pytest.approx(reward) for name, (_, reward) in CODE.items()}
 
@@ -217,7 +217,7 @@ async def test_a_name_is_the_enums_value_where_no_response_can_stand(cache_dir: 
     )
     files = {"door.ef": DOOR, "pull.sd": PULL, "pull.am": pull}
     async with engine_of_text(files, cache_dir) as engine:
-        values = await engine.exact()
+        values = await engine.exact_values()
         update = await engine.update("pull", "open")
     assert values.values[0].q == pytest.approx(0.5 * 100 + 0.5 * 1)
     assert update.probability == pytest.approx(0.5)

@@ -119,7 +119,7 @@ async def test_random_worlds_have_the_values_that_an_independent_program_gives(
 ) -> None:
     await _enter(chance, world)
     truth = CHANCE.values(world, np.full(STATES, 1 / STATES), HORIZON)
-    exact = [value.q for value in (await chance.exact()).actions]
+    exact = [value.q for value in (await chance.exact_values()).actions]
     assert exact == pytest.approx(truth, abs=1e-9)
     plan = await chance.plan(simulations=200_000, seed=1, planner="pomcp")
     assert plan.best.q == pytest.approx(max(truth), abs=0.03)
@@ -138,7 +138,7 @@ async def test_the_tiger_is_listened_for_while_it_was_heard_on_both_sides(tiger:
 
 async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) -> None:
     async with engine_of(tiger) as engine:
-        exact = {value.action: value.q for value in (await engine.exact(4)).actions}
+        exact = {value.action: value.q for value in (await engine.exact_values(4)).actions}
         plan = await engine.plan(simulations=200_000, seed=2, horizon=4, planner="pomcp")
     assert plan.best.q == pytest.approx(max(exact.values()), abs=0.3)
     assert exact[plan.best.action] == max(exact.values())

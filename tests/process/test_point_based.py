@@ -120,7 +120,7 @@ async def test_what_is_proven_of_values_is_true_and_tight_for_the_best_one(
         for sound in heard:
             await engine.update("listen", sound)
         plan = await _decide(engine, simulations=100_000)
-        exact = {value.action: value.q for value in (await engine.exact(ALMOST_ENDLESS)).actions}
+        exact = {value.action: value.q for value in (await engine.exact_values(ALMOST_ENDLESS)).actions}
     # The value is that of the decisions within the horizon. What comes later is worth 19 to 28.
     left = 0.95**plan.horizon
     assert max(exact.values()) - 28 * left <= plan.best.q <= max(exact.values()) - 19 * left
@@ -187,7 +187,7 @@ async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag:
 async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: Path) -> None:
     async with engine_of_text(TICKET, cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="sarsop")
-        exact = await engine.exact()
+        exact = await engine.exact_values()
     assert plan.planner == "sarsop"
     assert "decisions to go the belief is worth between" in plan.why
     assert plan.best.q == pytest.approx(max(value.q for value in exact.actions), abs=1e-6)

@@ -62,7 +62,7 @@ async def test_values_are_exact_and_the_same(cache_dir: Path) -> None:
     values = []
     for files in (WRITTEN_OUT, SHARED):
         async with engine_of_text(files, cache_dir) as engine:
-            exact = await engine.exact()
+            exact = await engine.exact_values()
             summary = await engine.summary()
             values.append({action.action: action.q for action in exact.actions})
             names = {marginal.variable for marginal in summary.marginals}

@@ -176,7 +176,7 @@ async def test_a_special_state_that_counts_once_is_used_up_by_the_corrected_stat
     engine: Engine,
 ) -> None:
     await engine.update("drive", "arrived", {**SEEN, "slipped": "true"})
-    exact = {value.action: value.q for value in (await engine.exact(1)).actions}
+    exact = {value.action: value.q for value in (await engine.exact_values(1)).actions}
     assert exact["drive"] == pytest.approx(-1 + 0.5 * 10 + 0.5 * 1)
 
 

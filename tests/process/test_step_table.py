@@ -68,7 +68,7 @@ async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path) -> Non
 
 async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> None:
     async with engine_of_text(documents(""), cache_dir) as engine:
-        best = max((await engine.exact(HORIZON)).actions, key=lambda value: value.q)
+        best = max((await engine.exact_values(HORIZON)).actions, key=lambda value: value.q)
         plan = await engine.plan(simulations=100_000, seed=1, planner="pomcp")
     assert (plan.best.action, plan.best.q) == (best.action, pytest.approx(best.q, rel=0.01))
 

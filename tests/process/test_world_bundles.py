@@ -40,7 +40,7 @@ async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
     bundle: str, first: str, bundles: Path, cache_dir: Path
 ) -> None:
     async with engine_of_bundle(bundles / bundle, cache_dir) as engine:
-        values = sorted((await engine.exact()).actions, key=lambda value: -value.q)
+        values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 

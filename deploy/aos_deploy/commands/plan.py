@@ -105,7 +105,7 @@ def plan(
             for said in await believe_all(engine, supposed):
                 typer.echo(f"supposed {said}", err=True)
             if exact:
-                return _decision((await engine.exact(horizon)).values, 0)
+                return _decision((await engine.exact_values(horizon)).values, 0)
             return await _searched_decision(engine, search)
 
     decision = with_engine(bundle, seed, decide, never=never, set_values=set_values)

@@ -5,8 +5,8 @@ from typing import Literal
 
 import msgspec
 
-from aos_solver.child.answers import ExactValues, GoalReach, Plan, Risks
-from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking, Done
+from aos_solver.child.answers import GoalReach, Plan, Risks
+from aos_solver.child.asking import Asking, Done
 from aos_solver.child.command_line import command_line
 
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
@@ -15,8 +15,6 @@ DEFAULT_PLANNER: Planner = "auto"
 PLANNING_DEADLINE_S = 120.0
 """The deadline of a search, beyond its budget in time. The first decision computes values before it
 searches."""
-EXACT_TIME_S = 300.0
-EXACT_BELIEF_BUDGET = 20_000_000
 _LOOK_FOR_GOAL_S = 1.0
 
 
@@ -86,13 +84,6 @@ class MissionQuestions(Asking):
     async def tell_progress(self, every_s: float) -> None:
         """Has `on_progress` told that often at most, for measurements and tests; until then every 0.25 s."""
         await self._ask(command_line("tell_progress", between_ms=round(every_s * 1000)), Done)
-
-    async def exact(self, horizon: int | None = None) -> ExactValues:
-        """Finite-horizon values by enumeration; IntractableError where that is not possible, and why."""
-        command = command_line(
-            "exact", horizon=horizon or 0, beliefs=EXACT_BELIEF_BUDGET, seconds=EXACT_TIME_S
-        )
-        return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
     async def risks(self, seed: int) -> Risks:
         """Returns what each action risks of the mission's constraints; the seed is for what has to be

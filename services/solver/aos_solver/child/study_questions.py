@@ -5,7 +5,9 @@ from aos_solver.child.answers import ExactValues, RewardTerms
 from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking, Done
 from aos_solver.child.belief_answers import Believed
 from aos_solver.child.command_line import command_line
-from aos_solver.child.mission_questions import EXACT_BELIEF_BUDGET, EXACT_TIME_S
+
+EXACT_TIME_S = 300.0
+EXACT_BELIEF_BUDGET = 20_000_000
 
 
 class StudyQuestions(Asking):
@@ -47,7 +49,7 @@ class StudyQuestions(Asking):
     async def exact_values(self, horizon: int | None = None, *, cautious: bool = False) -> ExactValues:
         """The exact values of all actions; IntractableError where they cannot be enumerated.
 
-        As `exact`, but what is listed is kept for the next belief.
+        What is listed is kept for the next belief.
         """
         command = command_line(
             "exact_values",

@@ -132,7 +132,6 @@ class Commands {
         {"plan", by<&Commands::planning_, &Planning::plan>},
         {"ponder", by<&Commands::planning_, &Planning::ponder>},
         {"count_processor_time", by<&Commands::planning_, &Planning::count_processor_time>},
-        {"exact", by<&Commands::planning_, &Planning::exact>},
         {"reach", by<&Commands::planning_, &Planning::reach>},
         {"may_reach_goal", by<&Commands::planning_, &Planning::may_reach_goal>},
         {"list", by<&Commands::planning_, &Planning::list>},

@@ -1,4 +1,4 @@
-// The commands that let an engine child decide and look ahead: searches, exact values, reachable states.
+// The commands that let an engine child decide and look ahead: searches, reachable states.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,6 @@
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/idle_actions.hpp"
-#include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/planners.hpp"
 
 namespace aos {
@@ -79,24 +78,6 @@ class PlanningCommands {
     json.begin_object().end_object();
   }
 
-  void exact(JsonWriter& json, const Command& command) const {
-    const int horizon = horizon_of(command);
-    const std::chrono::duration<double> limit{command.number<double>("seconds")};
-    const auto start = std::chrono::steady_clock::now();
-    const auto is_over = [=] { return std::chrono::steady_clock::now() - start > limit; };
-    StateSpace<Model> space;
-    space.reach_within(belief(), horizon);
-    const ObservableValues observable{space.rows(), space.numbering(), horizon};
-    ExactEvaluation evaluation{space.rows(), observable, {.beliefs = command.number<std::uint64_t>("beliefs"), .is_over = is_over}};
-    const auto values = evaluation.action_values(exact_root(space, belief()), horizon);
-    json.begin_object().key("actions").begin_array();
-    for (int action = 0; action < Model::action_count(); ++action) {
-      json.begin_object().member("action", Model::action_name(action));
-      json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
-    }
-    json.end_array().member("error", evaluation.error(horizon) + space.slack(belief(), horizon)).member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
-  }
-
   void reach(JsonWriter& json, const Command& command) const {
     const Reachability<Model> reached{belief(), command.number<double>("seconds")};
     json.begin_object().member("has_goal", reached.has_goal()).key("actions").begin_array();
@@ -113,7 +94,7 @@ class PlanningCommands {
     std::optional<typename Model::Without> without;
     if (!left_out.empty()) without.emplace(left_out);
     Sampler random{command.number<std::uint64_t>("seed")};
-    const GoalReach<Model> reach{beliefs_.belief_for(command), command.number<double>("seconds"), horizon_of(command), random};
+    const GoalReach<Model> reach{beliefs_.belief_for(command), command.number<double>("seconds"), horizon_of<Model>(command), random};
     json.begin_object().member("is_reachable", reach.is_reachable()).end_object();
   }
 
@@ -171,7 +152,7 @@ class PlanningCommands {
     const auto processor_start = processor_time();
     const Belief<Model>& belief = beliefs_.belief_for(command);
     const Budget budget = budget_of(command);
-    const int horizon = horizon_of(command);
+    const int horizon = horizon_of<Model>(command);
     const auto planner = planner_kind(command.text("planner"));
     if (!planner) throw BadCommand{"there is no planner " + std::string{command.text("planner")}};
     const bool is_cautious = &belief != &beliefs_.belief();
@@ -228,11 +209,6 @@ class PlanningCommands {
     json.begin_array();
     for (const std::uint64_t number : numbers) json.value(number);
     json.end_array();
-  }
-
-  static int horizon_of(const Command& command) {
-    const int horizon = command.number<int>("horizon");
-    return horizon > 0 ? horizon : Model::horizon;
   }
 
   static Budget budget_of(const Command& command) {

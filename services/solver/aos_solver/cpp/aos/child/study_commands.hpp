@@ -28,9 +28,9 @@ class StudyCommands {
  public:
   explicit StudyCommands(const BeliefCommands<Model>& beliefs) : beliefs_(beliefs) {}
 
-  // Writes the exact value of each action, as `exact` does. What is listed is kept for the next belief.
+  // Writes the exact value of each action. What is listed is kept for the next belief.
   void exact_values(JsonWriter& json, const Command& command) {
-    const int horizon = horizon_of(command);
+    const int horizon = horizon_of<Model>(command);
     const Belief<Model>& belief = beliefs_.belief_for(command);
     auto evaluation = evaluation_for(command, belief, horizon);
     const auto values = evaluation.action_values(exact_root(*space_, belief), horizon);
@@ -49,7 +49,7 @@ class StudyCommands {
     const Belief<Model>& belief = beliefs_.belief_for(command);
     if (command.flag("is_first")) return first_terms(json, belief, action);
     RewardTerms<Model> terms;
-    const int horizon = horizon_of(command);
+    const int horizon = horizon_of<Model>(command);
     auto evaluation = evaluation_for(command, belief, horizon);
     evaluation.action_values(exact_root(*space_, belief), horizon);
     const auto times = evaluation.occupancy(space_->weights_of(belief), static_cast<std::size_t>(action), horizon);
@@ -85,11 +85,6 @@ class StudyCommands {
       if (Model::ending(state) == Ending::running) drawn.add_drawn(state, action, 1.0 / drawn_steps, random);
     });
     drawn.write(json);
-  }
-
-  static int horizon_of(const Command& command) {
-    const int horizon = command.number<int>("horizon");
-    return horizon > 0 ? horizon : Model::horizon;
   }
 
   ExactEvaluation evaluation_for(const Command& command, const Belief<Model>& belief, int horizon) {

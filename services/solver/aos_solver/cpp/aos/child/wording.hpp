@@ -26,6 +26,13 @@ int action_of(const Command& command) {
   return checked_action<Model>(command.number<int>("action"));
 }
 
+// The command's horizon; that of the documents where it names none.
+template <class Model>
+int horizon_of(const Command& command) {
+  const int horizon = command.number<int>("horizon");
+  return horizon > 0 ? horizon : Model::horizon;
+}
+
 template <class Model>
 std::string text_of_response(int action, Observation observation) {
   return name_of_observation<Model>(Model::skill_of(action), observation);
