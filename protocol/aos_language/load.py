@@ -13,6 +13,7 @@ from aos_language.archive import is_archive_name, read_archive
 from aos_language.assembly import assemble
 from aos_language.check import check
 from aos_language.findings import Findings
+from aos_language.reading.document import DocumentKind
 from aos_language.reading.files import (
     MAX_BUNDLE_BYTES,
     MAX_BUNDLE_FILES,
@@ -25,16 +26,21 @@ from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 
+_IN_CODE = frozenset({"AOS110", "AOS116", "AOS122", "AOS123", "AOS128", "AOS138", "AOS143"})
+"""Errors in a model's code that leave its declarations whole, so that the compiler can tell of the rest."""
+
 
 class LoadedBundle(msgspec.Struct, frozen=True):
     """`project` is there when no diagnostic is an error. `files` gives the digest of each document's file,
-    `versions` the version of each that declares one."""
+    `versions` the version of each that declares one. `draft` is a project with errors of mappings and of
+    single lines of model code alone, of which a compiler tells more."""
 
     project: Project | None
     diagnostics: tuple[Diagnostic, ...]
     digest: str
     files: dict[str, str]
     versions: dict[str, str] = {}
+    draft: Project | None = None
 
     @property
     def has_errors(self) -> bool:
@@ -71,14 +77,18 @@ def load_files(
     )
     assembly = assemble(documents, findings, bundle=name, has_unread_files=has_unread_files)
     check(assembly, findings)
-    project = None if findings.has_errors else assembly.project()
+    mappings = {name for name, document in documents.items() if document.kind is DocumentKind.MAPPING}
+    errors = [found for found in findings.sorted() if found.is_error]
+    is_draft = all(found.span.file in mappings or found.code in _IN_CODE for found in errors)
+    whole = assembly.project() if is_draft else None
+    project, draft = (None, whole) if errors else (whole, None)
     kept = [*documents, *([PICTURE] if PICTURE in files else [])]
     digests = {file: hashlib.sha256(files[file]).hexdigest() for file in kept}
     versions = {
         file: document.version.text for file, document in documents.items() if document.version is not None
     }
     digest = bundle_digest(files, kept)
-    return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions)
+    return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions, draft)
 
 
 def bundle_digest(files: Mapping[str, bytes], documents: Iterable[str]) -> str:

@@ -124,7 +124,8 @@ CODE = {
         "if (is_kept && !state__.sorted.count(Blue)) __reward += mine.size();"
         "state__.kept = state.kept; state__.kept.erase(spot); __reward += 100 * (state__.kept < state.kept);"
         "spot = state.spot; __reward += spot.second + 1000 * state.kept.contains(state.spot);"
-        "try { state__.sorted.at(Blue).insert(1); } catch (const std::out_of_range&) { __reward += 0.5; }",
+        "try { state__.sorted.at(Blue).insert(1); } catch (const std::out_of_range& told) "
+        '{ __reward += 0.5 * (std::string(told.what()).find("map") == 2); }',
         20 + 2 + 2 + 0 + 5 + 0.5,
     ),
     "found": (

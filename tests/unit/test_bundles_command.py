@@ -35,6 +35,14 @@ def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Pa
     assert result.exit_code == 1
     assert f"pick.sd:{line}:16: error[AOS201]" in result.output
     assert "bool in_hand = in_the_hand &&" in result.output
+    # A mistake of a mapping, and one that is told without the compiler, leave the others' mistakes visible.
+    (folder / "look.am").write_text("project: armadillo\nmodule_activation: nothing\n")
+    path.write_text(path.read_text().replace("__reward =", "__reward = state.nowhere +", 1))
+    together = aos("lint", folder).output
+    assert f"pick.sd:{line}:16: error[AOS201]" in together
+    assert "look.am:2:" in together
+    assert "unknown state variable `nowhere`" in together
+    assert "no member named `nowhere`" not in together
 
 
 def test_lint_gives_sarif_with_rules_and_regions(broken: Path) -> None:

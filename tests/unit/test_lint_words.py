@@ -144,6 +144,9 @@ def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 10, 18)
     assert only.mend is not None
     assert (only.mend.length, only.mend.text) == (2, "=")
+    code = "steps == 1 ? void(__reward = 1) : void();\n__reward == steps > 0 ? 1 : 2;"
+    (only,) = found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x ="))
+    assert (only.code, only.span.line, only.span.column) == ("AOS149", 10, 10)
 
 
 @pytest.mark.parametrize(

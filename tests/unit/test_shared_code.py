@@ -267,6 +267,18 @@ def test_a_misspelt_call_is_told_with_the_name_that_was_meant() -> None:
             "no matching function for call to `AOS.Bernoulli()`",
             "",
         ),
+        (
+            "no matching function for call to "
+            "'model::Environment::initial_belief<aos::AnySource>(model::State&)::Deck::take()'",
+            "no matching function for call to `Deck::take()`",
+            "",
+        ),
+        (
+            "could not convert 'is_in.model::aos_skill_go::next_state<aos::Effect, aos::AnySource>"
+            "(const model::State&, bool, aos::AnySource&)::<lambda(int, int)>(r, c)' from 'void' to 'bool'",
+            "could not convert `is_in(r, c)` from `void` to `bool`",
+            "",
+        ),
     ],
 )
 def test_messages_are_told_in_the_documents_terms_with_what_to_write(

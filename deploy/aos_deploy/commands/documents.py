@@ -65,9 +65,9 @@ def lint(
 
     Of a deploy file all bundles are checked together.
 
-    Where the documents are in order, the model is generated and compiled too, and mistakes in its C++ are
-    told at their place in the documents; the built model is kept for later. Exit code 0: clean, or warnings
-    only. 1: errors.
+    The model is generated and compiled too, unless its declarations have mistakes, and mistakes in its C++
+    are told at their place in the documents; the built model is kept for later. Exit code 0: clean, or
+    warnings only. 1: errors.
     """
     files, remarks = _files_of([*(also or ()), path])
     loaded = load_files(files, name=path.name or str(path), remarks=remarks)
@@ -76,6 +76,10 @@ def lint(
         # A picture.py that cannot be read is not drawn as well: it would be told twice.
         tried = {n: text for n, text in files.items() if not any(f.span.file == n == PICTURE for f in found)}
         found = (*found, *_model_findings(tried, path, loaded.project))
+    elif compiles and loaded.draft is not None:
+        told = {(finding.span.file, finding.span.line) for finding in found if finding.is_error}
+        more = _compiler_errors(files, loaded.draft)
+        found = (*found, *(error for error in more if (error.span.file, error.span.line) not in told))
     counts = Counter(diagnostic.severity for diagnostic in found)
     if form is Format.JSON:
         print_json(
@@ -136,6 +140,20 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
         return with_excerpts(error.diagnostics, files)
     _, warnings = lowered(project)
     return with_excerpts((*warnings, *reached), files)
+
+
+def _compiler_errors(files: Mapping[str, bytes], draft: Project) -> tuple[Diagnostic, ...]:
+    """Errors of the compiler in documents that have other mistakes as well."""
+    import asyncio  # As above.
+
+    from aos_deploy.program import cache_dir
+    from aos_solver.building.project_build import build_project
+
+    try:
+        asyncio.run(build_project(draft, cache_dir()))
+    except AosError as error:
+        return with_excerpts((found for found in error.diagnostics if found.code == "AOS201"), files)
+    return ()
 
 
 def inspect(

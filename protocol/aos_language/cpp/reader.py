@@ -19,6 +19,8 @@ from aos_language.cpp.nodes import text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
+_PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
+"""Expressions that do nothing but have a value."""
 
 
 class TreeReader:
@@ -81,6 +83,9 @@ class TreeReader:
 
     def _statement(self, node: tree_sitter.Node, access: Access) -> None:
         whole = node.named_children[0] if node.named_children else None
+        if whole is not None and whole.type == "conditional_expression":  # x == is_met ? done : failed;
+            condition, *branches = whole.named_children
+            whole = condition if all(branch.type in _PLAIN for branch in branches) else None
         parts = whole.children if whole is not None else []
         for part in parts:
             is_decimal = part.type == "," and parts[-1].type == "number_literal"

@@ -21,6 +21,8 @@ _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
 )
 """A text meets another type: a number, an enum's value, a response."""
+_WITHIN = re.compile(r"(?:\b\w+::)?\b\w+<aos::[^>]*>\((?:[^()]|\([^()]*\))*\)(?: const)?::")
+"""The function of ours in which a struct or a lambda of a document's code stands."""
 _FAULTS = ("error", "fatal error", "Error")
 
 
@@ -104,6 +106,7 @@ def _document_place(place: tuple[str, int, int], source_name: str, emitted: Emit
 def _plain(text: str) -> tuple[str, str]:
     """The message in the documents' terms, and the compiler's suggestion as a hint."""
     text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
+    text = re.sub(r"\.<lambda\([^)]*\)>(?=\()", "", _WITHIN.sub("", text))
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
     text = text.replace("was not declared in this scope", "was not declared").replace(

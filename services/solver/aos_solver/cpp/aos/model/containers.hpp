@@ -16,6 +16,7 @@ namespace aos {
 
 // These throw a ModelFault. They are kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void out_of_range(std::ptrdiff_t index, std::size_t size);
+[[noreturn, gnu::cold]] void no_such_key(std::size_t size);
 [[noreturn, gnu::cold]] void over_capacity(std::size_t size, std::size_t max);
 
 // A vector of up to `Capacity` elements in place, so that a state stays trivially copyable. It converts from

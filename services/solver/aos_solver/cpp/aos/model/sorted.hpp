@@ -148,7 +148,7 @@ class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type:
 
  private:
   auto& found(auto at) const {
-    if (at == this->end()) out_of_range(-1, this->size());
+    if (at == this->end()) no_such_key(this->size());
     return at->second;
   }
 };

@@ -38,6 +38,9 @@ struct OutOfRange : ModelFault, std::out_of_range {
 void out_of_range(std::ptrdiff_t index, std::size_t size) {
   throw OutOfRange{"element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
 }
+void no_such_key(std::size_t size) {
+  throw OutOfRange{"a map of " + std::to_string(size) + " keys has no such key"};
+}
 void over_capacity(std::size_t size, std::size_t max) {
   const std::string holds = "; its state variable holds " + std::to_string(max);
   throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
