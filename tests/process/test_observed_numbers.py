@@ -237,6 +237,9 @@ async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cac
             "the numbers of poke do not count (depth = null): the model reports others with the response read"
         )
         assert missing.probability == pytest.approx(0.8)
+        assert (await engine.update("poke", "read")).remark == ""  # Supposed, as `aos why` does.
+        await engine.reset_belief()
+        await engine.update("poke", "read", numbers={})
         assert await levels(engine) == pytest.approx({0: 5 / 8, 1: 3 / 8})
         impossible = await engine.update("poke", "read", numbers={"depth": 0.7})
         assert (impossible.is_impossible, impossible.remark) == (True, "")

@@ -78,10 +78,10 @@ class BeliefQuestions(Asking):
         """Bayes' rule after an action and its observation: a response, and the numbers reported beside it.
 
         The local variables of a real outcome, as text, correct the belief where the skill's documents say so.
-        The update's remark says why numbers or local variables could not be used. The cautious belief is
-        given up once all that was observed since it began is less probable in it by this factor. `step` is
-        the mission's, without one the updates are counted: what an update draws depends on seed and step
-        alone.
+        The update's remark says why numbers or local variables could not be used. Where neither is given a
+        response is only supposed, and there is none. The cautious belief is given up once all that was
+        observed since it began is less probable in it by this factor. `step` is the mission's, without one
+        the updates are counted: what an update draws depends on seed and step alone.
         """
         index = self._index(action)
         skill = self.description.actions[index].skill
@@ -94,7 +94,7 @@ class BeliefQuestions(Asking):
             "draws": self._draws.of(step),
         }
         update = await self._corrected(action, question, local_variables)
-        if not update.has_other_numbers:
+        if not update.has_other_numbers or (numbers is None and local_variables is None):
             return update
         given = {**(numbers or {}), **(local_variables or {})}
         given_text = ", ".join(f"{number.name} = {given.get(number.name, 'nothing')}" for number in observed)
