@@ -125,7 +125,7 @@ def test_what_python_allows_is_not_told(texts: dict[str, str]) -> None:
         ({"code": "answer = np.mean(__input.answer)"}, "sell.am:20:10", "`np`."),
         ({"code": "if __input.ok:\n    answer = reply"}, "sell.am:21:14", "`reply`."),
         ({"initial": "heard"}, "sell.am:24:16", "`heard`."),
-        ({"topic": "return input_.text"}, "sell.am:26:8", "`input_`."),
+        ({"topic": "return input_.text"}, "sell.am:26:8", "`input_`. Did you mean `__input`?"),
                 ({"low_level": LOW_LEVEL.replace("import math\n", "")},
          "shop.lf:6:10", "`math`."),
     ],

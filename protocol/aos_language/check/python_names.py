@@ -156,9 +156,12 @@ def check_names(
             continue
         span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
         close = nearest(node.id, names.local_names)
-        candidates = names.local_names if close else sorted(known)
-        if (hint := _hint(node.id, names)) and not close:
-            candidates = ()
+        hint = _hint(node.id, names)
+        if close or hint:
+            candidates = names.local_names if close else ()
+        else:
+            candidates = tuple(sorted(known - _BUILT_IN_NAMES))
+            hint = _local_variables(names)
         message = f"no local variable gives `{node.id}`"
         findings.unknown(node.id, candidates, message, span, hint, severity=severity)
 
@@ -217,6 +220,7 @@ def _loaded_names(tree: ast.AST) -> Iterator[ast.Name]:
 
 
 def _hint(name: str, names: PythonNames) -> str:
+    """Advice on a name that people take for another; empty for other names."""
     if name in _OF_OTHER_LANGUAGES:
         return f"Python writes `{_OF_OTHER_LANGUAGES[name]}`"
     if name in STATE_COPIES:
@@ -227,6 +231,10 @@ def _hint(name: str, names: PythonNames) -> str:
         return "Only rules of a skill's mapping know it"
     if name in names.parameters:
         return f"Add a local variable with `action_parameter: {name}`"
+    return ""
+
+
+def _local_variables(names: PythonNames) -> str:
     if names.local_names:
         return f"The local variables are {quoted(names.local_names)}"
     return "There are no local variables: add one that gives it"
