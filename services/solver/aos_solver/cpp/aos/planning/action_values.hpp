@@ -8,7 +8,8 @@
 // - A tree that ends in values of seen states promises too much, and a tree does not know that the mission plans anew.
 //   Missions that are played by these values with next to no planning return too little (group_missions.hpp). Neither is
 //   proven. The value stays the tree's, and its error is half of the distance to the one that is further away.
-//   Values that are learned are no bounds, however long a search ends in them. There the value is what the missions return.
+//   Values that are learned are no bounds, however long a search ends in them. There the value is what the missions return, as
+//   where missions have found a price of information.
 // - A tree that ends in rollouts guesses too low. At the root, the search has moved the guess by its gain. Searches from
 //   the tree's leaves may move their guesses as far. The value is moved by half of that, with an error of the other half.
 //   The share of the value that lies beyond the leaves is `beyond`.
@@ -37,7 +38,7 @@ struct Promise {
   double most = 0;
   double played = 0;
   double played_error = 0;
-  bool is_guess = false;  // whether the values in which the tree ends are learned
+  bool is_guess = false;  // whether the value is what the missions return
 };
 
 // The values of actions whose estimates come from a tree that ends in values of seen states.

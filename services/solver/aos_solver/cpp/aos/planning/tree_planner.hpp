@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,8 +41,9 @@ class TreePlanner : public Planner<Model> {
     }
     if (!was_searched || !missions_.is_known()) return estimates;
     const double running = belief.probability_of(Ending::running);
-    const double played = value_of_states(belief) - running * missions_.loss();
-    const Promise promise{most(belief, estimates, choice), played, running * missions_.loss_error(), has_learned_values()};
+    const std::optional<double> doubt = lost_by_doubt(belief);
+    const double played = value_of_states(belief) - running * doubt.value_or(missions_.loss());
+    const Promise promise{most(belief, estimates, choice), played, running * missions_.loss_error(), has_learned_values() || doubt};
     return values_of_promise(std::move(estimates), promise, choice);
   }
 
@@ -51,6 +53,8 @@ class TreePlanner : public Planner<Model> {
   virtual const StateValues<Model>* values_of_ends() const = 0;
   // Whether these values are learned, and may be wrong by any amount.
   virtual bool has_learned_values() const { return false; }
+  // What missions lose by not seeing the state, where they are played to find out what information is worth.
+  virtual std::optional<double> lost_by_doubt(const Belief<Model>& /*belief*/) const { return {}; }
   // Their mean over the belief.
   virtual double value_of_states(const Belief<Model>& belief) const = 0;
   // Where a tree ends that has no values of states, and what it has gained over its rollouts.

@@ -55,6 +55,9 @@ class InformationPrice {
     return price_;
   }
 
+  // What missions lose that go by the price that was found, for each nat of a belief's entropy; nothing without a price.
+  double lost_for_each_nat() const { return price_ / price_of_rest; }
+
   // Begins another mission.
   void start_over() { has_begun_ = false; }
 

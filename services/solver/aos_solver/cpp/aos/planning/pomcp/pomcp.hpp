@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -121,6 +122,10 @@ class Pomcp final : public TreePlanner<Model> {
   }
   const StateValues<Model>* values_of_ends() const override { return state_values_; }
   bool has_learned_values() const override { return source_ == ValueSource::learned; }
+  std::optional<double> lost_by_doubt(const Belief<Model>& belief) const override {
+    if (price_of_nat_ <= 0) return {};
+    return price_.lost_for_each_nat() * belief.entropy();
+  }
   double value_of_states(const Belief<Model>& belief) const override { return belief.probability_of(Ending::running) * mdp_value_; }
   TreeReach reach(const Belief<Model>& belief, const Estimates& estimates, int choice) const override {
     TreeReach result;
