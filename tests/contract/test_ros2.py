@@ -192,10 +192,13 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
     assert ended.is_set()
 
 
-async def test_an_action_that_fails_is_aborted(robot: Node, node: Node) -> None:
+async def test_an_action_that_fails_is_aborted_and_the_log_says_why(
+    robot: Node, node: Node, caplog: pytest.LogCaptureFixture
+) -> None:
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     end = await node.run_action(ActionRequest("/lab/fibonacci", {"order": -1}, timeout_s=HANG_S))
     assert end.status == "aborted"
+    assert "a goal of /lab/fibonacci is aborted: " in caplog.text
 
 
 async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: str, node: Node) -> None:

@@ -1,6 +1,7 @@
 """Serving an action as a ROS 2 node does: three services, feedback and the list of goals' states."""
 
 import asyncio
+import logging
 import time
 
 from aos_protocol.errors import AosError
@@ -12,6 +13,8 @@ _NO_ERROR, _REJECTED, _UNKNOWN_GOAL, _TERMINATED = range(4)
 
 _KEPT_GOALS = 50
 """Ended goals whose results can still be asked for."""
+
+_log = logging.getLogger("aos.ros.server")
 
 
 class Goal:
@@ -35,6 +38,7 @@ class ActionServer:
     """Serves until the node closes. Any number of goals may run: `run` refuses what it cannot."""
 
     def __init__(self, node: RosNode, action: str, type_name: str, run: RunGoal) -> None:
+        self._action = action
         self._run = run
         self._goals: dict[bytes, Goal] = {}
         self._running = Background()
@@ -64,8 +68,10 @@ class ActionServer:
                 goal.cancelled,
                 lambda feedback: self._feedback({"goal_id": {"uuid": goal.id}, "feedback": feedback}),
             )
-        except AosError:
+        except AosError as error:
             status = _CANCELED if goal.cancelled.is_set() else _ABORTED
+            if status == _ABORTED:  # The action's messages have no field for the reason.
+                _log.warning("a goal of %s is aborted: %s", self._action, error)
         else:
             status = _CANCELED if goal.cancelled.is_set() else _SUCCEEDED
         self._tell(goal, status)
