@@ -22,10 +22,12 @@ pytest.importorskip("rosbags", reason="needs the extra `ros`")
 from texts import encoded
 
 from aos_language.load import load_files
-from aos_protocol.errors import AosError
+from aos_protocol.errors import AosError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     ActivationId,
+    Cancel,
+    Cancelled,
     ProjectQuery,
     ProjectRevision,
     SkillCall,
@@ -225,6 +227,31 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
         await lab.call("/count", {"order": 1000}, 2, limit_s=1.5)
     assert raised.value.code == "AOS503"
     assert (await lab.call("/count", {"order": 1}, 3, limit_s=HANG_S)).fields == {"sequence": [0]}
+
+
+async def test_a_goal_that_does_not_end_when_it_is_cancelled_counts_as_moving_until_it_ends(lab: Lab) -> None:
+    is_still = asyncio.Event()
+
+    async def deaf(
+        _: dict[str, Any], __: asyncio.Event, ___: Callable[[dict[str, Any]], None]
+    ) -> dict[str, Any]:
+        await is_still.wait()
+        return {"sequence": []}
+
+    lab.robot.serve_action("/lab/wave", FIBONACCI, deaf)
+    await lab.until_served("/wave")
+    with pytest.raises(AosError, match="was asked to cancel its goal and did not") as raised:
+        await lab.call("/wave", {"order": 1}, 1, limit_s=1.0)
+    assert raised.value.code == "AOS504"
+    question = Cancel("another skill is to run", ActivationId("m", 1))
+    with pytest.raises(AosError, match="/lab/wave has not ended"):
+        await lab.bus.ask(lab.keys.cancel("/wave"), question, Cancelled, timeout_s=HANG_S)
+    is_still.set()
+    async with asyncio.timeout(HANG_S):
+        while True:
+            with suppress(SkillError):
+                await lab.bus.ask(lab.keys.cancel("/wave"), question, Cancelled, timeout_s=HANG_S)
+                return
 
 
 async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:

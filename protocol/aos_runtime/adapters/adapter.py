@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import msgspec
 
@@ -88,4 +88,13 @@ class Adapter(Protocol):
 
     async def close(self) -> None:
         """Ends the adapter; nothing runs any more."""
+        ...
+
+
+@runtime_checkable
+class MovesOn(Protocol):
+    """An adapter whose robot may go on moving after a call has ended, as one that is deaf to its end."""
+
+    def still_moving(self) -> str:
+        """Returns what may still move, for people; empty where all stands still."""
         ...

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, SkillResult
-from aos_runtime.adapters.adapter import Adapter, Answer, Call
+from aos_runtime.adapters.adapter import Adapter, Answer, Call, MovesOn
 from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
@@ -191,7 +191,8 @@ class Calls:
         error = None if task.cancelled() else task.exception()
         if error is None and not task.cancelled():
             return task.result()
-        if is_late:
+        is_unknown = isinstance(error, AosError) and error.code == "AOS504"
+        if is_late and not is_unknown:
             raise SkillError(
                 f"{call.path} took longer than it may, {round(call.deadline_s, 1):g} s", code="AOS503"
             )
@@ -207,10 +208,16 @@ class Calls:
         ) from error
 
     async def cancel(self, cancel: Cancel, _: str) -> Cancelled:
-        """Cancels the call that is meant, if it runs."""
+        """Cancels the call that is meant, if it runs.
+
+        SkillError AOS504 where the robot does not stop, or goes on though the call has ended.
+        """
         running = self._running
         is_meant = running is not None and cancel.id in (None, running.call.id)
         if running is None or not is_meant or self._fence.is_stale(cancel):
+            moving = self._adapter.still_moving() if isinstance(self._adapter, MovesOn) else ""
+            if moving and cancel.id is not None:
+                raise SkillError(f"{moving} has not ended", code="AOS504", hint="Stop it at the robot")
             return Cancelled()
         if not await self._stop(running, cancel.reason):
             raise self._stuck(running.call)

@@ -37,6 +37,7 @@ class DdsNode(Ros2Node):
         self._answering = Background()
 
     async def close(self) -> None:
+        await self.unended.close()
         await self._answering.cancel()
         self._clients.clear()
         self._participant.close()

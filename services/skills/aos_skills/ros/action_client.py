@@ -14,6 +14,9 @@ from aos_skills.ros.node import DISCOVERY_S, ActionEnd, ActionRequest, Fields, S
 if TYPE_CHECKING:
     from aos_skills.ros.ros2_node import Ros2Node  # It has a client.
 
+_ASKED_S = 24 * 3600.0
+"""A goal that did not end when it was told to may take this long to end after all."""
+
 STATUS = {
     1: "accepted",
     2: "executing",
@@ -63,7 +66,7 @@ class ActionClient:
                     result.cancel()
                     raise node_lost(action)
                 if reason:
-                    await self._cancel(action, goal_id, result)
+                    await self._cancel(action, goal_id, result, f"{type_name}_GetResult")
         except ExceptionGroup as group:
             known, others = group.split(AosError)
             if known is None or others is not None:
@@ -120,7 +123,9 @@ class ActionClient:
             return "lost"
         return "cancelled" if cancelling.done() else "late"
 
-    async def _cancel(self, action: str, goal_id: Fields, result: asyncio.Task[Fields]) -> None:
+    async def _cancel(
+        self, action: str, goal_id: Fields, result: asyncio.Task[Fields], result_type: str
+    ) -> None:
         """Asks for the goal's end and waits for it; SkillError AOS504 if it does not come."""
         try:
             async with asyncio.timeout(CANCEL_S):
@@ -129,6 +134,8 @@ class ActionClient:
                 await asyncio.wait([result])
         except (TimeoutError, SkillError) as error:
             result.cancel()
+            ending = self._ask(action, "get_result", {"goal_id": goal_id}, result_type, _ASKED_S)
+            self._node.unended.add(action, ending, self._node.service_gone(f"{action}/_action/get_result"))
             raise not_cancelled(action) from error
 
 

@@ -176,6 +176,9 @@ class RosAdapter:
             return await self._call_service(call, way)
         raise SkillError(f"no node of the robot serves {way.name} now", code="AOS505")
 
+    def still_moving(self) -> str:
+        return ", ".join(self.node.unended.actions)
+
     async def _call_service(self, call: Call, way: Way) -> dict[str, Any]:
         try:
             return await self.node.call(

@@ -6,6 +6,7 @@ from collections.abc import Awaitable, Callable, Iterable
 from typing import Any, NamedTuple
 
 from aos_runtime.closing import Closing
+from aos_skills.ros.unended import UnendedGoals
 
 DISCOVERY_S = 5.0
 """A server or publisher may take this long to appear."""
@@ -68,7 +69,13 @@ An AosError aborts the goal.
 
 
 class RosNode(Closing):
-    """Names are full, `/robot1/chatter`; types too, `std_msgs/msg/String`; values are dicts of fields."""
+    """Names are full, `/robot1/chatter`; types too, `std_msgs/msg/String`; values are dicts of fields.
+
+    `unended` are the goals that did not end when they were told to.
+    """
+
+    def __init__(self) -> None:
+        self.unended = UnendedGoals()
 
     @abstractmethod
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:

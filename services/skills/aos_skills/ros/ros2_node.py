@@ -17,6 +17,7 @@ class Ros2Node(RosNode):
     """A node over a transport that gives topics, services and who is there."""
 
     def __init__(self, types: RosTypes) -> None:
+        super().__init__()
         self.types = types
         self._actions = ActionClient(self)
 

@@ -45,6 +45,7 @@ class Ros1Node(RosNode):
     """Belongs to the event loop that opened it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._process: Ros1Process
         self._names: dict[str, dict[str, str]] = {"services": {}, "actions": {}, "topics": {}}
         self._has_changed = asyncio.Event()
@@ -73,6 +74,7 @@ class Ros1Node(RosNode):
         return node
 
     async def close(self) -> None:
+        await self.unended.close()
         await self._answering.cancel()
         await self._process.close()
 
@@ -131,6 +133,7 @@ class Ros1Node(RosNode):
                 self._process.tell("cancel", of=number)
                 await asyncio.wait([answer], timeout=CANCEL_S)
                 if not answer.done():
+                    self.unended.add(action, answer, self._gone("actions", action))
                     raise not_cancelled(action)
         finally:
             cancelling.cancel()

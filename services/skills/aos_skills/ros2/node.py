@@ -41,6 +41,7 @@ class Node(Ros2Node):
         return cls(bus, types, name, domain)
 
     async def close(self) -> None:
+        await self.unended.close()
         await self._bus.close()
 
     # --- topics --------------------------------------------------------------------------------------

@@ -59,6 +59,7 @@ class Robot:
         self._channel = channel
         self._types = Types(settings["files"])
         self._clients: dict[int, ActionClient] = {}
+        self._cancelled: set[int] = set()
         self._publishers: dict[str, Publisher] = {}
         self._asked: dict[int, _Asked] = {}
         self._asked_lock = threading.Lock()
@@ -110,14 +111,19 @@ class Robot:
         goal = self._types.filled(spec.action_goal.goal.__class__(), fields)
         self._clients[number] = client
         try:
+            if number in self._cancelled:
+                raise Refusal("AOS507", f"{name} was cancelled before it got its goal")
             client.send_goal(
                 goal,
                 done_cb=lambda _status, _result: ended.set(),
                 feedback_cb=lambda one: self._channel.send(event="feedback", of=number, fields=plain(one)),
             )
+            if number in self._cancelled:  # While the goal was on its way.
+                client.cancel_goal()
             ended.wait()
         finally:
             del self._clients[number]
+            self._cancelled.discard(number)
         status = client.get_state()
         if status == GoalStatus.REJECTED:
             raise Refusal("AOS502", f"{name} refused the goal: {client.get_goal_status_text()}")
@@ -131,6 +137,7 @@ class Robot:
         }
 
     def do_cancel(self, number: int, of: int) -> None:
+        self._cancelled.add(of)
         client = self._clients.get(of)
         if client is not None:
             client.cancel_goal()
