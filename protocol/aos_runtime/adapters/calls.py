@@ -215,13 +215,16 @@ class Calls:
         running = self._running
         is_meant = running is not None and cancel.id in (None, running.call.id)
         if running is None or not is_meant or self._fence.is_stale(cancel):
-            moving = self._adapter.still_moving() if isinstance(self._adapter, MovesOn) else ""
-            if moving and cancel.id is not None:
-                raise SkillError(f"{moving} has not ended", code="AOS504", hint="Stop it at the robot")
+            if cancel.id is not None and isinstance(self._adapter, MovesOn):
+                self._check_that_it_stands_still(self._adapter)
             return Cancelled()
         if not await self._stop(running, cancel.reason):
             raise self._stuck(running.call)
         return Cancelled((str(running.call.id),))
+
+    def _check_that_it_stands_still(self, adapter: MovesOn) -> None:
+        if moving := adapter.still_moving():
+            raise SkillError(f"{moving} has not ended", code="AOS504", hint="Stop it at the robot")
 
     async def _stop(self, running: RunningCall, reason: str) -> bool:
         """Cancels a call; whether it has ended within the time that it has for that."""
