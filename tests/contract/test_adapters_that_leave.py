@@ -70,6 +70,12 @@ async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_i
     child = await launch(system, endpoint, tmp_path, robot)
     try:
         step = 0
+        status = ""
+        while status != "observed":  # While it starts, its paths may come and go.
+            await system.state_when(lambda state: "sense" not in state.unavailable)
+            step += 1
+            now = MissionState("m", "acting", step, 0.0)
+            status = (await system.activate("sense", step)).status
         status = "refused"
         while status == "refused":  # The link was lost before the call went out.
             os.kill(child.pid, signal.SIGCONT)
