@@ -136,6 +136,8 @@ class ModelAdapter:
                 await self._adopt(revision)
             except AosError as error:
                 _log.error("revision %d cannot be played: %s", revision.revision, error)
+                if self._world is None:
+                    await self._serve(revision.project)  # A mission that starts is told why it cannot.
 
     async def _adopt(self, revision: ProjectRevision) -> None:
         """Goes over to new documents: the steps so far are played again by them."""
@@ -146,7 +148,10 @@ class ModelAdapter:
             outdated, self._world = self._world, await self._brought(engine, revision.project)
         if outdated is not None:
             await outdated.engine.close()
-        paths = {"/" + skill.mapping.activation.path.strip("/") for skill in revision.project.skills}
+        await self._serve(revision.project)
+
+    async def _serve(self, project: Project) -> None:
+        paths = {"/" + skill.mapping.activation.path.strip("/") for skill in project.skills}
         bound = {path for path in paths if path in self._host.bound or self._host.wants(path)}
         await self._host.serve(*sorted(bound))
 

@@ -310,6 +310,16 @@ def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Pa
     assert not (project / "port").exists()
 
 
+def test_documents_that_cannot_be_played_are_told_at_once(project: Path) -> None:
+    document = project / "fetch" / "fetch.ef"
+    document.write_text(
+        document.read_text().replace("initial_belief:", "initial_belief:\nstd::vector<int>{}.at(3);")
+    )
+    done = up("--model")
+    assert done.returncode == 7, done.stdout + done.stderr
+    assert "fetch.ef:" in done.stderr
+
+
 def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) -> None:
     robot = project / "fetch_robot.py"
     text = robot.read_text()
