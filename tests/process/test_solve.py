@@ -265,6 +265,13 @@ async def test_a_discount_of_one_is_refused(problems: Path, cache_dir: Path) -> 
     assert caught.value.code == "AOS320"
 
 
+async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path, cache_dir: Path) -> None:
+    model = read_problem(problems / "tiger.pomdp")
+    large = msgspec.structs.replace(model, rewards=model.rewards * 1e306)
+    with pytest.raises(PlanningError, match="too large"):
+        await solve(large, QUICK, cache_dir=cache_dir)
+
+
 @pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
 async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
     problems: Path, cache_dir: Path, value: float, actions: set[int]

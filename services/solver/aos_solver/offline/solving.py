@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 import msgspec
+import numpy as np
 
 from aos_protocol.errors import ModelError, PlanningError
 from aos_runtime.children import PIPE, Child, Limits, guarded
@@ -18,6 +19,8 @@ from aos_solver.offline.solver_program import build_solver
 _ADDRESS_SPACE_BYTES = 16 << 30
 _LINE_LIMIT_BYTES = 1 << 16
 _CROSSED_STATUS = 3
+_LARGEST = 1e300
+"""Sums of returns up to this one are far from the end of the floating-point numbers."""
 
 
 class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
@@ -69,9 +72,16 @@ async def solve(
 ) -> Solution:
     """Solves until a limit is reached or `stop` is set, and keeps the best so far.
 
-    PlanningError AOS320 for a discount that it cannot do, AOS302 if the mission is over at the start.
+    PlanningError AOS320 for a discount or rewards that it cannot do, AOS302 if the mission is over at the
+    start.
     """
     check_discount(model.name, model.discount)
+    if np.abs(model.rewards).max(initial=0.0) > _LARGEST * (1 - model.discount):
+        raise PlanningError(
+            f"returns of {model.name} are too large to be added up",
+            code="AOS320",
+            hint="Divide all rewards by one number",
+        )
     if not model.starts:
         raise PlanningError(f"{model.name} is over at the start", code="AOS302")
     executable = await build_solver(cache_dir)
