@@ -36,7 +36,9 @@ _SOLVER_S = 15.0
 @on_system
 def decisions(
     system: System,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="A JSON decision record a line, once more with its outcome")
+    ] = False,
     follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
     mission: Mission = None,
 ) -> None:
