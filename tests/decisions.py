@@ -27,7 +27,7 @@ from aos_solver.mission.simulation import simulate_mission
 BUNDLES = Path(__file__).parents[1] / "deploy" / "bundles"
 USUAL = (
     "armadillo-finer",
-    "armadillo-rough-blind",
+    "armadillo-finer-blind",
     "cleanlab",
     "errand",
     "tictactoe",

@@ -94,7 +94,7 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(tmp_path: Pat
 
 
 def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path) -> None:
-    bundles = [DEPLOY / "bundles" / "armadillo-rough-blind", RETRACT]
+    blind = [DEPLOY / "bundles" / f"armadillo-{pick}-blind" for pick in ("finer", "rough")]
     recorded_missions = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
     unseen = tuple(
         msgspec.structs.replace(
@@ -102,7 +102,7 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path:
         )
         for mission in recorded_missions
     )
-    results = [calibrate(missions, bundles) for missions in (recorded_missions, unseen)]
+    results = [calibrate(missions, [*blind, RETRACT]) for missions in (recorded_missions, unseen)]
     picks = [next(e for e in result.estimates if e.draw.skill == "pick") for result in results]
     widths = [pick.outcomes[0].probability.high - pick.outcomes[0].probability.low for pick in picks]
     assert picks[0].is_counted

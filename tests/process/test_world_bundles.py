@@ -28,25 +28,26 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
 
 
 @pytest.mark.parametrize(
-    ("bundle", "first"),
+    ("names", "first"),
     [
-        ("armadillo-rough-blind", "pick"),
-        ("armadillo-finer-blind", TO_EASY_TABLE),
-        ("armadillo-rough-enhanced", "pick"),
-        ("armadillo-finer-enhanced", TO_EASY_TABLE),
+        (("armadillo-finer-blind", "armadillo-rough-blind"), "pick"),
+        (("armadillo-finer-blind",), TO_EASY_TABLE),
+        (("armadillo-finer-enhanced", "armadillo-rough-enhanced"), "pick"),
+        (("armadillo-finer-enhanced",), TO_EASY_TABLE),
     ],
 )
 async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
-    bundle: str, first: str, bundles: Path, cache_dir: Path
+    names: tuple[str, ...], first: str, bundles: Path, cache_dir: Path
 ) -> None:
-    async with engine_of_bundle(bundles / bundle, cache_dir) as engine:
+    async with engine_of(await built_bundles([bundles / name for name in names], cache_dir)) as engine:
         values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 
 
 async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of_bundle(bundles / "armadillo-rough-blind", cache_dir) as engine:
+    both = [bundles / name for name in ("armadillo-finer-blind", "armadillo-rough-blind")]
+    async with engine_of(await built_bundles(both, cache_dir)) as engine:
         await engine.reset_belief()
         for action, response in (
             ("pick", "pick_succeeded"),

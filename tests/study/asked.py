@@ -20,7 +20,7 @@ from aos_solver.study.valuing import Margin, Value
 from .played import Beside, Played, play
 from .replays import files_of
 
-_BUNDLES = ("armadillo-rough", "armadillo-finer", "armadillo-rough-enhanced", "armadillo-finer-enhanced")
+_BUNDLES = ("armadillo-rough", "armadillo-finer", "armadillo-finer-blind", "armadillo-finer-enhanced")
 
 
 _SEARCH_S = 0.2
