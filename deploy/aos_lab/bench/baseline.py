@@ -12,6 +12,7 @@ from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler
+from aos_solver.building.engine_build import SOURCES
 
 NAME = "by hand"
 SOURCE = shipped("tests/bench/baseline.cpp")
@@ -43,11 +44,12 @@ class Baselines:
     @classmethod
     async def built(cls, compiler: Compiler, cache_dir: Path) -> Self:
         """The program from the cache, or compiled now; ModelError AOS201 if it does not compile."""
-        texts = [path.read_text() for path in sorted(SOURCE.parent.iterdir()) if path.is_file()]
+        paths = [*sorted(SOURCE.parent.iterdir()), SOURCES / "aos" / "base" / "xoshiro.hpp"]
+        texts = [path.read_text() for path in paths if path.is_file()]
         name = f"baseline-{digest_of([compiler.version, *_FLAGS, _processor(), *texts])}"
 
         async def make(staging: Path) -> None:
-            command = [*compiler.command, *_FLAGS, str(SOURCE), "-o", str(staging / _PROGRAM)]
+            command = [*compiler.command, *_FLAGS, f"-I{SOURCES}", str(SOURCE), "-o", str(staging / _PROGRAM)]
             status, _, messages = await _output(command, _COMPILATION_S)
             if status != 0:
                 said = messages.decode(errors="replace")

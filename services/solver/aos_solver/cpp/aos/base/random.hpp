@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
@@ -15,6 +14,7 @@
 
 #include "aos/base/loop_heads.hpp"
 #include "aos/base/normal.hpp"
+#include "aos/base/xoshiro.hpp"
 
 namespace aos {
 
@@ -181,31 +181,10 @@ inline int place_in(const double* weights, int count, double place) {
   return last;
 }
 
-// Draws at random. The generator is xoshiro256++ (Blackman and Vigna). It is seeded through splitmix64, so
-// that every seed gives an independent stream.
-class Sampler : public Draws<Sampler> {
+// Draws at random.
+class Sampler : public Draws<Sampler>, public Xoshiro {
  public:
-  explicit Sampler(std::uint64_t seed) {
-    for (auto& word : words_) {
-      seed += 0x9e3779b97f4a7c15u;
-      std::uint64_t mixed = seed;
-      mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
-      mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
-      word = mixed ^ (mixed >> 31);
-    }
-  }
-
-  std::uint64_t bits() {
-    const std::uint64_t result = std::rotl(words_[0] + words_[3], 23) + words_[0];
-    const std::uint64_t shifted = words_[1] << 17;
-    words_[2] ^= words_[0];
-    words_[3] ^= words_[1];
-    words_[1] ^= words_[2];
-    words_[0] ^= words_[3];
-    words_[2] ^= shifted;
-    words_[3] = std::rotl(words_[3], 45);
-    return result;
-  }
+  using Xoshiro::Xoshiro;
 
   // Returns a number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
@@ -225,7 +204,6 @@ class Sampler : public Draws<Sampler> {
   int choose(const double* weights, int count, double total) { return place_in(weights, count, uniform() * total); }
 
  private:
-  std::array<std::uint64_t, 4> words_;
   NumberSink* sink_ = nullptr;
 };
 

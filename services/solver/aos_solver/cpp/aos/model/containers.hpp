@@ -19,10 +19,9 @@ namespace aos {
 [[noreturn, gnu::cold]] void no_such_key(std::size_t size);
 [[noreturn, gnu::cold]] void over_capacity(std::size_t size, std::size_t max);
 
-// A vector of up to `Capacity` elements in place, so that a state stays trivially copyable. It converts from
-// and to std::vector. An index out of range and a push beyond `Capacity` are ModelFaults.
-template <class T, std::size_t Capacity>
-class Vector {
+// What vectors and arrays of fixed storage have in common. `Self` has `data`, `size` and a checked `operator[]`.
+template <class Self, class T>
+class Elements {
  public:
   using value_type = T;
   using size_type = std::size_t;
@@ -30,6 +29,40 @@ class Vector {
   using const_reference = const T&;
   using iterator = T*;
   using const_iterator = const T*;
+
+  template <class U>
+    requires std::is_constructible_v<U, const T&>
+  operator std::vector<U>() const {
+    return std::vector<U>(begin(), end());
+  }
+
+  T& front() { return self()[std::ptrdiff_t{0}]; }
+  const T& front() const { return self()[std::ptrdiff_t{0}]; }
+  T& back() { return self()[static_cast<std::ptrdiff_t>(self().size()) - 1]; }
+  const T& back() const { return self()[static_cast<std::ptrdiff_t>(self().size()) - 1]; }
+
+  T* begin() { return self().data(); }
+  T* end() { return self().data() + self().size(); }
+  const T* begin() const { return self().data(); }
+  const T* end() const { return self().data() + self().size(); }
+  const T* cbegin() const { return begin(); }
+  const T* cend() const { return end(); }
+  auto rbegin() { return std::reverse_iterator<T*>(end()); }
+  auto rend() { return std::reverse_iterator<T*>(begin()); }
+  auto rbegin() const { return std::reverse_iterator<const T*>(end()); }
+  auto rend() const { return std::reverse_iterator<const T*>(begin()); }
+
+ private:
+  Self& self() { return static_cast<Self&>(*this); }
+  const Self& self() const { return static_cast<const Self&>(*this); }
+};
+
+// A vector of up to `Capacity` elements in place, so that a state stays trivially copyable. It converts from
+// and to std::vector. An index out of range and a push beyond `Capacity` are ModelFaults.
+template <class T, std::size_t Capacity>
+class Vector : public Elements<Vector<T, Capacity>, T> {
+ public:
+  using Elements<Vector, T>::begin, Elements<Vector, T>::end, Elements<Vector, T>::back;
 
   Vector() = default;
   Vector(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
@@ -52,12 +85,6 @@ class Vector {
     return *this;
   }
 
-  template <class U>
-    requires std::is_constructible_v<U, const T&>
-  operator std::vector<U>() const {
-    return std::vector<U>(begin(), end());
-  }
-
   std::size_t size() const { return size_; }
   static constexpr std::size_t max_size() { return Capacity; }
   static constexpr std::size_t capacity() { return Capacity; }
@@ -67,23 +94,8 @@ class Vector {
   const T& operator[](std::ptrdiff_t index) const { return values_[checked(index)]; }
   T& at(std::ptrdiff_t index) { return (*this)[index]; }
   const T& at(std::ptrdiff_t index) const { return (*this)[index]; }
-  T& front() { return (*this)[0]; }
-  const T& front() const { return (*this)[0]; }
-  T& back() { return (*this)[last()]; }
-  const T& back() const { return (*this)[last()]; }
   T* data() { return values_; }
   const T* data() const { return values_; }
-
-  T* begin() { return values_; }
-  T* end() { return values_ + size_; }
-  const T* begin() const { return values_; }
-  const T* end() const { return values_ + size_; }
-  const T* cbegin() const { return begin(); }
-  const T* cend() const { return end(); }
-  auto rbegin() { return std::reverse_iterator<T*>(end()); }
-  auto rend() { return std::reverse_iterator<T*>(begin()); }
-  auto rbegin() const { return std::reverse_iterator<const T*>(end()); }
-  auto rend() const { return std::reverse_iterator<const T*>(begin()); }
 
   void push_back(const T& value) {
     const T copy = value;

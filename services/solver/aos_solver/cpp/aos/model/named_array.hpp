@@ -5,7 +5,6 @@
 #include <concepts>
 #include <cstddef>
 #include <initializer_list>
-#include <iterator>
 #include <type_traits>
 #include <vector>
 
@@ -18,15 +17,9 @@ namespace aos {
 // A T for each of the `Size` values of the enum E. It is indexed by a value or by its number; an index out of range is a
 // ModelFault, and another enum does not compile. Lists are assigned to it as wholes: one of another length is a ModelFault.
 template <class E, std::size_t Size, class T>
-class Named {
+class Named : public Elements<Named<E, Size, T>, T> {
  public:
   using index_enum = E;
-  using value_type = T;
-  using size_type = std::size_t;
-  using reference = T&;
-  using const_reference = const T&;
-  using iterator = T*;
-  using const_iterator = const T*;
 
   Named() = default;
   Named(std::initializer_list<T> values) { copy(values.begin(), values.size()); }
@@ -45,12 +38,6 @@ class Named {
   }
   static Named filled(std::initializer_list<T> values) { return Named(values); }
 
-  template <class U>
-    requires std::is_constructible_v<U, const T&>
-  operator std::vector<U>() const {
-    return std::vector<U>(begin(), end());
-  }
-
   static constexpr std::size_t size() { return Size; }
   static constexpr std::size_t max_size() { return Size; }
   static constexpr bool empty() { return Size == 0; }
@@ -64,29 +51,18 @@ class Named {
   const T& operator[](Other another_enum) const = delete;
   T& at(auto index) { return (*this)[index]; }
   const T& at(auto index) const { return (*this)[index]; }
-  T& front() { return (*this)[std::ptrdiff_t{0}]; }
-  const T& front() const { return (*this)[std::ptrdiff_t{0}]; }
-  T& back() { return (*this)[static_cast<std::ptrdiff_t>(Size) - 1]; }
-  const T& back() const { return (*this)[static_cast<std::ptrdiff_t>(Size) - 1]; }
   T* data() { return values_; }
   const T* data() const { return values_; }
 
-  T* begin() { return values_; }
-  T* end() { return values_ + Size; }
-  const T* begin() const { return values_; }
-  const T* end() const { return values_ + Size; }
-  const T* cbegin() const { return begin(); }
-  const T* cend() const { return end(); }
-  auto rbegin() { return std::reverse_iterator<T*>(end()); }
-  auto rend() { return std::reverse_iterator<T*>(begin()); }
-  auto rbegin() const { return std::reverse_iterator<const T*>(end()); }
-  auto rend() const { return std::reverse_iterator<const T*>(begin()); }
-
   void fill(const T& value) {
     const T copy = value;  // it may be an element
-    std::fill(begin(), end(), copy);
+    std::fill_n(values_, Size, copy);
   }
-  bool operator==(const Named&) const = default;
+  bool operator==(const Named& other) const
+    requires std::equality_comparable<T>
+  {
+    return std::equal(values_, values_ + Size, other.values_);
+  }
 
  private:
   void copy(auto values, std::size_t count) {
