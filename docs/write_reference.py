@@ -112,13 +112,17 @@ def operation_table() -> str:
 
 
 def access_table() -> str:
-    """The table of who may do what, a line for each key; what nobody may is left empty."""
-    heads = " | ".join(access.ACTS)
-    lines = [f"| Key | {heads} |", f"| --- |{' --- |' * len(access.ACTS)}"]
+    """The table of who may do what, a line for each key; a token is told by who announces it."""
+    lines = ["| Key | asks → answers | tells → hears |", "| --- | --- | --- |"]
     for row in access.TABLE:
-        cells = [_roles(getattr(row, act)) for act in access.ACTS]
-        lines.append(f"| `{row.key}` | {' | '.join(cells)} |")
+        asked = _way(row.asks, row.answers)
+        told = _way(row.tells or row.announces, row.hears or row.watches)
+        lines.append(f"| `{row.key}` | {asked} | {told} |")
     return "\n".join(lines) + "\n"
+
+
+def _way(sender: tuple[str, ...], receiver: tuple[str, ...]) -> str:
+    return f"{_roles(sender)} → {_roles(receiver)}" if sender else ""
 
 
 def _roles(roles: tuple[str, ...]) -> str:
