@@ -37,10 +37,10 @@ def errors_page() -> str:
         "`aos_deploy.exit_codes`.",
     ]
     for digit, (name, situation) in error_classes().items():
-        lines += ["", f"## {name}: {situation}", "", "| Code | Meaning |", "| --- | --- |"]
-        lines += [f"| {code} | {text} |" for code, text in errors.CODES.items() if code[3] == digit]
-    lines += ["", "## Exit codes of aos and aos-up", "", "| Code | Meaning |", "| --- | --- |"]
-    lines += [f"| {code} | {text} |" for code, text in exit_codes()]
+        lines += ["", f"## {name}: {situation}", ""]
+        lines += [f"- {code}: {text}" for code, text in errors.CODES.items() if code[3] == digit]
+    lines += ["", "## Exit codes of aos and aos-up", ""]
+    lines += [f"- {code}: {text}" for code, text in exit_codes()]
     return "\n".join(lines) + "\n"
 
 
@@ -132,15 +132,15 @@ def _roles(roles: tuple[str, ...]) -> str:
 # --- words ---------------------------------------------------------------------------------------------
 
 
-def words_tables() -> str:
+def words_lists() -> str:
     """Every word of SDL by kind of file, with the texts that editors show, but for those without effect.
 
-    A word of all files stands in the first table, and parts of several sections below the first of them.
+    A word of all files stands in the first list, and parts of several sections below the first of them.
     """
     lines: list[str] = []
     before: dict[str, Meaning] = {}
     for suffix, sections in SECTIONS.items():
-        lines += [f"### Words of `{suffix}`", "", "| Section | Part | Meaning |", "| --- | --- | --- |"]
+        lines += [f"### Words of `{suffix}`", ""]
         for word, (meaning, parts) in sections.items():
             if before.get(word) == (meaning, parts):
                 continue
@@ -148,11 +148,12 @@ def words_tables() -> str:
                 (name for name, (_, known) in before.items() if known and known.items() <= parts.items()), ""
             )
             own = [
-                f"| | `{part}` | {text} |"
+                f"  - `{part}`: {text}"
                 for part, text in parts.items()
                 if (not same or part not in before[same][1]) and "has no effect" not in text
             ]
-            lines += [f"| `{word}` | {f'those of `{same}`' if same else ''} | {meaning} |", *own]
+            parts_of = f" (parts of `{same}`)" if same else ""
+            lines += [f"- `{word}`{parts_of}: {meaning}", *own]
             before.setdefault(word, (meaning, parts))
         lines.append("")
     return "\n".join(lines) + "\n"
@@ -168,7 +169,7 @@ def with_generated_parts(current: str) -> str:
         "keys": key_table,
         "access": access_table,
         "limits": limits_table,
-        "words": words_tables,
+        "words": words_lists,
     }
     return GENERATED.sub(lambda match: f"{match[1]}\n{parts[match[2]]()}\n{match[3]}", current)
 
