@@ -31,10 +31,8 @@ def errors_page() -> str:
     lines = [
         "# Error codes",
         "",
-        "Every fault and every finding about a document has a code. The code crosses the bus and stands in",
-        "the journal; the exception class is local to Python. Messages name the file and line where there is",
-        "one, and say what to do. This page is written by `make docs` from `aos_protocol.errors.CODES` and",
-        "`aos_deploy.exit_codes`.",
+        "Every fault and every finding about a document has a code, which crosses the bus and stands in the",
+        "journal. `make docs` writes this page from `aos_protocol.errors.CODES` and `aos_deploy.exit_codes`.",
     ]
     for digit, (name, situation) in error_classes().items():
         lines += ["", f"## {name}: {situation}", ""]
