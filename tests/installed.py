@@ -20,34 +20,19 @@ class Installation:
         self.commands = environment / "bin"
         self.folder = folder
         own = {"AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder.parent)}
-        self.environment = {**os.environ, **own}
+        self._place = {"cwd": folder, "env": {**os.environ, **own}, "stdin": subprocess.DEVNULL, "text": True}
 
     def run(self, *command: str) -> subprocess.CompletedProcess[str]:
         """Returns the result of a command, after its end."""
         name, *arguments = command
-        return subprocess.run(
-            [self.commands / name, *arguments],
-            cwd=self.folder,
-            env=self.environment,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=_PATIENCE_S,
-        )
+        line = [self.commands / name, *arguments]
+        return subprocess.run(line, **self._place, capture_output=True, timeout=_PATIENCE_S)
 
     def start(self, *command: str) -> subprocess.Popen[str]:
         """A command that goes on."""
         name, *arguments = command
-        return subprocess.Popen(
-            [self.commands / name, *arguments],
-            cwd=self.folder,
-            env=self.environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-        )
+        line, pipe = [self.commands / name, *arguments], subprocess.PIPE
+        return subprocess.Popen(line, **self._place, stdout=pipe, stderr=pipe, start_new_session=True)
 
 
 def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:

@@ -47,10 +47,11 @@ class Walk:
 
     def __init__(self, commands: Path, folder: Path, cache_dir: Path | None = None) -> None:
         self._folder = folder
-        self._environment = {**os.environ, "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
-        self._environment["AOS_RUNNING_DIR"] = str(folder / ".running")
+        environment = {**os.environ, "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
+        environment["AOS_RUNNING_DIR"] = str(folder / ".running")
         if cache_dir is not None:
-            self._environment["AOS_CACHE_DIR"] = str(cache_dir)
+            environment["AOS_CACHE_DIR"] = str(cache_dir)
+        self._place = {"cwd": folder, "env": environment, "stdin": subprocess.DEVNULL, "text": True}
         self.said: dict[str, str] = {}
         self._background: subprocess.Popen[str] | None = None
 
@@ -94,29 +95,14 @@ class Walk:
         (self._folder / name).write_text(text, encoding="utf-8")
 
     def _run(self, line: str) -> None:
-        done = subprocess.run(
-            line.split(),
-            cwd=self._folder,
-            env=self._environment,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE_S,
-        )
+        done = subprocess.run(line.split(), **self._place, capture_output=True, timeout=PATIENCE_S)
         self.said[line] = done.stdout + done.stderr
         if done.returncode != 0:
             raise AssertionError(f"{line} ended with {done.returncode}:\n{self.said[line]}")
 
     def _start(self, line: str) -> None:
-        self._background = subprocess.Popen(
-            line.split(),
-            cwd=self._folder,
-            env=self._environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
+        out, errors = subprocess.PIPE, subprocess.STDOUT
+        self._background = subprocess.Popen(line.split(), **self._place, stdout=out, stderr=errors)
         self.said[line] = ""
 
     def _until_line(self, part: str) -> None:
