@@ -1,10 +1,13 @@
 """Access to the gateway: by which name, from which page, with which token."""
 
+import asyncio
+import socket
 from pathlib import Path
 
 import pytest
 
 from aos_gateway.access import COOKIE, Access, access_of, kept_token
+from aos_gateway.server import listening
 from aos_protocol.errors import GatewayError
 
 OWN = {"host": "localhost:7480"}
@@ -89,3 +92,17 @@ def test_the_token_is_kept_and_nobody_else_may_read_it(tmp_path: Path) -> None:
     assert len(token) >= 32
     assert kept_token(path) == token
     assert path.stat().st_mode & 0o777 == 0o600
+
+
+async def test_no_answer_waits_until_the_one_before_it_is_acknowledged() -> None:
+    connected: asyncio.Queue[asyncio.StreamWriter] = asyncio.Queue()
+    with listening("127.0.0.1", 0) as listener:
+        server = await asyncio.start_server(lambda _, writer: connected.put_nowait(writer), sock=listener)
+        _, browser = await asyncio.open_connection(*listener.getsockname())
+        served = await connected.get()
+        delays = served.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) == 0
+        for end in (browser, served):
+            end.close()
+            await end.wait_closed()
+        server.close()
+    assert not delays
