@@ -5,17 +5,19 @@ All other tests compile with the first compiler that the machine has, which is g
 
 import asyncio
 import sys
+from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
 from shutil import which
 
 import msgspec
 import pytest
-from exam.programs import run
+from exam.programs import run, what_decides
 from scripted_models import bundle_project, lowered
 
 from aos_deploy.constraints import constrained, constraint_of_option
 from aos_protocol.documents import Project
+from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.engine_build import FUNCTIONS, NUMBERS, SOURCES
 from aos_solver.emission.emit import MODEL_FILE
@@ -37,26 +39,41 @@ def clang(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Compiler:
 
 
 @pytest.mark.parametrize("bundle", ["armadillo-finer", "tictactoe", "bench/lightdark-normal"])
-def test_clang_compiles_a_model(bundle: str, bundles: Path, clang: Compiler, tmp_path: Path) -> None:
-    compile_model(bundle_project(bundles / bundle), clang, tmp_path)
+def test_clang_compiles_a_model(bundle: str, bundles: Path, clang: Compiler, cache_dir: Path) -> None:
+    compile_model(bundle_project(bundles / bundle), clang, cache_dir)
 
 
 def test_clang_compiles_a_model_with_a_costly_constraint(
-    bundles: Path, clang: Compiler, tmp_path: Path
+    bundles: Path, clang: Compiler, cache_dir: Path
 ) -> None:
     never = constraint_of_option("0.01: serve && state.arm_outstretched")
     project = constrained(bundle_project(bundles / "armadillo-finer"), [never])
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
-    compile_model(msgspec.structs.replace(project, constraints=(costly,)), clang, tmp_path)
+    compile_model(msgspec.structs.replace(project, constraints=(costly,)), clang, cache_dir)
 
 
 @pytest.mark.parametrize("part", [NUMBERS, FUNCTIONS])
-def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, tmp_path: Path) -> None:
-    run(clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0"), tmp_path)
+def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_dir: Path) -> None:
+    command = clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0")
+    once([part], clang, cache_dir, lambda folder: run(command, folder))
 
 
-def compile_model(project: Project, compiler: Compiler, folder: Path) -> None:
+def compile_model(project: Project, compiler: Compiler, cache_dir: Path) -> None:
     """Compiles the emitted model; RuntimeError with the compiler's messages if that fails."""
     emitted, _ = lowered(project)
-    (folder / MODEL_FILE).write_text(emitted.cpp)
-    run(compiler.compilation(MODEL_FILE, "model.o", str(SOURCES), *UNOPTIMIZED), folder)
+
+    def make(folder: Path) -> None:
+        (folder / MODEL_FILE).write_text(emitted.cpp)
+        run(compiler.compilation(MODEL_FILE, "model.o", str(SOURCES), *UNOPTIMIZED), folder)
+
+    once([emitted.cpp], compiler, cache_dir, make)
+
+
+def once(parts: list[str], compiler: Compiler, cache_dir: Path, make: Callable[[Path], None]) -> None:
+    """Compiles what these parts, this compiler and the engine's headers have not compiled yet."""
+
+    async def in_folder(folder: Path) -> None:
+        make(folder)
+
+    name = f"clang-{digest_of([*parts, *what_decides(compiler)])}"
+    asyncio.run(BuildCache(cache_dir).fill(name, in_folder))
