@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import msgspec
+import pytest
 from processes import COMMAND_S
 
 from aos_lab.calibration.calibrate import Calibration, calibrate
@@ -69,6 +70,14 @@ def recorded(folder: Path, deploy_file: str, first_seed: int, missions: int) -> 
     return read_missions(folder)
 
 
+@pytest.fixture(scope="module")
+def missions_of_finer(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Forty missions of the finer Armadillo, from seed 1 on."""
+    folder = tmp_path_factory.mktemp("finer")
+    recorded(folder, "armadillo.yaml", 1, 40)
+    return folder
+
+
 def covered(result: Calibration) -> list[bool]:
     """Returns for each probability that was drawn whether the interval holds the number that it was drawn
     with."""
@@ -80,10 +89,11 @@ def covered(result: Calibration) -> list[bool]:
     ]
 
 
-def test_intervals_cover_the_numbers_that_missions_were_drawn_with(tmp_path: Path) -> None:
+def test_intervals_cover_the_numbers_that_missions_were_drawn_with(
+    missions_of_finer: Path, tmp_path: Path
+) -> None:
     held: list[bool] = []
-    for first_seed in (1, 1001):
-        missions = recorded(tmp_path / str(first_seed), "armadillo.yaml", first_seed, 40)
+    for missions in (read_missions(missions_of_finer), recorded(tmp_path, "armadillo.yaml", 1001, 40)):
         result = calibrate(missions, [FINER, RETRACT])
         assert not result.remarks
         assert all(estimate.is_counted for estimate in result.estimates)
@@ -112,8 +122,7 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path:
     assert all(covered(results[1]))
 
 
-def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path) -> None:
-    recorded(tmp_path / "missions", "armadillo.yaml", 1, 40)
+def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Path, tmp_path: Path) -> None:
     shutil.copytree(FINER, tmp_path / "bundle")
     pick = tmp_path / "bundle" / "pick.sd"
     wrong = pick.read_text().replace("{0.727, 0.181, 0.09, 0.0}", "{0.2, 0.181, 0.619, 0.0}")
@@ -121,7 +130,7 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path) -> No
 
     def run(*options: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [AOS, "calibrate", "missions", "bundle", "--also", RETRACT, *options],
+            [AOS, "calibrate", missions_of_finer, "bundle", "--also", RETRACT, *options],
             cwd=tmp_path,
             capture_output=True,
             text=True,
