@@ -1,7 +1,7 @@
 """ROS 1 with a real roscore and a robot that knows nothing of AOS."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +12,15 @@ from ros1_core import PYTHON
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.children import Child, guarded
-from aos_skills.ros.node import ActionRequest, ServiceRequest
+from aos_skills.ros.node import ActionRequest, Qos, ServiceRequest
 from aos_skills.ros1.node import Ros1Node
 
 pytestmark = pytest.mark.slow
 
 ROBOT = Path(__file__).resolve().parents[1] / "ros1_robot.py"
 WITHOUT_ROS = ROBOT.parent / "data" / "python_without_ros.sh"
+INTERFACES = ROBOT.parent / "data" / "interfaces"
+CUP = {"name": "mug", "state": 1, "rim": [], "size": [1.0, 2.0, 4.0], "handles": [True]}
 TEST = "actionlib/action/Test"
 
 
@@ -88,6 +90,23 @@ async def test_topics_are_found_by_name_and_latched_messages_come(robot: Child, 
     said: asyncio.Queue[Any] = asyncio.Queue()
     node.subscribe("/robot/said", found.type_name, said.put_nowait)
     assert await asyncio.wait_for(said.get(), HANG_S) == {"data": "ready"}
+
+
+@pytest.fixture
+def kept_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Holds that the folder for temporary files is empty after the test."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    yield
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.usefixtures("kept_empty")
+async def test_messages_of_own_interfaces_leave_no_files_behind(master: str) -> None:
+    seen: asyncio.Queue[Any] = asyncio.Queue()
+    async with await Ros1Node.open(master, name="aos", interfaces=[INTERFACES]) as node:
+        node.subscribe("/cup", "lab_msgs/msg/Cup", seen.put_nowait)
+        node.publisher("/cup", "lab_msgs/msg/Cup", Qos(is_transient_local=True))(CUP)
+        assert await asyncio.wait_for(seen.get(), HANG_S) == CUP
 
 
 async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, node: Ros1Node) -> None:

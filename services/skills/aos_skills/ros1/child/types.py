@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tempfile
+import threading
 from pathlib import Path
 from typing import Any, Type
 
@@ -21,6 +23,9 @@ from aos_skills.ros1.child.interfaces import (
 )
 
 RULE = "=" * 80
+
+_GENERATING = threading.Lock()
+"""Held while genpy generates, since its folder for temporary files is that of the whole process."""
 
 HEADER = "std_msgs/Header header\n"
 PARTS = {
@@ -92,7 +97,7 @@ class Types:
                 context = genmsg.MsgContext.create_default()
                 spec = self._loaded(context, name, self._texts[name])
                 full = genmsg.gentools.compute_full_text(context, spec)
-                self._classes.update({name: genpy.dynamic.generate_dynamic(name, full)[name]})
+                self._classes[name] = _generated(name, full)
             else:
                 found = roslib.message.get_message_class(name)
                 if found is None:
@@ -120,7 +125,7 @@ class Types:
         for part, suffix in ((spec.request, "Request"), (spec.response, "Response")):
             self._register_used(context, part)
             full = genmsg.gentools.compute_full_text(context, part)
-            parts[suffix] = genpy.dynamic.generate_dynamic(name + suffix, full)[name + suffix]
+            parts[suffix] = _generated(name + suffix, full)
         members = {
             "_type": name,
             "_md5sum": genmsg.compute_md5(context, spec),
@@ -184,6 +189,20 @@ class Types:
 
     def _zero(self, base: str) -> Any:
         return None if genmsg.msgs.is_builtin(base) else self.message(genmsg.msgs.resolve_type(base, ""))()
+
+
+def _generated(name: str, text: str) -> Any:
+    """Makes a message's class of its full text.
+
+    genpy leaves the source in the folder for temporary files until its process ends in order, which a
+    process with threads of rospy never does.
+    """
+    with _GENERATING, tempfile.TemporaryDirectory(prefix="aos-ros1-") as folder:
+        before, tempfile.tempdir = tempfile.tempdir, folder
+        try:
+            return genpy.dynamic.generate_dynamic(name, text)[name]
+        finally:
+            tempfile.tempdir = before
 
 
 def _installed_service(name: str) -> Any:
