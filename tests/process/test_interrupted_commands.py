@@ -4,12 +4,14 @@ import asyncio
 import json
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
+from processes import HANG_S
 from test_mission_tests import MISSIONS
 from typer.testing import CliRunner
 
@@ -54,6 +56,24 @@ def test_ctrl_c_while_a_command_is_imported_is_no_traceback(
     with pytest.raises(SystemExit) as end:
         main()
     assert end.value.code == 130
+
+
+@pytest.mark.parametrize("program", ["aos", "aos-up"])
+def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path: Path, program: str) -> None:
+    (tmp_path / "typer.py").write_text("import sys\nprint('imports', flush=True)\nsys.stdin.read()\n")
+    with subprocess.Popen(
+        [Path(sys.executable).parent / program, "--help"],
+        env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as command:
+        assert command.stdout is not None
+        assert command.stdout.readline() == "imports\n"
+        command.send_signal(signal.SIGINT)
+        _, said = command.communicate(timeout=HANG_S)
+    assert (command.returncode, said) == (-signal.SIGINT, "")
 
 
 @pytest.mark.parametrize("keeps", [False, True], ids=["passing", "kept"])

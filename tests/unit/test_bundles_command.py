@@ -85,8 +85,9 @@ def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(bund
     assert "armadillo-retract: 0 errors" in together.output
 
 
-def test_lint_gives_the_same_as_json(broken: Path) -> None:
-    result = aos("lint", broken, "--format", "json")
+@pytest.mark.parametrize("option", [("--json",), ("--format", "json")])
+def test_lint_gives_the_same_as_json(broken: Path, option: tuple[str, ...]) -> None:
+    result = aos("lint", broken, *option)
     found = json.loads(result.output)
     assert (found["errors"], found["bundle"]) == (2, str(broken))
     (error,) = [d for d in found["diagnostics"] if d["code"] == "AOS116"]

@@ -11,7 +11,7 @@ import typer
 
 from aos_deploy.bundle_files import planned_of, with_mission
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.options import TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_deploy.sarif import sarif_log
 from aos_language.load import load_files, with_excerpts
@@ -52,6 +52,7 @@ def register(app: typer.Typer) -> None:
 def lint(
     path: FolderOrDeployFile,
     form: Annotated[Format, typer.Option("--format", help="How to print the findings")] = Format.TEXT,
+    as_json: AsJson = False,
     compiles: Annotated[
         bool, typer.Option("--compile/--no-compile", help="Whether the compiler looks at the C++ as well")
     ] = True,
@@ -81,7 +82,7 @@ def lint(
         more = _compiler_errors(files, loaded.draft)
         found = (*found, *(error for error in more if (error.span.file, error.span.line) not in told))
     counts = Counter(diagnostic.severity for diagnostic in found)
-    if form is Format.JSON:
+    if as_json or form is Format.JSON:
         print_json(
             {
                 "bundle": str(path),
