@@ -1,9 +1,11 @@
 """Topics over DDS with a program of another vendor: Cyclone DDS here, Fast DDS there."""
 
+import asyncio
 import random
 import shutil
 import subprocess
 import sys
+from ctypes.util import find_library
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ pytest.importorskip("cyclonedds", reason="needs the extra `dds`")
 from aos_protocol.errors import BusError
 from aos_skills.dds.node import DdsNode
 from aos_skills.ros.types import RosTypes
+from aos_solver.building.build_cache import BuildCache, digest_of
 
 pytestmark = pytest.mark.slow
 
@@ -23,16 +26,21 @@ HEADER = Path("/usr/include/fastdds/dds/domain/DomainParticipant.hpp")
 
 
 @pytest.fixture(scope="module")
-def fast_dds_program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The other vendor's program, compiled."""
+def fast_dds_program(cache_dir: Path) -> Path:
+    """The other vendor's program, from the cache or compiled now."""
     compiler = shutil.which("g++")
     if not HEADER.exists() or compiler is None:
         pytest.skip("needs g++ and Debian's libfastrtps-dev")
-    program = tmp_path_factory.mktemp("fast_dds") / "peer"
     source = ROOT / "tests" / "cpp" / "fast_dds_peer.cpp"
-    command = [compiler, "-std=c++17", str(source), "-o", str(program), "-lfastrtps", "-lfastcdr"]
-    subprocess.run(command, check=True, timeout=COMMAND_S)
-    return program
+    command = [compiler, "-std=c++17", str(source), "-o", "peer", "-lfastrtps", "-lfastcdr"]
+    version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
+
+    async def make(folder: Path) -> None:
+        await asyncio.to_thread(subprocess.run, command, cwd=folder, check=True, timeout=COMMAND_S)
+
+    library = find_library("fastrtps") or ""  # with its version
+    name = f"fast-dds-{digest_of([source.read_text(), *command, version, library])}"
+    return asyncio.run(BuildCache(cache_dir).fill(name, make)) / "peer"
 
 
 def test_fast_dds_understands_us_and_we_it(fast_dds_program: Path) -> None:

@@ -89,7 +89,9 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path)
         await robot.stop()
 
 
-async def test_a_call_is_answered_with_its_fields_and_what_was_published(robot: Robot) -> None:
+async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(
+    robot: Robot,
+) -> None:
     await robot.start()
     async with robot.bus.listen(robot.keys.topic("/gripper"), TopicMessage) as gripper:
         result = await robot.call("/sense")
@@ -98,6 +100,11 @@ async def test_a_call_is_answered_with_its_fields_and_what_was_published(robot: 
     assert [message.number for message in messages] == list(range(1, len(messages) + 1))
     assert set(messages[-1].fields) == {"gap_m", "left_force_n", "right_force_n"}
     assert result.published["/joints"] == result.published["/gripper"]
+    refused = await robot.refusal("/navigate", 2, {"x": "far"})
+    assert refused.code == "AOS502"
+    assert "abstraction mapping" in str(refused)
+    assert (await robot.refusal("/navigate", 3, FAR_AWAY, limit_s=0.01)).code == "AOS503"
+    assert "gap_m" in (await robot.call("/sense", 4)).fields
 
 
 async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> None:
@@ -112,19 +119,6 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> N
     # It can move again, and what was refused never ran.
     assert "gap_m" in (await robot.call("/sense", 3)).fields
     assert "gap_m" in (await robot.call("/sense", 2)).fields
-
-
-async def test_a_skill_that_takes_too_long_is_stopped_and_said_to_be(robot: Robot) -> None:
-    await robot.start()
-    assert (await robot.refusal("/navigate", 1, FAR_AWAY, limit_s=0.01)).code == "AOS503"
-    assert "gap_m" in (await robot.call("/sense", 2)).fields
-
-
-async def test_fields_that_a_skill_cannot_use_are_refused_with_a_hint(robot: Robot) -> None:
-    await robot.start()
-    refused = await robot.refusal("/navigate", 1, {"x": "far"})
-    assert refused.code == "AOS502"
-    assert "abstraction mapping" in str(refused)
 
 
 async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused(robot: Robot) -> None:
