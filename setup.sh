@@ -21,7 +21,7 @@ fail() {
     exit 1
 }
 
-# --- Python --------------------------------------------------------------------------------------------
+# --- Python ---
 
 is_python() { # is_python COMMAND CONDITION: whether COMMAND runs and its version meets the condition
     "$1" -c "import sys; v = sys.version_info[:2]; sys.exit(not ($2))" >/dev/null 2>&1
@@ -94,7 +94,7 @@ make_venv() {
     "$PYTHON" -m venv "$VENV"
 }
 
-# --- C++ -----------------------------------------------------------------------------------------------
+# --- C++ ---
 
 prepare_compiler() { "$VENV/bin/python" deploy/prepare_compiler.py; }
 
@@ -113,7 +113,7 @@ need_compiler() {
     say "C++ compiler: $compiler"
 }
 
-# --- packages ------------------------------------------------------------------------------------------
+# --- packages ---
 
 install() { # install REQUIREMENTS...: names, versions and hashes must all fit
     names=$*

@@ -23,7 +23,7 @@ DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
-# --- errors --------------------------------------------------------------------------------------------
+# --- errors ---
 
 
 def errors_page() -> str:
@@ -53,7 +53,7 @@ def exit_codes() -> list[tuple[str, str]]:
     return re.findall(r"(\d+) (.+?)(?=, \d+ |\.$)", EXIT_CODES_TEXT)
 
 
-# --- keys ----------------------------------------------------------------------------------------------
+# --- keys ---
 
 
 def key_rows() -> Iterator[tuple[str, str, str, str]]:
@@ -74,7 +74,7 @@ def key_table() -> str:
     return "\n".join(lines) + "\n"
 
 
-# --- notebook ------------------------------------------------------------------------------------------
+# --- notebook ---
 
 
 def notebook(page: str) -> str:
@@ -96,7 +96,7 @@ def notebook(page: str) -> str:
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
-# --- http ----------------------------------------------------------------------------------------------
+# --- http ---
 
 
 def operation_table() -> str:
@@ -106,7 +106,7 @@ def operation_table() -> str:
     return "\n".join(lines) + "\n"
 
 
-# --- access --------------------------------------------------------------------------------------------
+# --- access ---
 
 
 def access_table() -> str:
@@ -127,7 +127,7 @@ def _roles(roles: tuple[str, ...]) -> str:
     return "all" if roles == access.ROLES else ", ".join(roles)
 
 
-# --- words ---------------------------------------------------------------------------------------------
+# --- words ---
 
 
 def words_lists() -> str:
@@ -157,7 +157,7 @@ def words_lists() -> str:
     return "\n".join(lines) + "\n"
 
 
-# --- pages ---------------------------------------------------------------------------------------------
+# --- pages ---
 
 
 def with_generated_parts(current: str) -> str:

@@ -72,7 +72,7 @@ Mission = Annotated[
     int | None, typer.Option(min=1, metavar="N", help="Of a system that stays: instead of the last")
 ]
 
-# --- which mission -----------------------------------------------------------------------------------
+# --- which mission ---
 
 Connect = Annotated[
     str, typer.Option("--connect", metavar="ENDPOINT", help="Where a system's bus listens, on any machine")

@@ -122,7 +122,7 @@ class Supervisor:
         """Process ids by service."""
         return {name: running.child.pid for name, running in self._running.items()}
 
-    # --- starting ------------------------------------------------------------------------------------------
+    # --- starting ---
 
     async def start(self) -> None:
         """Starts our services and connects to the bus, and begins to start the others; does not wait until
@@ -329,7 +329,7 @@ class Supervisor:
         """Returns the place of a service's log, and its last lines."""
         return look_at_log(self._run, name)
 
-    # --- stopping ------------------------------------------------------------------------------------------
+    # --- stopping ---
 
     async def stop(self) -> None:
         """Stops the solver, then whatever the robot still does, then the rest in reverse order."""

@@ -170,7 +170,7 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
             yield from typed(parameter.type, parameter.type_span if parameter.type in types else None)
 
 
-# --- C++ -----------------------------------------------------------------------------------------------
+# --- C++ ---
 
 
 def _blocks(assembly: Assembly) -> Iterator[tuple[str, Block]]:
@@ -276,7 +276,7 @@ class _BlockNames:
         return Occurrence(symbol, self._block.snippet.locate(extent.line, extent.column))
 
 
-# --- mappings ------------------------------------------------------------------------------------------
+# --- mappings ---
 
 
 def _mappings(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:

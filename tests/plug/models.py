@@ -60,7 +60,7 @@ def responses_of(problem: Problem) -> list[int]:
     return sorted(seen - {NOTHING_SEEN}) or [0]
 
 
-# --- documents -----------------------------------------------------------------------------------------
+# --- documents ---
 
 
 def documents(
@@ -173,7 +173,7 @@ def _listed(values: object) -> str:
     return "{" + ", ".join(repr(value) for value in values) + "}"
 
 
-# --- the truth -----------------------------------------------------------------------------------------
+# --- the truth ---
 
 
 def initial(problem: Problem, weather: Weather) -> Belief:

@@ -38,7 +38,7 @@ async def engine(battery: BuiltModel) -> AsyncIterator[Engine]:
         yield running
 
 
-# --- the truth, by hand --------------------------------------------------------------------------------
+# --- the truth, by hand ---
 
 
 def after_step(belief: Belief, skill: str, response: str) -> Belief:
@@ -94,7 +94,7 @@ def assert_is(summary: BeliefSummary, belief: Belief, *, within: float = 1e-12) 
     assert summary.goal_probability == pytest.approx(there, abs=within)
 
 
-# --- beliefs -------------------------------------------------------------------------------------------
+# --- beliefs ---
 
 
 async def test_the_belief_is_the_posterior_of_the_step_and_of_what_the_monitor_says(engine: Engine) -> None:
@@ -154,7 +154,7 @@ async def test_nobody_plans_with_a_monitor(engine: Engine) -> None:
     assert engine.description.monitors == ("battery",)
 
 
-# --- missions ------------------------------------------------------------------------------------------
+# --- missions ---
 
 
 def robot(request: Activate) -> Outcome:

@@ -203,7 +203,7 @@ async def test_a_program_that_catches_sigterm_has_its_time_to_end(system: System
     assert "put down" in system.run.log("nav").read_text()
 
 
-# --- whole missions -------------------------------------------------------------------------------------
+# --- whole missions ---
 
 PROGRAMS = """programs:
   sim: {command: [python, sim.py], ready: {line: listening}}

@@ -312,7 +312,7 @@ def test_only_endpoints_of_this_machine_are_taken() -> None:
             check_endpoint(bad)
 
 
-# --- a folder in place of the file ---------------------------------------------------------------------
+# --- a folder in place of the file ---
 
 
 def test_a_folder_with_one_deploy_file_stands_for_it(folder: Path) -> None:

@@ -88,7 +88,7 @@ def loaded(rules: str) -> LoadedMapping:
     return LoadedMapping(Load(mapping.python, mapping.file_name, 60.0, 60.0, None))
 
 
-# --- where they begin -----------------------------------------------------------------------------------
+# --- where they begin ---
 
 
 def test_they_begin_as_the_constants_that_types_and_variables_have_by_default() -> None:
@@ -127,7 +127,7 @@ def test_a_computed_parameter_stands_for_no_variable_and_stays_as_it_is() -> Non
     assert parameters == request().parameters
 
 
-# --- new ones -------------------------------------------------------------------------------------------
+# --- new ones ---
 
 
 def test_what_a_response_gave_is_found_by_later_activations_and_after_a_restart() -> None:

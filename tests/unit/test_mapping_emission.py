@@ -192,7 +192,7 @@ def test_document_text_never_becomes_template_or_comment_source() -> None:
     assert "\nimport os" not in python
 
 
-# --- places ---------------------------------------------------------------------------------------------
+# --- places ---
 
 
 def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path) -> None:
@@ -228,7 +228,7 @@ def test_a_line_that_no_document_part_made_stands_for_the_mapping() -> None:
     assert mapping.locate(1) == mapping.locate(10_000) == mapping.mapping.span
 
 
-# --- mistakes -------------------------------------------------------------------------------------------
+# --- mistakes ---
 
 
 def test_every_mistake_of_a_mapping_is_found_in_one_run() -> None:

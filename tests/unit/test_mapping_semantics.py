@@ -22,7 +22,7 @@ def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
     return loaded(next(generated for generated in emit_project(project) if generated.skill == skill))
 
 
-# --- sources of local variables -------------------------------------------------------------------------
+# --- sources of local variables ---
 
 
 def test_parameters_reach_the_call_through_dotted_paths(bundles: Path) -> None:
@@ -160,7 +160,7 @@ code:
     assert observed(mapping, {}, [("/n", {})], {}).local_variables == {"text": value}
 
 
-# --- rules ----------------------------------------------------------------------------------------------
+# --- rules ---
 
 
 def test_the_first_rule_that_holds_wins_also_with_an_or_in_a_later_one() -> None:
@@ -190,7 +190,7 @@ board = __input.state
     assert observed(mapping, {}, [], {"state": None}).response is None
 
 
-# --- imports and low-level values -----------------------------------------------------------------------
+# --- imports and low-level values ---
 
 
 def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value() -> None:
@@ -231,7 +231,7 @@ def test_an_import_that_the_deployment_does_not_allow_is_refused_and_nothing_sta
     loaded(mapping, allowed_imports=("socket",))
 
 
-# --- original bundles -----------------------------------------------------------------------------------
+# --- original bundles ---
 
 
 @pytest.mark.corpus

@@ -41,7 +41,7 @@ def test_odd_bundles_walk_a_thousand_steps(warehouse: ScriptedModel, orchard: Sc
     assert orchard.walk(1000)["steps"] == 1000
 
 
-# --- AOS 1.x JSON --------------------------------------------------------------------------------------
+# --- AOS 1.x JSON ---
 
 
 def test_defaults_and_draws_of_json_set_the_first_state(warehouse: ScriptedModel) -> None:
@@ -83,7 +83,7 @@ def test_an_extrinsic_change_marks_a_cell_by_a_temporary_enum(warehouse: Scripte
     assert played.rewards[1] == pytest.approx(-0.6)
 
 
-# --- SDL -----------------------------------------------------------------------------------------------
+# --- SDL ---
 
 
 def test_defaults_and_draws_of_sdl_set_the_first_state(orchard: ScriptedModel) -> None:

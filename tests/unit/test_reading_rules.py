@@ -223,7 +223,7 @@ def test_this_is_refused_at_its_place(rule: Rule) -> None:
         assert place in [error.span for error in errors], found_by(loaded)
 
 
-# --- whole files ---------------------------------------------------------------------------------------
+# --- whole files ---
 
 
 class Whole(NamedTuple):

@@ -144,7 +144,7 @@ def test_all_dialects_say_the_same(tmp_path: Path) -> None:
     assert str(definition.span) == "garden.ef:9:6"
 
 
-# --- what analyses make of it ----------------------------------------------------------------------------
+# --- what analyses make of it ---
 
 
 def test_what_a_function_draws_and_changes_is_known() -> None:
@@ -290,7 +290,7 @@ def test_messages_are_told_in_the_documents_terms_with_what_to_write(
     assert (error.message, error.hint) == (message, hint)
 
 
-# --- mistakes --------------------------------------------------------------------------------------------
+# --- mistakes ---
 
 
 @pytest.mark.parametrize(

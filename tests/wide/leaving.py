@@ -13,7 +13,7 @@ from .writing import Bundle, BundleWriter
 
 _DISCOUNT = 0.98
 
-# --- a rover at sites that are hardly worth a probe ------------------------------------------------------
+# --- a rover at sites that are hardly worth a probe ---
 
 _GOOD, _TELLS = 0.3, 0.7
 
@@ -97,7 +97,7 @@ def survey_rule(sites: int, rng: random.Random) -> float:
     return world.earned
 
 
-# --- questions that tell nothing alone -------------------------------------------------------------------
+# --- questions that tell nothing alone ---
 
 _NUMBERS, _LAMPS, _RIGHT = 64, 18, 0.9
 

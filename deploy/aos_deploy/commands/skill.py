@@ -169,7 +169,7 @@ def resume(system: System) -> None:
     system.do(work)
 
 
-# --- what they share ---------------------------------------------------------------------------------
+# --- what they share ---
 
 
 async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:

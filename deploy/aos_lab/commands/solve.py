@@ -261,7 +261,7 @@ def _write_graph(drawn: PolicyGraph, graph: Path | None, header: Path | None) ->
     return written
 
 
-# --- what is told ------------------------------------------------------------------------------------
+# --- what is told ---
 
 
 @contextmanager

@@ -91,7 +91,7 @@ class _Reader:
         tables = PomdpTables(self._transitions, self._sensing, self._rewards, self._start, self._is_seen)
         return explicit_model(self._name, self._discount, self._names, tables)
 
-    # --- preamble --------------------------------------------------------------------------------------
+    # --- preamble ---
 
     def _preamble(self, statement: Statement) -> None:
         kind, words = statement.keyword.text, statement.words
@@ -147,7 +147,7 @@ class _Reader:
             self._error("AOS122", f"the probabilities sum to {total:g}", word, "They have to sum to 1")
         return {number: probability / total for number, probability in row.items()}
 
-    # --- rules -----------------------------------------------------------------------------------------
+    # --- rules ---
 
     def _rule(self, statement: Statement) -> None:
         keyword = statement.keyword.text
@@ -257,7 +257,7 @@ class _Reader:
                     scaled[id(row)] = {number: p / total for number, p in row.items()}
                 table[action, state] = scaled[id(row)]
 
-    # --- words -----------------------------------------------------------------------------------------
+    # --- words ---
 
     def _error(self, code: str, message: str, word: Word, hint: str = "") -> None:
         self._findings.error(code, message, word.line, word.column, hint)

@@ -106,7 +106,7 @@ def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
         first.setdefault(variable.name, variable)
 
 
-# --- code ----------------------------------------------------------------------------------------------
+# --- code ---
 
 
 def _check_rules(
@@ -190,7 +190,7 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
     return None
 
 
-# --- rules ---------------------------------------------------------------------------------------------
+# --- rules ---
 
 
 def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
@@ -227,7 +227,7 @@ def _constant_truth(condition: Snippet | None) -> bool | None:
         return None
 
 
-# --- parameters ----------------------------------------------------------------------------------------
+# --- parameters ---
 
 
 def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, findings: Findings) -> None:

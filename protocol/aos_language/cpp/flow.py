@@ -154,7 +154,7 @@ class _Reading:
             # Jumps decide on all that follows; of other statements nothing is known.
             self.used |= control | names_in(node)
 
-    # --- statements with parts -------------------------------------------------------------------------
+    # --- statements with parts ---
 
     def _condition(self, node: tree_sitter.Node | None, control: _Control) -> _Control:
         """The control within; what the condition itself does is read as well."""
@@ -227,7 +227,7 @@ class _Reading:
                 self._handles.add(local)
                 self.flows += [Flow(name, sources) for name in of]
 
-    # --- expressions -----------------------------------------------------------------------------------
+    # --- expressions ---
 
     def _expression(self, node: tree_sitter.Node, control: _Control) -> None:
         """An expression that is a statement."""

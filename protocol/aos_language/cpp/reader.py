@@ -96,7 +96,7 @@ class TreeReader:
     def _missing(self, node: tree_sitter.Node) -> None:
         self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self.extent(node)))
 
-    # --- paths -----------------------------------------------------------------------------------------
+    # --- paths ---
 
     def _path(self, node: tree_sitter.Node, access: Access, assigned: Extent | None = None) -> None:
         parts, root = self._flatten(node, access)
@@ -139,7 +139,7 @@ class TreeReader:
         if node is not None and node.type in ("template_function", "template_method", "template_type"):
             self._push([node.child_by_field_name("arguments")])
 
-    # --- expressions -----------------------------------------------------------------------------------
+    # --- expressions ---
 
     def _assignment(self, node: tree_sitter.Node, access: Access) -> None:
         operator = node.child_by_field_name("operator")
@@ -216,7 +216,7 @@ class TreeReader:
             self.mentions.append(Mention(path, kind, extent, self.extent(root), "".join(method)))
         return (*parts, *method)
 
-    # --- declarations ----------------------------------------------------------------------------------
+    # --- declarations ---
 
     def _declaration(self, node: tree_sitter.Node, access: Access) -> None:
         type_node = node.child_by_field_name("type")
@@ -300,7 +300,7 @@ class TreeReader:
     def _skip(self, node: tree_sitter.Node, access: Access) -> None:
         pass
 
-    # --- places ----------------------------------------------------------------------------------------
+    # --- places ---
 
     def extent(self, node: tree_sitter.Node) -> Extent:
         start, end = (self._offset(byte) for byte in (node.start_byte, node.end_byte))

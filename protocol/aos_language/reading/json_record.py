@@ -90,7 +90,7 @@ class Record:
                 unknown = partial(self.findings.unknown, code="AOS102", severity=Severity.WARNING)
                 unknown(name, self._known, message, span, "It is ignored")
 
-    # --- scalars ---------------------------------------------------------------------------------------
+    # --- scalars ---
 
     def text(self, key: str, *, required: bool = False) -> Text | None:
         """A string without the blanks around it; None, and a finding if required, where there is none."""
@@ -136,7 +136,7 @@ class Record:
         inside = 1 if isinstance(member[1], JsonString) else 0
         return self.source.span(member[1].start + inside)
 
-    # --- code ------------------------------------------------------------------------------------------
+    # --- code ---
 
     def code(self, key: str) -> Snippet | None:
         """Code as one string or as a list of lines; None where there is none or it is blank."""
@@ -181,7 +181,7 @@ class Record:
         self.findings.warning("AOS127", f'"{key}" should be text', span, "Put it in double quotes")
         return Snippet(str(value.value), (span,))
 
-    # --- composites ------------------------------------------------------------------------------------
+    # --- composites ---
 
     def record(self, key: str, what: str, *, required: bool = False) -> Record | None:
         """An object within this one."""
@@ -210,7 +210,7 @@ class Record:
         found = self._read(key, False, "a list", lambda v: v if isinstance(v, JsonArray) else None)
         return found.items if found is not None else ()
 
-    # --- common ----------------------------------------------------------------------------------------
+    # --- common ---
 
     def _value(self, key: str) -> JsonValue | None:
         """The value of a key; null counts as absent."""

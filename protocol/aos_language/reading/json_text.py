@@ -140,7 +140,7 @@ class _Reader:
         if self._at < len(self._text):
             raise _Unreadable("text after the end of the document", self._at)
 
-    # --- composites ------------------------------------------------------------------------------------
+    # --- composites ---
 
     def _object(self, depth: int) -> JsonObject:
         start = self._at
@@ -214,7 +214,7 @@ class _Reader:
         hint = f"The first is on line {line}; keep one of them"
         self._findings.error("AOS103", f'the key "{key.text}" is given twice', span, hint)
 
-    # --- scalars ---------------------------------------------------------------------------------------
+    # --- scalars ---
 
     def _string(self) -> JsonString:
         start = self._at
@@ -276,7 +276,7 @@ class _Reader:
             hint = "Write double quotes"
         raise _Unreadable(f"expected a value, found {self._found()}", start, hint)
 
-    # --- between values --------------------------------------------------------------------------------
+    # --- between values ---
 
     def _skip_blank(self) -> None:
         while True:

@@ -55,7 +55,7 @@ def _given(**members: object) -> dict[str, Any]:
     return {key: value for key, value in members.items() if value}
 
 
-# --- environment and low-level document ----------------------------------------------------------------
+# --- environment and low-level document ---
 
 
 def _environment(environment: Environment) -> dict[str, Any]:
@@ -139,7 +139,7 @@ def _low_level(document: LowLevelDocument) -> dict[str, Any]:
     }
 
 
-# --- skill document ------------------------------------------------------------------------------------
+# --- skill document ---
 
 
 def _skill(model: SkillModel) -> dict[str, Any]:
@@ -165,7 +165,7 @@ def _parameters(parameters: Iterable[Parameter]) -> list[dict[str, str]]:
     return [{"Name": parameter.name, "Type": parameter.type} for parameter in parameters]
 
 
-# --- abstraction mapping -------------------------------------------------------------------------------
+# --- abstraction mapping ---
 
 
 def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
@@ -229,7 +229,7 @@ def _imports(imports: Iterable[Import]) -> list[dict[str, Any]]:
     return [{**_given(From=item.module), "Import": list(item.names)} for item in imports]
 
 
-# --- code ----------------------------------------------------------------------------------------------
+# --- code ---
 
 
 def _block(block: Iterable[Assignment]) -> list[dict[str, Any]]:

@@ -43,7 +43,7 @@ def sdl_text(
     return "".join(f"{line}\n" for line in lines)
 
 
-# --- environment and low-level file --------------------------------------------------------------------
+# --- environment and low-level file ---
 
 
 def _environment(environment: Environment) -> Iterator[str]:
@@ -113,7 +113,7 @@ def _low_level(document: LowLevelDocument) -> Iterator[str]:
         yield from ("", f"constant: {constant.type} {constant.name}", *_code("code", constant.code))
 
 
-# --- skill document ------------------------------------------------------------------------------------
+# --- skill document ---
 
 
 def _skill(model: SkillModel) -> Iterator[str]:
@@ -128,7 +128,7 @@ def _skill(model: SkillModel) -> Iterator[str]:
     yield from _block("state_given_observation", model.state_given_observation)
 
 
-# --- abstraction mapping -------------------------------------------------------------------------------
+# --- abstraction mapping ---
 
 
 def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
@@ -191,7 +191,7 @@ def _import(item: Import) -> str:
     return f"imports: {origin}import: {', '.join(item.names)}"
 
 
-# --- code ----------------------------------------------------------------------------------------------
+# --- code ---
 
 
 def _block(word: str, block: tuple[Assignment, ...]) -> Iterator[str]:

@@ -82,7 +82,7 @@ class Host:
         self._failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._adapter: Adapter | None = None
 
-    # --- for adapters --------------------------------------------------------------------------------
+    # --- for adapters ---
 
     @property
     def bound(self) -> dict[str, Binding]:
@@ -187,7 +187,7 @@ class Host:
             timeout_s=_ASK_TIMEOUT_S,
         )
 
-    # --- the process ---------------------------------------------------------------------------------
+    # --- the process ---
 
     async def run(self) -> None:
         """Runs until it is stopped, or cannot go on."""

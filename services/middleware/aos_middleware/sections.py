@@ -43,7 +43,7 @@ class Sections:
         self._mapping = mapping
         self._snippets = snippets
 
-    # --- activation ----------------------------------------------------------------------------------
+    # --- activation ---
 
     def start_values(self) -> list[str]:
         """The entries of the dict that `local_variables` returns."""
@@ -75,7 +75,7 @@ class Sections:
         reads = ", ".join(self._snippets.read_by(code for _, code in codes))
         return Function("request", reads, word(self._mapping.activation.path), tuple(lines))
 
-    # --- local variables -----------------------------------------------------------------------------
+    # --- local variables ---
 
     def functions(self) -> list[Function]:
         """The functions that are called during an activation, the condition that stops the skill last."""
@@ -137,7 +137,7 @@ class Sections:
         tables = (("TOPICS", by_topic), ("RESPONSE", response), ("CONSTANTS", constants))
         return [Table(name, tuple(lines)) for name, lines in tables if lines]
 
-    # --- observation ---------------------------------------------------------------------------------
+    # --- observation ---
 
     def observe(self) -> Function:
         """The function from local variables to the response; None where there is none."""

@@ -72,7 +72,7 @@ class _Registry:
             self._bus.tell(self._keys.announced, recalled)
         await self._dropped.follow()
 
-    # --- answers ---------------------------------------------------------------------------------------
+    # --- answers ---
 
     async def _answer_push(self, bundle: PushBundle, _: str) -> BundleReport:
         report = await self._take_in(bundle.files, bundle.source)
@@ -121,7 +121,7 @@ class _Registry:
     async def _answer_catalogue(self, _: CatalogueQuery, __: str) -> CatalogueAnswer:
         return CatalogueAnswer(self._catalogue.entries())
 
-    # --- intake ----------------------------------------------------------------------------------------
+    # --- intake ---
 
     def _tell_report(self, report: BundleReport) -> None:
         """Whoever follows the registry hears of everything that was pushed, dropped or removed."""

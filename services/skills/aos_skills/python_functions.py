@@ -68,7 +68,7 @@ class PythonAdapter:
             await asyncio.wait({asyncio.wrap_future(closing)}, timeout=_END_S)
             self._loop.call_soon_threadsafe(self._loop.stop)
 
-    # --- on the user's thread ------------------------------------------------------------------------
+    # --- on the user's thread ---
 
     async def _load_all(self) -> None:
         for path, binding in self._host.bound.items():

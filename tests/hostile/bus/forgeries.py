@@ -67,7 +67,7 @@ def _is_told(cell: Cell, forgery: Forgery) -> bool:
     return False
 
 
-# --- what is tried -----------------------------------------------------------------------------------
+# --- what is tried ---
 
 
 def _connect(credential: Credential | None) -> Callable[[Cell], str]:

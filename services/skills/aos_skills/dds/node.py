@@ -42,7 +42,7 @@ class DdsNode(Ros2Node):
         self._clients.clear()
         self._participant.close()
 
-    # --- topics --------------------------------------------------------------------------------------
+    # --- topics ---
 
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
         writer = self._participant.writer(f"rt{topic}", type_name, qos)
@@ -63,7 +63,7 @@ class DdsNode(Ros2Node):
         found = await self._wait_for(True, f"rt{topic}", timeout_s)
         return None if found is None else TopicFound(ros_type(found.type_name), found.qos)
 
-    # --- services ------------------------------------------------------------------------------------
+    # --- services ---
 
     async def call(self, request: ServiceRequest) -> Fields:
         service, timeout_s = request.service, request.timeout_s
@@ -111,7 +111,7 @@ class DdsNode(Ros2Node):
             f"rq{service}Request", f"{type_name}_Request", on_request, DEFAULT_QOS, has_header=True
         )
 
-    # --- who is there --------------------------------------------------------------------------------
+    # --- who is there ---
 
     def _on_change(self) -> None:
         self._has_changed.set()

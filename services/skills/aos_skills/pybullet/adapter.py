@@ -65,7 +65,7 @@ class PybulletAdapter:
     async def _on_thread(self, work: Any, *arguments: Any) -> Any:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work, *arguments)
 
-    # --- on the world's thread -----------------------------------------------------------------------
+    # --- on the world's thread ---
 
     def _build(self, world: WorldFile, seed: int) -> None:
         self._world = world.build(seed)

@@ -81,7 +81,7 @@ class RosAdapter:
         if hasattr(self, "node"):
             await self.node.close()
 
-    # --- what there is -------------------------------------------------------------------------------
+    # --- what there is ---
 
     async def _follow_documents(self) -> None:
         """Takes in the paths and topics of each revision of the project."""
@@ -165,7 +165,7 @@ class RosAdapter:
                 self._topics[topic] = _ignored
                 _log.error("%s is not listened to: %s", name, error)
 
-    # --- calls ---------------------------------------------------------------------------------------
+    # --- calls ---
 
     async def call(self, call: Call) -> dict[str, Any]:
         way = self._ways[call.path]

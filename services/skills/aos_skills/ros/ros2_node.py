@@ -21,7 +21,7 @@ class Ros2Node(RosNode):
         self.types = types
         self._actions = ActionClient(self)
 
-    # --- by the transport ----------------------------------------------------------------------------
+    # --- by the transport ---
 
     @abstractmethod
     async def until_heard(self, topic: str) -> None:
@@ -42,7 +42,7 @@ class Ros2Node(RosNode):
     def services(self) -> list[str]:
         """The names of all that some node serves now."""
 
-    # --- the same for all ----------------------------------------------------------------------------
+    # --- the same for all ---
 
     async def run_action(self, request: ActionRequest) -> ActionEnd:
         return await self._actions.run(request)

@@ -138,7 +138,7 @@ class RosTypes:
             if name != _FILLER
         )
 
-    # --- types ---------------------------------------------------------------------------------------
+    # --- types ---
 
     def _know(self, type_name: str, used_by: str = "") -> None:
         """Reads the files that define a type and all that it uses."""
@@ -172,7 +172,7 @@ class RosTypes:
         if type_name not in self._store.fielddefs:
             raise missing_interface(name, used_by)
 
-    # --- values --------------------------------------------------------------------------------------
+    # --- values ---
 
     def _message(self, type_name: str, value: Any, where: str) -> Any:
         if not isinstance(value, Mapping):

@@ -78,7 +78,7 @@ class Ros1Node(RosNode):
         await self._answering.cancel()
         await self._process.close()
 
-    # --- topics --------------------------------------------------------------------------------------
+    # --- topics ---
 
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
         self._process.tell("advertise", name=topic, type=_ros1(type_name), latch=qos.is_transient_local)
@@ -95,7 +95,7 @@ class Ros1Node(RosNode):
         type_name = await self._wait_for("topics", topic, timeout_s)
         return TopicFound(type_name, DEFAULT_QOS) if type_name not in ("", "*") else None
 
-    # --- services and actions ------------------------------------------------------------------------
+    # --- services and actions ---
 
     async def call(self, request: ServiceRequest) -> Fields:
         service, timeout_s = request.service, request.timeout_s
@@ -165,7 +165,7 @@ class Ros1Node(RosNode):
         self._has_changed.clear()
         await self._has_changed.wait()
 
-    # --- events --------------------------------------------------------------------------------------
+    # --- events ---
 
     def _on_event(self, event: str, line: dict[str, Any]) -> None:
         if event == "names":
@@ -201,7 +201,7 @@ class Ros1Node(RosNode):
             del self._stops[number]
         self._process.tell("answer", of=number, fields=fields, error=error)
 
-    # --- names ---------------------------------------------------------------------------------------
+    # --- names ---
 
     async def _gone(self, kind: str, name: str) -> None:
         while name in self._names[kind]:

@@ -44,7 +44,7 @@ class Node(Ros2Node):
         await self.unended.close()
         await self._bus.close()
 
-    # --- topics --------------------------------------------------------------------------------------
+    # --- topics ---
 
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
         own = self._endpoint(Kind.PUBLISHER, topic, type_name, self.types.hash(type_name), qos)
@@ -82,7 +82,7 @@ class Node(Ros2Node):
         publisher = await self.graph.wait_for(Kind.PUBLISHER, topic, timeout_s)
         return None if publisher is None else TopicFound(publisher.type_name, publisher.qos)
 
-    # --- services ------------------------------------------------------------------------------------
+    # --- services ---
 
     async def call(self, request: ServiceRequest) -> Fields:
         found_within_s = min(request.discovery_s, request.timeout_s)
@@ -124,7 +124,7 @@ class Node(Ros2Node):
     async def changed(self) -> None:
         await self.graph.changed()
 
-    # --- what they share -----------------------------------------------------------------------------
+    # --- what they share ---
 
     def services(self) -> list[str]:
         return sorted(self.graph.names(Kind.SERVER))

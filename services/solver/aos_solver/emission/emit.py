@@ -146,7 +146,7 @@ def _templates() -> Environment:
     return environment
 
 
-# --- facts for the templates ---------------------------------------------------------------------------
+# --- facts for the templates ---
 
 
 def _own_names(program: Program) -> dict[str, str]:
@@ -212,7 +212,7 @@ def _shape(type_text: str) -> str:
     return re.sub(r"(aos::Vector<.*), \d+>", r"\1>", type_text)
 
 
-# --- literals ------------------------------------------------------------------------------------------
+# --- literals ---
 
 
 def _number_literal(number: float) -> str:

@@ -205,7 +205,7 @@ class _Influence:
         shared = self._shared
         return flows_of(read_cpp(looked_through(cpp, shared)), shared.reading, shared.all_names)
 
-    # --- one snippet -----------------------------------------------------------------------------------
+    # --- one snippet ---
 
     def _read_snippet(self, code: str) -> None:
         flows = self.flows(read_cpp(code))

@@ -49,7 +49,7 @@ class Piece(msgspec.Struct, frozen=True):
         return self.snippet.locate(line, column - shift)
 
 
-# --- state ---------------------------------------------------------------------------------------------
+# --- state ---
 
 
 class Enum(msgspec.Struct, frozen=True):
@@ -125,7 +125,7 @@ class ParameterValues(msgspec.Struct, frozen=True):
     enum_values: tuple[str, ...] = ()
 
 
-# --- code ----------------------------------------------------------------------------------------------
+# --- code ---
 
 
 class EnumVariable(msgspec.Struct, frozen=True):
@@ -200,7 +200,7 @@ class SpecialState(msgspec.Struct, frozen=True):
         return self.is_goal or self.is_failure
 
 
-# --- skills --------------------------------------------------------------------------------------------
+# --- skills ---
 
 
 class Parameter(msgspec.Struct, frozen=True):

@@ -80,7 +80,7 @@ class Robot:
             return "AOS502", ""
         return "AOS510", ""
 
-    # --- as a client ---------------------------------------------------------------------------------
+    # --- as a client ---
 
     def do_check(self, number: int, kind: str, type: str) -> None:
         if kind == "action":
@@ -150,7 +150,7 @@ class Robot:
 
         self._kept.append(rospy.Subscriber(name, cls, on_message, queue_size=QUEUE))
 
-    # --- as a server ---------------------------------------------------------------------------------
+    # --- as a server ---
 
     def do_advertise(self, number: int, name: str, type: str, latch: bool) -> None:
         self._publishers[name] = rospy.Publisher(
