@@ -10,6 +10,7 @@ from wide.lock import lock
 from wide.problems import open_field, parcels
 from wide.rescue import rescue
 from wide.towers import towers
+from wide.writing import BundleWriter
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
@@ -66,11 +67,39 @@ async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> Non
 
 
 async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> None:
-    """Also before it is known what a step costs."""
+    """Also before it is known what a step costs: without time no way is found by which options decide."""
     async with engine_of_text(delivery(6), cache_dir) as engine:
-        await engine.count_processor_time(True)
-        plans = [await engine.plan(simulations=1, time_s=0.006, seed=seed) for seed in range(3)]
-    assert max(plan.search_s for plan in plans) < 0.012
+        hurried, unhurried = [await engine.plan(simulations=1, time_s=time, seed=1) for time in (1e-6, 2)]
+    assert hurried.planner == "pomcp"
+    assert unhurried.planner == "options"
+    assert unhurried.simulations > 100
+
+
+async def test_a_mission_of_one_decision_is_told_the_mean_reward_of_each_action(cache_dir: Path) -> None:
+    """Nothing follows a look, and what is seen by it is worth nothing."""
+    writer = BundleWriter(
+        "reach",
+        """horizon: 1
+discount: 0.95
+
+state_variable: double x
+
+initial_belief:
+state.x = AOS.SampleUniform(0, 4);
+""",
+    )
+    look = "__reward = -0.1;\n__moduleResponse = state.x < 1 ? left : right;"
+    writer.skill("look", ["left", "right"], look)
+    reach = "__reward = state.x < 1 + where ? 10 - 3.5 * where : -2;\n__moduleResponse = done;"
+    writer.skill("reach", ["done"], reach, over={"where": "3"})
+    async with engine_of_text(writer.files, cache_dir) as engine:
+        plan = await engine.plan(simulations=2000, seed=1, planner="auto")
+    told = {value.action: value for value in plan.actions}
+    assert abs(told["look"].q + 0.1) < 1e-9
+    for where, mean in enumerate((1.0, 2.25, 1.75)):
+        value = told[f"reach(where={where})"]
+        assert abs(value.q - mean) < 3 * value.stderr
+    assert plan.best.action == "reach(where=1)"
 
 
 async def test_a_reward_that_was_earned_is_not_expected_again_where_the_mission_may_end_with_it(

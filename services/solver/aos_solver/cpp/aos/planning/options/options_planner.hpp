@@ -35,6 +35,11 @@ class OptionsPlanner final : public Planner<Model> {
     const bool is_asked = is_by_name || (!is_listed && switches::options && !Model::has_rollout_policy && !pomcp_.has_wide_values(belief, horizon));
     has_looked_ = false;
     if (!is_asked) return false;
+    // Options count what comes after an action. Where nothing does, POMCP finds the mean reward of each.
+    if (horizon == 1) {
+      choosing.why += "; the mission is planned for one decision, which no way to a reward goes beyond";
+      return false;
+    }
     if (!looks_.is_due()) {
       choosing.why += "; no way to a reward was found a few decisions before";
       return false;
