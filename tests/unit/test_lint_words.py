@@ -121,6 +121,7 @@ def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment: str) -> None:
     [
         (("environment", "__isGoalState", "isGoalState"), "isGoalState", "__isGoalState"),
         (("environment", "__isGoalState", "__isGoalStat"), "__isGoalStat", "__isGoalState"),
+        (("environment", "int x 0", "bool x False"), "False", "false"),
         (("skill", "__moduleResponse", "_moduleResponse"), "_moduleResponse", "__moduleResponse"),
         (("skill", "__meetPrecondition", "meetPrecondition"), "meetPrecondition", "__meetPrecondition"),
     ],

@@ -252,6 +252,7 @@ def test_a_misspelt_call_is_told_with_the_name_that_was_meant() -> None:
     [
         ("'elif' was not declared in this scope", "`elif` was not declared", "C++ writes `else if`"),
         ("use of undeclared identifier 'True'", "use of undeclared identifier `True`", "C++ writes `true`"),
+        ("'TRUE' was not declared in this scope", "`TRUE` was not declared", "C++ writes `true`"),
         (
             "cannot convert 'const char*' to 'model::Side' in assignment",
             "cannot convert `const char*` to `Side` in assignment",

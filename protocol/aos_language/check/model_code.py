@@ -226,7 +226,8 @@ class _BlockCheck:
         if name == self._block.snippet.code.strip() and not name.startswith("_") and name not in known:
             if name in LITERAL_NAMES or name.isupper():
                 return
-            self._findings.unknown(name, known, f"unknown name `{name}`", self._span(mentions[0].root))
+            message = f"unknown name `{name}`"
+            self._findings.unknown(name, {"true", "false", *known}, message, self._span(mentions[0].root))
 
     def _span(self, extent: Extent) -> Span:
         return self._block.snippet.locate(extent.line, extent.column)

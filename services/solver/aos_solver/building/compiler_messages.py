@@ -17,6 +17,7 @@ _ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)"
 """g++ and clang say this of the one deleted operator that documents can meet, see named_array.hpp."""
 _NOT_DECLARED = re.compile(r"`([A-Za-z_]\w*)` was not declared|use of undeclared identifier `([A-Za-z_]\w*)`")
 _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
+_OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
 _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
 )
