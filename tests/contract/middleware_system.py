@@ -200,7 +200,9 @@ class System:
         request = Activate(ActivationId("m", step), skill, parameters or {}, deadline_s, revision=revision)
         return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=HANG_S)
 
-    async def beside_a_motion(self, skill: str) -> tuple[asyncio.Task[Outcome], asyncio.Event]:
+    async def beside_a_motion(
+        self, skill: str, deadline_s: float = 10.0
+    ) -> tuple[asyncio.Task[Outcome], asyncio.Event]:
         """Activates a skill while another may still be moving; also gives what lets that stand still."""
         is_still = asyncio.Event()
         await self.adapter.serve(
@@ -209,7 +211,7 @@ class System:
         await self.adapter.serve_cancel("/sense", is_still)
         assert (await self.activate("sense", 1)).status == "timed_out"
         self.adapter.is_cancelled.clear()
-        waiting = asyncio.create_task(self.activate(skill, 2))
+        waiting = asyncio.create_task(self.activate(skill, 2, deadline_s=deadline_s))
         await asyncio.wait_for(self.adapter.is_cancelled.wait(), HANG_S)
         return waiting, is_still
 

@@ -107,6 +107,14 @@ async def test_an_adapter_that_cannot_be_cancelled_is_not_called_again(system: S
     assert_refused(await system.activate("sense", 2), "AOS512", "/sense may still be moving")
 
 
+async def test_a_skill_whose_time_is_over_when_the_earlier_one_stands_still_is_not_called(
+    system: System,
+) -> None:
+    waiting, is_still = await system.beside_a_motion("sense", deadline_s=1e-9)
+    is_still.set()
+    assert_refused(await waiting, "AOS512", "the time of /sense was over before what ran earlier stood still")
+
+
 @pytest.mark.parametrize("kind", ["late", "foreign"])
 async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind: str) -> None:
     is_over = asyncio.Event()

@@ -20,6 +20,10 @@ from aos_runtime.failpoints import reach
 _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25
 """An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
+_TOLD_BEFORE_S = 0.1
+_TIME_HINT = (
+    "Its time is the mapping's `max_duration`, or `timeout_s` or `activation_timeout_s` of the deploy file"
+)
 
 _log = logging.getLogger("aos.middleware")
 
@@ -55,6 +59,12 @@ class Call:
             # Last, since an adapter that cannot stop ends its process.
             if fault := self._around.served.fault(path):
                 raise fault
+            if self._clock.monotonic_s() >= self._ends_at_s:
+                raise SkillError(
+                    f"the time of {path} was over before what ran earlier stood still",
+                    code="AOS512",
+                    hint=_TIME_HINT,
+                )
             self._stop.let_out()
             return await self._call_path(path, fields)
 
@@ -73,7 +83,8 @@ class Call:
             has_ended = result.id == request.id
         except LateAnswerError as error:
             has_ended = await self._cancel(f"{request.skill} did not end within {limit_s:g} s")
-            raise _timed_out(path, limit_s) from error
+            before_s = 0.0 if limit_s == self._max_duration_s else request.deadline_s - limit_s
+            raise _timed_out(path, limit_s, before_s) from error
         except LostAnswerError as error:
             raise _lost_adapter(path, self._clock.monotonic_s() - started_s) from error
         except NobodyAnswersError as error:
@@ -139,12 +150,11 @@ class Call:
         self._around.on_stray(Stray(request.id, path, kind, text))
 
 
-def _timed_out(path: str, limit_s: float) -> SkillError:
-    return SkillError(
-        f"the skill at {path} did not answer within {round(limit_s, 1):g} s",
-        code="AOS503",
-        hint="See the skill's log; its time is the mapping's `max_duration` or the mission's limit",
-    )
+def _timed_out(path: str, limit_s: float, before_s: float) -> SkillError:
+    text = f"the skill at {path} did not answer within {round(limit_s, 1):g} s"
+    if before_s >= _TOLD_BEFORE_S:
+        text += f", after {before_s:.1f} s of its time had passed before the call"
+    return SkillError(text, code="AOS503", hint=f"See the skill's log. {_TIME_HINT}")
 
 
 def _lost_adapter(path: str, after_s: float) -> SkillError:
