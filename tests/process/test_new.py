@@ -2,7 +2,9 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import pytest
 import typer
 from commands import aos
@@ -111,3 +113,30 @@ def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_
     solver = read_deploy_file(next(Path().glob("*.yaml"))).file.solver
     assert (solver.time_s is not None) == plans_in_time
     assert (solver.simulations is not None) != plans_in_time
+
+
+def test_a_written_program_tells_a_late_skill_and_a_result_that_cannot_be_sent_from_a_failure(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    run("new project fetch")
+    run("new adapter command --in fetch")
+    monkeypatch.setenv("AOS_ROBOT", "fetch")
+    monkeypatch.setenv("AOS_ADAPTER", "robot")
+    names: dict[str, Any] = {}
+    exec(Path("fetch_robot.py").read_text().split("\nwith open(")[0], names)
+    names["tell"] = lambda *_: None
+
+    def code(deadline_s: float) -> str:
+        request = {"id": {"mission": "m", "step": 1}, "fields": {}, "deadline_s": deadline_s}
+        return str(msgspec.msgpack.decode(names["answer"]("/look", request)[1])["body"].get("code"))
+
+    assert code(60.0) == "None"
+    names["RESULTS"]["/look"] = {"bearing_rad": 10**30}
+    assert code(60.0) == "AOS504"
+
+    def is_cancelled(path: str, fields: object) -> None:
+        names["STOP"].wait()
+        raise names["Failure"]("AOS507", "cancelled")
+
+    names["run"] = is_cancelled
+    assert code(0.0) == "AOS503"
