@@ -68,8 +68,10 @@ async def test_a_decision_of_options_keeps_to_its_budget(cache_dir: Path) -> Non
 
 async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> None:
     """Also before it is known what a step costs: without time no way is found by which options decide."""
-    async with engine_of_text(delivery(6), cache_dir) as engine:
-        hurried, unhurried = [await engine.plan(simulations=1, time_s=time, seed=1) for time in (1e-6, 2)]
+    built = await built_text(delivery(6), cache_dir)
+    async with engine_of(built) as engine, engine_of(built) as other:
+        hurried = await engine.plan(simulations=1, time_s=1e-6, seed=1)
+        unhurried = await other.plan(simulations=1, time_s=2, seed=1)
     assert hurried.planner == "pomcp"
     assert unhurried.planner == "options"
     assert unhurried.simulations > 100
