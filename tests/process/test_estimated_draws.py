@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from models import engine_of_text
+from wide.missions import processor_s
 from wide.shelf import shelf
 from wide.writing import BundleWriter
 
@@ -78,3 +79,10 @@ async def test_two_draws_have_fewer_strata_and_a_state_that_keeps_its_draw_none(
         "look.sd": files["look.sd"].replace("state.at == state.box", "fabs(state.at - state.box) < 0.5"),
     }
     assert (await _plan(kept, cache_dir)).planner in {"options", "pomcp"}
+
+
+async def test_the_processor_time_of_an_engine_is_that_of_the_process_below_its_guard(cache_dir: Path) -> None:
+    async with engine_of_text(shelf(), cache_dir) as engine:
+        before = processor_s(engine)
+        plan = await engine.plan(simulations=5000, seed=1, planner="pomcp")
+        assert processor_s(engine) - before > plan.search_s / 100

@@ -5,6 +5,7 @@ from pathlib import Path
 from statistics import fmean, stdev
 
 import msgspec
+from processes import descendants
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_solver.child.answers import Plan
@@ -57,16 +58,18 @@ class _Noted(Search, frozen=True, kw_only=True):
 
     async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
         if self.decided_at_s:
-            self.played.updates_s.append(_processor_s(engine) - self.decided_at_s.pop())
+            self.played.updates_s.append(processor_s(engine) - self.decided_at_s.pop())
         plan = await super().run(engine, step, within)
         self.played.take(plan)
-        self.decided_at_s.append(_processor_s(engine))
+        self.decided_at_s.append(processor_s(engine))
         return plan
 
 
-def _processor_s(engine: Engine) -> float:
-    """The processor time that the engine's process has spent so far."""
-    threads = Path(f"/proc/{engine.pid}/task").glob("*/schedstat")
+def processor_s(engine: Engine) -> float:
+    """The processor time that the engine's process, which is below its guard, has spent so far."""
+    threads = [
+        file for pid in descendants(engine.pid) for file in Path(f"/proc/{pid}/task").glob("*/schedstat")
+    ]
     return sum(int(thread.read_text().split()[0]) for thread in threads) / 1e9
 
 
