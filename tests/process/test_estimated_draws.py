@@ -81,7 +81,7 @@ async def test_two_draws_have_fewer_strata_and_a_state_that_keeps_its_draw_none(
     assert (await _plan(kept, cache_dir)).planner in {"options", "pomcp"}
 
 
-async def test_the_processor_time_of_an_engine_is_that_of_the_process_below_its_guard(cache_dir: Path) -> None:
+async def test_an_engine_spends_the_processor_time_of_the_process_below_its_guard(cache_dir: Path) -> None:
     async with engine_of_text(shelf(), cache_dir) as engine:
         before = processor_s(engine)
         plan = await engine.plan(simulations=5000, seed=1, planner="pomcp")

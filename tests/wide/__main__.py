@@ -29,6 +29,7 @@ from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
 from .screws import Screws, screws, screws_rule
+from .sorting import Sorting, sorting, sorting_rule
 from .tabletop import Tabletop, tabletop, tabletop_rule
 from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
 from .towers import Towers, towers, towers_rule
@@ -44,6 +45,7 @@ _SINGLE = {
     "lock": lock,
     "towers": towers,
     "photo": photo,
+    "sorting": sorting,
 }
 _BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
 _SIZES = (
@@ -52,7 +54,16 @@ _SIZES = (
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
-    | {"inspection": 16, "screws": 10, "rescue": 3, "tabletop": 5, "lock": 5, "towers": 10, "photo": 12}
+    | {
+        "inspection": 16,
+        "screws": 10,
+        "rescue": 3,
+        "tabletop": 5,
+        "lock": 5,
+        "towers": 10,
+        "photo": 12,
+        "sorting": 10,
+    }
 )
 _RULES = (
     RULES
@@ -68,6 +79,7 @@ _RULES = (
         "lock": lock_rule,
         "towers": towers_rule,
         "photo": photo_rule,
+        "sorting": sorting_rule,
     }
 )
 _WORLDS = (
@@ -80,6 +92,7 @@ _WORLDS = (
         "lock": Lock,
         "towers": Towers,
         "photo": Photo,
+        "sorting": Sorting,
     }
 )
 
