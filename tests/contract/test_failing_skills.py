@@ -115,6 +115,17 @@ async def test_a_skill_whose_time_is_over_when_the_earlier_one_stands_still_is_n
     assert_refused(await waiting, "AOS512", "the time of /sense was over before what ran earlier stood still")
 
 
+async def test_a_result_of_another_type_is_not_put_on_a_topic_that_said_nothing(system: System) -> None:
+    result = "local_variable: wet\nfrom_ros_service_response: true\ncode:\nwet = __input.wet\n"
+    topic = "local_variable: level\ntopic: /level\ntype: float\ncode:\nlevel = __input.data\n"
+    rule = "response: wet\nresponse_rule: wet > 0.5 and level > 0\nmodule_activation: skill\npath: /sense\n"
+    await with_mapping(system, f"project: armadillo\n{rule}{result}{topic}")
+    await system.adapter.serve("/sense", answering({"wet": "very"}))
+    outcome = await system.activate("sense")
+    assert outcome.fault is not None
+    assert outcome.fault.message.endswith("'str' and 'float'")
+
+
 @pytest.mark.parametrize("kind", ["late", "foreign"])
 async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind: str) -> None:
     is_over = asyncio.Event()

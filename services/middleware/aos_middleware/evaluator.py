@@ -228,8 +228,8 @@ class Evaluator:
         )
 
     def _unset(self, answer: Raised) -> str:
-        """Most type errors in rules are about a topic that said nothing."""
-        if not answer.error.startswith(("TypeError", "AttributeError")):
+        """Most errors in rules that are about None are about a topic that said nothing."""
+        if "NoneType" not in answer.error or not answer.error.startswith(("TypeError", "AttributeError")):
             return ""
         for variable in self.emitted.mapping.local_variables:
             if variable.name in answer.unset and variable.source is LocalSource.TOPIC:
