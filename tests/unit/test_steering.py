@@ -1,7 +1,8 @@
 """Steering as a fold: what each verb does, and what a script leads to."""
 
 import asyncio
-from typing import Any
+from typing import Any, cast
+from unittest.mock import create_autospec
 
 import msgspec
 import pytest
@@ -16,6 +17,8 @@ from aos_solver.mission.helm import Helm
 from aos_solver.mission.memory import folded
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.steering import Steering
+from aos_solver.mission_runner import MissionRunner
+from aos_solver.steering_desk import SteeringDesk
 
 MODEL = EngineDescription(
     "p",
@@ -177,3 +180,15 @@ async def test_whoever_asks_for_an_action_hears_when_it_is_decided_for_or_why_no
     helm.end(MissionState("m", "ended", 1, 0.0, "goal"))
     with pytest.raises(SteeringError, match="the mission has ended before: goal"):
         await waiting[2]
+
+
+@pytest.mark.parametrize(
+    ("phase", "said"), [("waiting", "no mission has begun"), ("ended", "no mission runs")]
+)
+async def test_the_desk_says_whether_a_mission_is_over_or_has_not_begun(phase: str, said: str) -> None:
+    missions: Any = create_autospec(MissionRunner, instance=True)
+    missions.running.return_value = None
+    missions.state = MissionState("m", phase, 0, 0.0)
+    desk = SteeringDesk(missions, lambda: None, cast("Any", None), cast("Any", None))
+    with pytest.raises(SteeringError, match=said):
+        await desk.take(Steer("hold"))

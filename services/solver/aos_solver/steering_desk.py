@@ -28,7 +28,9 @@ class SteeringDesk:
         """Steers the mission that runs; the answer is as in Steer. SteeringError where it cannot be done."""
         mission = await self._missions.running()
         if mission is None:
-            raise SteeringError("no mission runs", hint="See `aos mission list`")
+            is_first_to_come = self._missions.state.phase == "waiting"
+            text = "no mission has begun" if is_first_to_come else "no mission runs"
+            raise SteeringError(text, hint="See `aos mission list`")
         if steer.mission not in ("", mission.state.mission):
             raise SteeringError(f"{steer.mission} does not run, {mission.state.mission} does")
         steer = msgspec.structs.replace(
