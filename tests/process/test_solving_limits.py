@@ -1,4 +1,4 @@
-"""Limits of solving hold in the middle of a trial, which takes long in a large model."""
+"""Solving ends with its time, and a longer time does more."""
 
 from pathlib import Path
 
@@ -24,8 +24,8 @@ def large_file(path: Path) -> Path:
     return path
 
 
-async def test_time_is_not_exceeded_by_a_trial(tmp_path: Path, cache_dir: Path) -> None:
-    """Two budgets end at different places of the search, though a trial is long."""
+async def test_time_ends_solving_and_more_of_it_does_more(tmp_path: Path, cache_dir: Path) -> None:
+    """The short one is over before the first trial."""
     model = read_problem(large_file(tmp_path / "large.pomdp"))
     solved = [await solve(model, SolvingLimits(cpu_s=time), cache_dir=cache_dir) for time in (0.02, 1)]
     short, long = (solution.bounds for solution in solved)
