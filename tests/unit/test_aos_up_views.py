@@ -74,6 +74,14 @@ def test_a_decision_without_simulations_says_that_nothing_was_searched() -> None
     assert decision_line(record).endswith("]  sarsop without a search in 0.25 s")
 
 
+def test_a_decision_for_less_than_the_best_value_says_why() -> None:
+    serve = ActionValue("serve", 5.0, 100, 0.5)
+    why = "serve cannot be chosen now: no adapter answers calls of /serve"
+    record = msgspec.structs.replace(DECISION, actions=(serve, *DECISION.actions[1:]), why=why)
+    assert decision_line(record).endswith(f"  ({why})")
+    assert why not in decision_line(msgspec.structs.replace(DECISION, why=why))
+
+
 def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others() -> None:
     actions = tuple(
         msgspec.structs.replace(DECISION.actions[0], action=f"a{i}", q=float(i)) for i in range(9)

@@ -1,5 +1,6 @@
 """One line for each event: for pipes and logs, and as JSON for programs."""
 
+import math
 import sys
 import time
 from typing import Self
@@ -126,7 +127,10 @@ def decision_line(record: DecisionRecord) -> str:
             shown.append(f"{len(others) - len(shown)} more")
         values = f"[{', '.join(shown)}]  " if shown else ""
         risks = "".join(f"  ({risk_text(constraint)})" for constraint in record.constraints)
-        return f"{head}  {values}{effort_text(record)}{risks}"
+        worth = max((action.q for action in others if action.action == record.action), default=math.inf)
+        is_kept_back = bool(others) and others[0].q > worth and effort_text(record) != record.why
+        why = f"  ({record.why})" if is_kept_back and record.why else ""
+        return f"{head}  {values}{effort_text(record)}{risks}{why}"
     outcome = record.outcome
     is_observed = outcome.status == "observed"
     what = observation_text(outcome.response, outcome.numbers) if is_observed else outcome.status
