@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from models import built_bundle
+from mappings import mapping_text
+from models import built_bundle, built_text
 from scripted_missions import Surroundings, jammed, observed, run_mission, timed_out
 
 from aos_protocol.messages import Activate, Fault, Outcome, Steer
@@ -141,6 +142,49 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
     assert [state.remark for state in around.states if state.phase == "holding"] == [
         "the mission holds, for no skill can be run: its adapter has left"
     ]
+    assert state.ending == "goal"
+
+
+FIELD = """project: field
+horizon: 8
+discount: 0.95
+
+state_variable: bool is_north
+
+state_variable: bool is_flooded
+
+state_variable: bool is_watered
+
+reward_code:
+if (state.is_watered) {
+    __reward = 3;
+    __isGoalState = true;
+}
+"""
+
+FIELD_SKILLS = {
+    "drive": "state__.is_north = !state.is_north; __reward = -1;",
+    "flood": "__reward = state.is_north && !state.is_flooded ? 20 : -5; state__.is_flooded = state.is_north;",
+    "water": "__reward = state.is_north ? -5 : 0; state__.is_watered = !state.is_north;",
+}
+
+
+async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can_run(cache_dir: Path) -> None:
+    files = {"field.ef": FIELD}
+    for skill, code in FIELD_SKILLS.items():
+        files[f"{skill}.sd"] = f"project: field\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
+        files[f"{skill}.am"] = mapping_text("done", project="field", skill=skill)
+    built = await built_text(files, cache_dir)
+
+    def robot(request: Activate) -> Outcome:
+        return observed(request, "done")
+
+    around = Surroundings(robot)
+    around.unavailable = {"flood": "its adapter has left"}
+    state, _ = await run_mission(built, robot, limits=MissionLimits(step_limit=20), around=around)
+    decisions = [record for record in around.records if record.outcome is None]
+    assert [decision.skill for decision in decisions] == ["drive", *["water"] * 3, "drive", "water"]
+    assert "flood is left out after 3 decisions for want of it: its adapter has left" in decisions[-1].why
     assert state.ending == "goal"
 
 

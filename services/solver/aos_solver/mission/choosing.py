@@ -18,6 +18,7 @@ from aos_solver.mission.endings import remark_of as remark_of_ending
 from aos_solver.mission.endless_loops import EndlessLoops
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.made_searches import MadeSearches
+from aos_solver.mission.passed_over import PassedOver
 from aos_solver.mission.ports import Available
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.steering import Asked
@@ -66,6 +67,7 @@ class Chooser:
         self._around = around
         self._budget = budget
         self._left_out = left_out
+        self._passed_over = PassedOver()
         self._searches = MadeSearches()
         self._idle = 0  # decisions in a row
         self._endless = EndlessLoops()
@@ -145,6 +147,8 @@ class Chooser:
                 if action.skill not in without.reasons and action.name not in without.reasons
             ]
             if not set(possible) - forbidden:
+                if self._is_searched_anew():
+                    continue
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
             unavailable = self._around.unavailable
             barred = {
@@ -166,20 +170,33 @@ class Chooser:
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
             ended = await self._ending(engine, plan, belief, without)
+            if ended is not None and ended.ending in _GIVES_UP and self._is_searched_anew():
+                continue
             told = await self._endless.newly_found(engine)
-            told += _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
+            kept_back = _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
+            told += [f"{name} cannot be chosen now: {why}" for name, why in kept_back.items()]
             plan = _explained(plan, without.reasons, is_cautious, told)
             if ended is not None:
                 return ended
+            away = {actions[number].skill for number in barred if actions[number].name in kept_back}
+            self._passed_over.count(away & unavailable.keys())
             chosen_by, searches = self.search.chosen_by, self._searches.told()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
+
+    def _is_searched_anew(self) -> bool:
+        """Returns whether skills were passed over; they are not any more, as their adapters may come back."""
+        if not self._passed_over.reasons(self._around.unavailable):
+            return False
+        self._passed_over.forget()
+        return True
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
 
     def _without(self, engine: Engine) -> _Without:
         """The skills and actions of the model that are set aside or left out."""
-        wanted = {**self._set_aside(), **self._left_out()}
+        passed_over = self._passed_over.reasons(self._around.unavailable)
+        wanted = {**passed_over, **self._set_aside(), **self._left_out()}
         actions = engine.description.actions
         skills = {action.skill for action in actions}
         numbers = [number for number, action in enumerate(actions) if action.name in wanted]
@@ -287,10 +304,10 @@ def _nothing_left(set_aside: Mapping[str, str]) -> str:
     return f"nothing is left that is worth doing: {'; '.join(set_aside.values())}"
 
 
-def _kept_back(plan: Plan, barred: Mapping[str, str]) -> list[str]:
+def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
     """The actions that are worth more than the choice and cannot be carried out now, with the reasons."""
     better = [value.action for value in plan.actions if value.q > plan.best.q and value.action in barred]
-    return [f"{action} cannot be chosen now: {barred[action]}" for action in better]
+    return {action: barred[action] for action in better}
 
 
 def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:

@@ -1,0 +1,32 @@
+"""Skills that nobody can run now: after some decisions for want of them the planner searches without them."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+
+_DECISIONS = 3
+"""An adapter may be on its way back. Without an end a robot would get ready for its skills for ever."""
+
+
+class PassedOver:
+    """Counts the decisions in which a skill was worth more than what was chosen, while it was unavailable."""
+
+    def __init__(self) -> None:
+        self._decisions: Counter[str] = Counter()
+
+    def count(self, skills: Iterable[str]) -> None:
+        """One more decision has passed over these."""
+        self._decisions.update(set(skills))
+
+    def reasons(self, unavailable: Mapping[str, str]) -> dict[str, str]:
+        """Returns the skills to do without, each with the reason; what is available again begins anew."""
+        for skill in self._decisions.keys() - unavailable.keys():
+            del self._decisions[skill]
+        return {
+            skill: f"{skill} is left out after {count} decisions for want of it: {unavailable[skill]}"
+            for skill, count in self._decisions.items()
+            if count >= _DECISIONS
+        }
+
+    def forget(self) -> None:
+        """Lets the planner search with all of them again."""
+        self._decisions.clear()
