@@ -1,11 +1,13 @@
-"""The table of the actions' values."""
+"""The tables of the actions' values and of simulated missions."""
 
 import math
 
 import pytest
 
-from aos_deploy.views.tables import print_values
+from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.messages import ActionValue
+from aos_solver.mission.endings import Ending
+from aos_solver.mission.simulation import SimulatedRun
 
 
 def test_what_a_policy_never_chooses_has_a_dash_for_its_value(capsys: pytest.CaptureFixture[str]) -> None:
@@ -40,3 +42,16 @@ def test_a_narrow_terminal_cuts_no_value(
     assert "-14.798" in table
     assert "…" not in table
     assert all(len(line) <= int(columns) for line in table.splitlines())
+
+
+@pytest.mark.parametrize("columns", ["50", "100"])
+def test_what_missions_did_stands_below_a_narrow_table(
+    columns: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    run = SimulatedRun(7, -1.0, -1.0, Ending.STEP_LIMIT, 1, ("listen",), ("tiger_left",))
+    print_runs([run], {"runs": 1, "mean_discounted_return": -1, "mean_steps": 1}, has_goals=False)
+    lines = capsys.readouterr().out.splitlines()
+    assert any("step_limit" in line and "-1.0" in line for line in lines)
+    assert ("7: listen → tiger_left" in lines) == (columns == "50")
+    assert sum("listen → tiger_left" in line for line in lines) == 1

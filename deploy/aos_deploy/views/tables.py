@@ -1,7 +1,7 @@
 """Tables for people: the value of each action, and simulated missions."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from rich.bar import Bar
 from rich.table import Table
@@ -23,6 +23,8 @@ VALUE_WIDTH = 22
 """The width of the value, of a bar of one letter, and of the lines between."""
 
 STORY_WIDTH = 120
+NARROW = 80
+"""The width below which the missions' actions stand below the table."""
 FIRST_STEPS, LAST_STEPS = 8, 6
 """A mission with more steps is told without those between; `--json` has them."""
 
@@ -93,17 +95,14 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_g
     for run in runs:
         if run.states:
             print_states(run)
-    table = Table()
-    for name in ("seed", "world", "mission", "steps", "return"):
-        is_text = name in ("world", "mission")
-        table.add_column(name, justify="left" if is_text else "right", overflow="fold")
-    table.add_column("actions and observations", max_width=STORY_WIDTH, overflow="fold")
-    for run in runs:
-        story = ", ".join(_story(run))
-        world = run.world_ending.value if run.world_ending is not None else "goes on"
-        table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
     out = console(is_wide=True)
-    out.print(table)
+    stories = {run.seed: ", ".join(_story(run)) for run in runs}
+    if out.width >= NARROW:
+        out.print(_runs_table(runs, stories))
+    else:
+        out.print(_runs_table(runs))
+        for seed, story in stories.items():
+            out.print(f"{seed}: {story}")
     error = f" ± {summary['stderr']:.2f}" if "stderr" in summary else ""
     endings = (
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
@@ -113,6 +112,21 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_g
     )
     returned = f"discounted return {summary['mean_discounted_return']:+.2f}{error}"
     out.print(f"{endings}, {returned}, {summary['mean_steps']:.1f} steps")
+
+
+def _runs_table(runs: Iterable[SimulatedRun], stories: Mapping[int, str] | None = None) -> Table:
+    """A row for each mission, with what it did by its seed where that stands in the table."""
+    table = Table()
+    for name in ("seed", "world", "mission", "steps", "return"):
+        is_text = name in ("world", "mission")
+        table.add_column(name, justify="left" if is_text else "right", overflow="fold")
+    if stories is not None:
+        table.add_column("actions and observations", max_width=STORY_WIDTH, overflow="fold")
+    for run in runs:
+        world = run.world_ending.value if run.world_ending is not None else "goes on"
+        story = () if stories is None else (stories[run.seed],)
+        table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", *story)
+    return table
 
 
 def _story(run: SimulatedRun) -> list[str]:
