@@ -101,10 +101,16 @@ async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_c
     assert_refused(await waiting, "AOS505", "no adapter answers calls of /sense")
 
 
-async def test_an_adapter_that_cannot_be_cancelled_is_not_called_again(system: System) -> None:
-    await system.adapter.serve("/sense", hang)
+async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system: System) -> None:
+    await system.adapter.serve(
+        "/sense", lambda call: hang(call) if call.id.step == 1 else answering({})(call)
+    )
     assert (await system.activate("sense", 1)).status == "timed_out"
     assert_refused(await system.activate("sense", 2), "AOS512", "/sense may still be moving")
+    await system.state_when(lambda state: "/sense may still" in state.unavailable.get("sense", ""))
+    await system.adapter.serve_cancel("/sense")
+    await system.state_when(lambda state: "sense" not in state.unavailable)
+    assert (await system.activate("sense", 3)).status == "observed"
 
 
 async def test_a_skill_whose_time_is_over_when_the_earlier_one_stands_still_is_not_called(

@@ -80,7 +80,7 @@ class _Middleware:
             published={},
             low_level=self._low_level,
             served=self._served,
-            gate=MotionGate(service.bus, service.keys, self._served),
+            gate=MotionGate(service.bus, service.keys, self._served, self._tell_state),
             on_stray=self._ledger.note,
             is_played=settings.is_played,
             monitors=self._monitors,
@@ -98,6 +98,7 @@ class _Middleware:
             await bus.answer(keys.mapping_state, MappingQuery, self._answer_state)
             await self._service.ready()
             tasks.create_task(self._served.follow())
+            tasks.create_task(self._around.gate.follow())
             tasks.create_task(self._monitors.run())
             tasks.create_task(registry.follow())
             async for _, revision in announced:
@@ -117,9 +118,10 @@ class _Middleware:
 
     def _state(self) -> MappingState:
         """The mappings that run, which of their skills nobody could run, and how often adapters came."""
-        why = {skill: self._served.why_unavailable(path) for skill, path in self._mappings.paths.items()}
+        shut, paths = self._around.gate.shut, self._mappings.paths
+        why = {skill: self._served.why_unavailable(path) or shut for skill, path in paths.items()}
         unavailable = {skill: reason for skill, reason in why.items() if reason}
-        announced = {skill: self._served.announced(path) for skill, path in self._mappings.paths.items()}
+        announced = {skill: self._served.announced(path) for skill, path in paths.items()}
         self._stamp_ns = max(self._stamp_ns + 1, self._service.clock.now_ns())
         return msgspec.structs.replace(
             self._mappings.state, unavailable=unavailable, announced=announced, stamp_ns=self._stamp_ns
