@@ -2,6 +2,7 @@
 
 import errno
 import os
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
@@ -56,9 +57,9 @@ _STYLE: dict[str, Any] = {
 }
 
 
-def main() -> NoReturn:
-    """`aos`."""
-    _run(lambda: aos_app(sys.argv[1:]), "aos")
+def main(has_imported: Callable[[], object] = lambda: None) -> NoReturn:
+    """`aos`; `has_imported` is called before its command runs."""
+    _run(lambda: aos_app(sys.argv[1:]), "aos", has_imported)
 
 
 def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
@@ -77,9 +78,9 @@ def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
     return app
 
 
-def up_main() -> NoReturn:
-    """`aos-up`."""
-    _run(_up_app, "aos-up")
+def up_main(has_imported: Callable[[], object] = lambda: None) -> NoReturn:
+    """`aos-up`, as `main`."""
+    _run(_up_app, "aos-up", has_imported)
 
 
 def _up_app() -> typer.Typer:
@@ -106,13 +107,11 @@ def _own_options(version: Version = False) -> None:
     program."""
 
 
-def _run(make_app: Callable[[], typer.Typer], name: str) -> NoReturn:
+def _run(make_app: Callable[[], typer.Typer], name: str, has_imported: Callable[[], object]) -> NoReturn:
     """Runs the command and ends the process: an AosError as its diagnostics and one line on stderr."""
     write_what_fits(sys.stdout)
-    try:
-        app = make_app()
-    except KeyboardInterrupt:  # Its imports can take a second.
-        sys.exit(ExitCode.INTERRUPTED)
+    app = make_app()
+    has_imported()
     try:
         try:
             app(prog_name=name)
@@ -121,6 +120,12 @@ def _run(make_app: Callable[[], typer.Typer], name: str) -> NoReturn:
                 sys.stdout.flush()
     except AosError as error:
         _end(name, error)
+    except SystemExit as error:
+        if isinstance(error.__context__, BrokenPipeError):
+            _end_unread()
+        raise
+    except BrokenPipeError:
+        _end_unread()
     except OSError as error:
         if error.errno in _UNUSABLE and error.filename is not None:
             sys.stderr.write(f"{name}: {error.filename} cannot be used: {error.strerror}\n")
@@ -131,6 +136,13 @@ def _run(make_app: Callable[[], typer.Typer], name: str) -> NoReturn:
         sys.stderr.flush()
         os._exit(ExitCode.NOT_STARTED)  # Python would write the rest once more.
     sys.exit(0)
+
+
+def _end_unread() -> NoReturn:
+    """Ends as any program does whose reader has gone, such as `head`: by SIGPIPE, which Python ignores."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    os.kill(os.getpid(), signal.SIGPIPE)
+    os._exit(128 + signal.SIGPIPE)
 
 
 def _end(name: str, error: AosError) -> NoReturn:

@@ -1,5 +1,6 @@
 """Options that several commands have, and what every program of ours understands: -h, --help, --version."""
 
+import errno
 import math
 import os
 from pathlib import Path
@@ -42,6 +43,14 @@ def writable(path: Path | None) -> Path | None:
         raise typer.BadParameter(f"{path} is a folder")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise typer.BadParameter(f"{path} cannot be written")
+    try:
+        if path.is_char_device() and not path.samefile("/dev/null"):
+            with path.open("wb", buffering=0) as device:
+                _ = device.isatty() or device.write(b"\0")
+        elif os.statvfs(path.parent).f_bavail == 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    except OSError as error:
+        raise typer.BadParameter(f"{path} cannot be written: {error.strerror}") from None
     return path
 
 

@@ -43,7 +43,7 @@ def textmate_grammar() -> str:
         ],
         "repository": {"own": {"patterns": own}},
     }
-    return json.dumps(grammar, indent=2) + "\n"
+    return json.dumps(grammar) + "\n"
 
 
 def _is(word: tuple[str, Any], body: Body) -> bool:

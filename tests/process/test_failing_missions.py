@@ -240,22 +240,6 @@ async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the
     assert "grab" not in [record.skill for record in around.decisions]
 
 
-async def test_a_skill_comes_back_with_its_adapter(tutorial: BuiltModel) -> None:
-    def robot(request: Activate) -> Outcome:
-        if request.skill == "look":
-            return observed(request, "seen_left")
-        tries = sum(record.skill == "take" for record in around.decisions)
-        if tries == 3:
-            around.announced = {"take": 2}
-        return jammed(request) if tries < 4 else observed(request, "taken")
-
-    around = Surroundings(robot)
-    around.announced = {"take": 1}
-    state, _ = await run_mission(tutorial, robot, limits=LIMITS, around=around)
-    assert state.ending == "goal"
-    assert [record.skill for record in around.decisions].count("take") == 4
-
-
 async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure(cache_dir: Path) -> None:
     built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
     around = Surroundings(jammed)
@@ -272,24 +256,6 @@ async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure
     looks = [record.step for record in around.decisions if record.skill == "look"]
     # The third failure was at 30 s, and the one after the pause at 90 s.
     assert looks == [1, 2, 3, 9]
-
-
-async def test_the_mission_ends_at_its_limit_of_failures(cache_dir: Path) -> None:
-    built = await built_text(fetch(look=LOOK, ask=ASK, take=TAKE), cache_dir)
-
-    def robot(request: Activate) -> Outcome:
-        if request.id.step % 2:
-            return jammed(request)
-        answers = {"look": f"seen_{side(request)}", "ask": f"said_{side(request)}", "take": "missed"}
-        return observed(request, answers[request.skill])
-
-    def side(request: Activate) -> str:
-        return "left" if request.id.step % 4 else "right"
-
-    state, around = await run_mission(built, robot, limits=LIMITS, rules=FailureRules(failure_limit=6))
-    assert state.ending == "skills_failed"
-    assert state.remark.startswith("6 activations of the mission have failed, the last ")
-    assert len(around.decisions) == 11
 
 
 def told_failure(request: Activate, response: str) -> Outcome:

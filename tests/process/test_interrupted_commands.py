@@ -6,9 +6,8 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import pytest
 from processes import HANG_S
@@ -42,20 +41,6 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
     assert done.exit_code == 130
     assert [run["seed"] for run in json.loads(done.stdout)["runs"]] == [1, 2]
     assert "stopped after 2 of 5 missions" in done.stderr
-
-
-@pytest.mark.parametrize("main", [cli.main, cli.up_main])
-def test_ctrl_c_while_a_command_is_imported_is_no_traceback(
-    monkeypatch: pytest.MonkeyPatch, main: Callable[[], NoReturn]
-) -> None:
-    def interrupted(_: str) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(cli, "import_module", interrupted)
-    monkeypatch.setattr(sys, "argv", ["aos", "lint"])
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert end.value.code == 130
 
 
 @pytest.mark.parametrize("program", ["aos", "aos-up"])

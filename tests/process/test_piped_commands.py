@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -43,6 +44,15 @@ def test_an_output_that_cannot_be_written_is_told_in_one_line() -> None:
         )
     assert done.returncode == 3
     assert done.stderr == "aos: the output cannot be written: No space left on device\n"
+
+
+@pytest.mark.parametrize("command", [("schema", "deploy"), ("doctor",)])
+def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str, ...]) -> None:
+    with subprocess.Popen([AOS, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as done:
+        assert done.stdout is not None
+        done.stdout.close()
+        _, said = done.communicate(timeout=COMMAND_S)
+    assert (done.returncode, said) == (-signal.SIGPIPE, b"")
 
 
 def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path) -> None:

@@ -104,6 +104,12 @@ def test_inspect_prints_the_documents_with_their_places(bundles: Path) -> None:
     assert "pick.am:3:11" in result.output
 
 
+@pytest.mark.parametrize("stage", ["documents", "model", "cpp", "python"])
+def test_inspect_prints_each_stage_as_json(bundles: Path, stage: str) -> None:
+    result = aos("inspect", bundles / "armadillo-rough", "--stage", stage, "--json")
+    assert "pick" in str(json.loads(result.output)[stage])
+
+
 def test_inspect_prints_the_python_of_one_skill(bundles: Path) -> None:
     arguments = ["inspect", str(bundles / "armadillo-finer"), "--stage", "python", "--skill", "pick"]
     result = aos(*arguments)

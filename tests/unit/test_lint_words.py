@@ -307,6 +307,12 @@ def test_endings_that_are_all_penalised_are_a_warning(reward: str) -> None:
     assert [finding.severity for finding in findings if finding.code == "AOS139"] == [Severity.WARNING]
 
 
+def test_an_ending_that_a_skill_may_pay_for_is_remarked() -> None:
+    environment = ENVIRONMENT.replace("__reward = 10;", "")
+    findings = found(environment=environment, skill=SKILL + "__reward = 10;\n")
+    assert [finding.severity for finding in findings if finding.code == "AOS139"] == [Severity.REMARK]
+
+
 @pytest.mark.parametrize("reward", ["__reward += 3;", "__reward = near;", "__isFailureState = false;"])
 def test_an_ending_that_may_be_a_goal_is_none(reward: str) -> None:
     environment = ENVIRONMENT.replace("__reward = 10;", reward.replace("near", "state.near"))

@@ -6,7 +6,6 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
-import msgspec
 import typer
 
 from aos_deploy.bundle_files import planned_of, with_mission
@@ -161,23 +160,31 @@ def inspect(
     bundle: FolderOrDeployFile,
     stage: Annotated[Stage, typer.Option(help="Which stage to print")] = Stage.DOCUMENTS,
     skill: Annotated[str, typer.Option(help="Only this skill's module, for the stage python")] = "",
+    as_json: AsJson = False,
 ) -> None:
     """Print what becomes of a bundle.
 
     The typed documents, the lowered model, the C++ or the Python. A deploy file's constraints and values are
-    in the model.
+    in the model. With --json it is an object with the stage as its key.
     """
     planned = planned_of(bundle)
     loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
     if loaded.project is None:
         raise refusal(bundle, loaded.diagnostics)
     project = with_mission(loaded.project, planned.constraints, planned.values, planned.sources)
-    if stage is Stage.DOCUMENTS:
-        typer.echo(outline(project), nl=False)
-    elif stage is Stage.PYTHON:
-        typer.echo(_python_modules(project, skill), nl=False)
+    found: object = project
+    if stage is Stage.PYTHON:
+        found = _python_modules(project, skill)
+    elif stage is not Stage.DOCUMENTS:
+        found = _solver_stage(project, stage, bundle)
+    if as_json:
+        print_json({stage.value: found})
+    elif isinstance(found, str):
+        typer.echo(found, nl=False)
+    elif stage is Stage.MODEL:
+        print_json(found)
     else:
-        typer.echo(_solver_stage(project, stage, bundle), nl=False)
+        typer.echo(outline(project), nl=False)
 
 
 def _python_modules(project: Project, only: str) -> str:
@@ -194,16 +201,15 @@ def _python_modules(project: Project, only: str) -> str:
     return "\n\n".join(mapping.python for mapping in emitted)
 
 
-def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:
+def _solver_stage(project: Project, stage: Stage, bundle: Path) -> object:
+    """The lowered model, or its C++ as text."""
     from aos_solver.emission.emit import emit  # As above.
     from aos_solver.emission.lower import lower
 
     program, diagnostics = lower(project)
     if program is None:
         raise refusal(bundle, diagnostics)
-    if stage is Stage.CPP:
-        return emit(program).cpp
-    return msgspec.json.format(msgspec.json.encode(program), indent=2).decode() + "\n"
+    return emit(program).cpp if stage is Stage.CPP else program
 
 
 def refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...]) -> DocumentError:

@@ -80,7 +80,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
     if scope.shared_mapping_code is not None:
         check_shared_mapping_code(scope.shared_mapping_code, mappings, scope, findings)
     if is_whole and assembly.environment is not None:
-        check_goals(assembly.environment, findings)
+        check_goals(assembly.environment, assembly.models.values(), findings)
         check_shared_names_are_used(assembly.environment, assembly.models.values(), findings)
         check_unused_variables(assembly.environment, assembly.models.values(), findings)
 

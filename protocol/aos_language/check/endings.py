@@ -1,10 +1,11 @@
 """Endings that the documents leave to the sign of a reward."""
 
 import re
+from collections.abc import Iterable
 
-from aos_language.check.blocks import SPECIAL, assignment_blocks
+from aos_language.check.blocks import DYNAMIC, SPECIAL, assignment_blocks
 from aos_language.findings import Findings
-from aos_protocol.documents import Environment, SpecialState
+from aos_protocol.documents import Environment, SkillModel, SpecialState
 
 _NEGATIVE = re.compile(r"\b__reward\s*(?:=\s*-|-=)")
 _OTHER_REWARD = re.compile(r"\b__reward\s*[+*/]?=(?!=|\s*(?:-|0*\.?0*\s*;))")
@@ -30,15 +31,21 @@ def check_endings(environment: Environment, findings: Findings) -> None:
             findings.remark("AOS137", message, special.span, f"If it is a failure, say so with {word}")
 
 
-def check_goals(environment: Environment, findings: Findings) -> None:
-    """Reports AOS139 where no ending can be a goal. Tasks that go on have none, so without endings it is a
-    remark."""
+def check_goals(environment: Environment, models: Iterable[SkillModel], findings: Findings) -> None:
+    """Reports AOS139 where no ending can be a goal. It is a remark without endings, as tasks that go on have
+    none, and where a skill may pay for an ending whose own reward is 0."""
     endings = [special for special in environment.special_states if _may_end(special)]
     if not endings:
         message = "no special state ends the mission: it runs until its step limit"
         hint = "If it has a goal, set `__isGoalState = true;` in a `reward_code:`"
         findings.remark("AOS139", message, environment.span, hint)
     elif not any(_may_be_goal(special) for special in endings):
+        unpaid = [special for special in endings if _is_neither(special)]
+        if unpaid and any(_pays(model) for model in models):
+            message = "no ending is a goal: the reward of this one is 0, whatever a skill pays for it"
+            hint = "If it is a goal, say so with `__isFailureState = false;` (SDL: `is_failure_state: false`)"
+            findings.remark("AOS139", message, unpaid[0].span, hint)
+            return
         message = "no ending is a goal: of each the reward is negative or 0, or it says that it is a failure"
         findings.warning("AOS139", message, endings[0].span, "Give the goal a positive reward")
 
@@ -57,6 +64,17 @@ def _may_be_goal(special: SpecialState) -> bool:
         return False
     # One piece of code may tell several endings.
     return "__isFailureState" in code or _OTHER_REWARD.search(code) is not None
+
+
+def _is_neither(special: SpecialState) -> bool:
+    code = _code(special)
+    is_told = special.is_failure is not None or "__isFailureState" in code
+    return not is_told and not _is_negative(special, code) and _is_nothing(special, code)
+
+
+def _pays(model: SkillModel) -> bool:
+    blocks = assignment_blocks(DYNAMIC, model.dynamic_model)
+    return any(_OTHER_REWARD.search(block.snippet.code) for block in blocks)
 
 
 def _code(special: SpecialState) -> str:

@@ -1,5 +1,6 @@
 """The compiler's messages as diagnostics at the documents' places."""
 
+import math
 import re
 
 import msgspec
@@ -63,6 +64,8 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             outside.append(f"{message.file}:{message.line}:{message.column}: {message.text}")
             continue
         text, hint = _plain(message.text)
+        if not _may_be_meant(hint, emitted):
+            hint = ""
         if not hint and (unknown := _NOT_DECLARED.fullmatch(text)) is not None:
             name = unknown[1] or unknown[2]
             of_python = f"C++ writes `{_OF_PYTHON[name]}`" if name in _OF_PYTHON else ""
@@ -70,6 +73,14 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
         diagnostics.append(diagnostic)
     return CompilerReport(tuple(_without_repeats(diagnostics)), tuple(outside))
+
+
+def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
+    """Returns whether a document may name what the compiler suggests, which knows all of C's library."""
+    suggested = re.fullmatch(r"Did you mean `(\w+)`\?", hint)
+    if suggested is None or hasattr(math, suggested[1]):
+        return True
+    return re.search(rf"\b{suggested[1]}\b", emitted.cpp) is not None
 
 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:

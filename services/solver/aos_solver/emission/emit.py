@@ -42,9 +42,9 @@ class EmittedModel(msgspec.Struct, frozen=True):
     `locals` are the local variables that the engine wants with a real observation, for each skill whose
     observations correct the belief; `observed` are the numbers that a skill reports. `choosing_skills` are
     those whose parameters stand for state variables. `bounds` are the mission's constraints, in the order of
-    the model's. `names` are those of shared code and enum values, which every section sees. `layout` is that
-    of the state. The responses of `texting_skills` may be any text. `parameters` are the parts of mission
-    parameters, by name: what may be set when the engine is started.
+    the model's. `names` are those of types, shared code and enum values, which every section sees. `layout`
+    is that of the state. The responses of `texting_skills` may be any text. `parameters` are the parts of
+    mission parameters, by name: what may be set when the engine is started.
     """
 
     project: str
@@ -103,7 +103,7 @@ def emit(program: Program) -> EmittedModel:
         choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
         layout=layout_of(program),
         texting_skills=frozenset(skill.name for skill in program.skills if skill.has_text_response),
-        names=program.shared_names | {value for enum in program.enums for value in enum.values},
+        names=_names_of_types(program) | program.shared_names | _values(program),
         parameters={leaf.name: leaf for leaf in program.leaves},
         bounds=tuple(
             Bound(constraint.never.snippet.code, constraint.probability) for constraint in program.constraints
@@ -149,13 +149,17 @@ def _templates() -> Environment:
 # --- facts for the templates ---
 
 
+def _names_of_types(program: Program) -> frozenset[str]:
+    return frozenset(declared.name for declared in (*program.enums, *program.compounds))
+
+
+def _values(program: Program) -> frozenset[str]:
+    return frozenset(value for enum in program.enums for value in enum.values)
+
+
 def _own_names(program: Program) -> dict[str, str]:
-    used_names = {enum.name for enum in program.enums} | {compound.name for compound in program.compounds}
-    used_names |= {variable.name for variable in program.variables}
-    used_names |= program.shared_names
-    used_names |= {value for enum in program.enums for value in enum.values} | set(
-        program.low_level_constants
-    )
+    used_names = _names_of_types(program) | program.shared_names | _values(program)
+    used_names |= {variable.name for variable in program.variables} | set(program.low_level_constants)
     names = {}
     for name in _OWN_NAMES:
         free = name
