@@ -24,6 +24,7 @@ settings = {
     "scouting": {"multicast": {"enabled": False}},
     "transport": {
         "shared_memory": {"enabled": False},
+        "link": {"tx": {"lease": 800}},
         "auth": {"usrpwd": {"user": os.environ["AOS_USER"], "password": password}},
     },
 }

@@ -6,7 +6,8 @@ they need not wait for it. Readiness is then awaited in the order of the program
 service, the first path that a command serves. They are stopped in the reverse order, the router last.
 
 A service that ends before it is told to ends the supervision with the fault it left, unless its program says
-that it may be started again. One that is frozen is killed. `_watch` is the only place that sees a service
+that it may be started again. One that is frozen, which a program of the user's own may be by SIGSTOP alone,
+is killed. `_watch` is the only place that sees a service
 end.
 """
 
@@ -247,8 +248,8 @@ class Supervisor:
                     running = self._running.get(keys.service_of(key))
                 if running is not None and is_alive and not running.is_ready:
                     self._is_ready(running)
-                elif running is not None and not is_alive and serving is None:
-                    self._is_silent(running)
+                elif running is not None and not is_alive:
+                    self._is_silent(running, serves_less=serving is not None)
 
     def _command_behind(self, serving: Serving) -> RunningProgram | None:
         """The command that serves a path, by its name in the token or by what is bound to it."""
@@ -259,11 +260,20 @@ class Supervisor:
                 return running
         return None
 
-    def _is_silent(self, running: RunningProgram) -> None:
-        """A service has left the bus: it ends, or it is frozen."""
-        running.is_ready = False
+    def _is_silent(self, running: RunningProgram, *, serves_less: bool) -> None:
+        """A service has left the bus, or a program of the user's own a path: it ends, or it is frozen."""
+        running.is_ready = running.is_ready and serves_less
         if running.program.is_restarted and running.silence is None:
-            running.silence = self._beside(self._kill_if_frozen(running))
+            look = self._kill_if_stopped if serves_less else self._kill_if_frozen
+            running.silence = self._beside(look(running))
+
+    async def _kill_if_stopped(self, running: RunningProgram) -> None:
+        """Kills a program of the user's own that SIGSTOP has stopped. Others may serve less for a while."""
+        child = running.child
+        await asyncio.sleep(FROZEN_S)
+        running.silence = None
+        if running.child is child and child.is_frozen():
+            self._kill_frozen(running)
 
     async def _kill_if_frozen(self, running: RunningProgram) -> None:
         child, router = running.child, self._running[ROUTER.name]
@@ -284,7 +294,7 @@ class Supervisor:
         if running.child.returncode is None:
             running.is_ready = False
             self._changed(running.program.name, "frozen", f"silent for {FROZEN_S:g} s; it is killed")
-            running.child.kill()
+            _end_at_once(running)
 
     def _is_ready(self, running: RunningProgram, state: str = "ready") -> None:
         if running.silence is not None:
@@ -350,7 +360,7 @@ class Supervisor:
         """Ends every process at once; what they have started ends with them."""
         self._is_stopping = True
         for running in self._running.values():
-            (running.child.end_at_once if running.program.is_guarded else running.child.kill)()
+            _end_at_once(running)
 
     async def _stop_one(self, name: str) -> None:
         running = self._running.get(name)
@@ -377,3 +387,7 @@ class Supervisor:
     def _changed(self, service: str, state: str, detail: str = "") -> None:
         after_s = self._clock.monotonic_s() - self._started_s
         self._report(ServiceChanged(service, state, round(after_s, 3), detail))
+
+
+def _end_at_once(running: RunningProgram) -> None:
+    (running.child.end_at_once if running.program.is_guarded else running.child.kill)()

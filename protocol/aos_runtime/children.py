@@ -151,8 +151,9 @@ class Child:
         return self._process.returncode
 
     def is_frozen(self) -> bool:
-        """Returns whether a signal such as SIGSTOP has stopped it, or a process that it has started."""
-        return self.returncode is None and any(map(_is_stopped, (self.pid, *_children(self.pid))))
+        """Returns whether a signal such as SIGSTOP has stopped it, or a process that it or one of its has
+        started."""
+        return self.returncode is None and _is_stopped(self.pid)
 
     async def in_time(self, awaited: Awaitable[T], deadline_s: float) -> T:
         """The result of what it does; TimeoutError where that takes it longer than `deadline_s`.
@@ -262,6 +263,7 @@ def _starved_s(pid: int) -> float:
 def _is_stopped(pid: int) -> bool:
     try:
         # The state follows the name, which may itself have brackets.
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "T"
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
         return False
+    return state == "T" or any(map(_is_stopped, _children(pid)))

@@ -200,16 +200,18 @@ async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_ser
     assert system.order("starting").count("robot") == 1
 
 
-async def test_a_command_that_starts_again_is_ready_again(system: System) -> None:
+@pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+async def test_a_command_that_starts_again_is_ready_again(system: System, death: signal.Signals) -> None:
     async with (
         asyncio.timeout(HANG_S),
         system.up(command("python", "small_command.py", is_restarted=True)) as supervisor,
     ):
         await system.until("robot", "ready")
-        kill(supervisor.pids["robot"])
+        os.kill(descendants(supervisor.pids["robot"])[-1], death)
         await system.until("robot", "ready", times=2)
-    states = [event.state for event in system.events if event.service == "robot"]
+    states = [event.state for event in system.events if event.service == "robot" and event.state != "frozen"]
     assert states[:5] == ["starting", "ready", "ended", "starting", "ready"]
+    assert [end.how for end in system.ends] == ["killed by SIGKILL"]
 
 
 async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System) -> None:
