@@ -15,6 +15,7 @@ from aos_deploy.restarts import STARTS
 from aos_protocol.errors import AosError, DeployError, DocumentError
 
 NAMES = ("registry", "middleware", "skills", "solver")
+DEATHS = pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 
 
 @pytest.fixture
@@ -97,10 +98,11 @@ async def test_the_death_of_a_service_that_is_not_started_again_ends_the_system(
     assert not any(is_running(pid) for pid in system.pids)
 
 
-async def test_a_service_that_dies_is_started_again_and_ready_again(system: System) -> None:
+@DEATHS
+async def test_a_service_that_dies_or_freezes_is_started_again(system: System, death: signal.Signals) -> None:
     async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
         await supervisor.until_ready()
-        kill(supervisor.pids["solver"])
+        os.kill(supervisor.pids["solver"], death)
         await system.until("solver", "ready", times=2)
     (end,) = system.ends
     assert (end.name, end.how, end.then) == ("solver", "killed by SIGKILL", "it is started again")
@@ -114,14 +116,6 @@ async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(syste
         await system.until("router", "ready", times=2)
         await system.until("solver", "ready", times=2)
         assert supervisor.pids["solver"] == pid, "the service was not started again"
-
-
-async def test_a_frozen_service_is_killed_and_started_again(system: System) -> None:
-    async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
-        await supervisor.until_ready()
-        os.kill(supervisor.pids["solver"], signal.SIGSTOP)
-        await system.until("solver", "frozen")
-        await system.until("solver", "ready", times=2)
 
 
 async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: System) -> None:
@@ -200,7 +194,7 @@ async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_ser
     assert system.order("starting").count("robot") == 1
 
 
-@pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+@DEATHS
 async def test_a_command_that_starts_again_is_ready_again(system: System, death: signal.Signals) -> None:
     async with (
         asyncio.timeout(HANG_S),
