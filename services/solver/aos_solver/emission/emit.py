@@ -150,7 +150,7 @@ def _templates() -> Environment:
 
 
 def _names_of_types(program: Program) -> frozenset[str]:
-    return frozenset(declared.name for declared in (*program.enums, *program.compounds))
+    return frozenset(e.name for e in program.enums) | {compound.name for compound in program.compounds}
 
 
 def _values(program: Program) -> frozenset[str]:
