@@ -154,6 +154,7 @@ def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, 
     assert told.splitlines()[:2] == [f"step 1: {records[0]['action']}", f"step 1: {response}"]
     assert told.splitlines()[-1] == "ended: goal"
     assert served.ask("/v1/missions/latest/decisions").json["records"] == records
+    assert served.ask("/v1/runs/latest").json["run"] == name
 
 
 def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]) -> None:

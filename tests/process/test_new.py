@@ -95,6 +95,7 @@ def test_a_new_skill_belongs_to_the_bundles_project() -> None:
 def test_every_example_is_whole_where_it_is_written(name: str) -> None:
     written = run(f"new example {name}")
     assert written.exit_code == 0, written.output
+    assert f"aos plan {name}/{name}.yaml --exact" in written.output  # A bundle may be a part of the whole.
     here = Path(name).resolve()
     deployment = read_deploy_file(Path(name, f"{name}.yaml"))
     assert all(bundle.is_relative_to(here) for bundle in deployment.bundles)

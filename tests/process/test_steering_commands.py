@@ -43,6 +43,7 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
             == f"{name}: step 2: open(door=right_door)\n"
         )
         (tmp_path / "actions.txt").write_text("# once more\nlisten\n")
+        assert "none.txt cannot be read: No such" in system.aos("mission", "script", "none.txt")[2]
         assert system.aos("mission", "script", "actions.txt")[1] == f"{name}: 1 action asked for\n"
         assert system.until("mission", phase="ended")["ending"] == "step_limit"
         code, _, error = system.aos("mission", "hold")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 mission_app = typer.Typer(
     no_args_is_help=True,
     help="Start, stop, list and steer missions. Further missions need `aos-up --stay`.",
-    epilog="Example: aos mission start --set target=bob --belief keep --given 'state.robot_at == Kitchen'",
+    epilog="Example: aos mission start --set target=bob --belief keep --given 'state.robot == kitchen'",
 )
 
 Belief = Annotated[

@@ -130,9 +130,7 @@ def example(
     target = folder or Path(name)
     _copy(deploy_files()[name], target)
     deploy = target / f"{name}.yaml"
-    typer.echo(f"Run it:      aos-up {deploy}")
-    for bundle in read_deploy_file(deploy).bundles:
-        typer.echo(f"Look at it:  aos plan {os.path.relpath(bundle)} --exact")
+    typer.echo(f"Run it:      aos-up {deploy}\nLook at it:  aos plan {deploy} --exact")
 
 
 @new_app.command(epilog="Example: aos new unit armadillo.yaml --user robot")

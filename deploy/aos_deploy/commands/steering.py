@@ -105,7 +105,8 @@ def actions_of_script(file: Path) -> tuple[str, ...]:
     try:
         lines = file.read_text().splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise DeployError(f"{file} cannot be read: {error}", code="AOS801") from error
+        why = getattr(error, "strerror", "it is no text")
+        raise DeployError(f"{file} cannot be read: {why}", code="AOS801") from error
     actions = tuple(line for line in (text.partition("#")[0].strip() for text in lines) if line)
     if not actions:
         raise DeployError(f"{file} has no action", code="AOS801", hint="Write one grounded action a line")

@@ -66,8 +66,11 @@ class RunShelf:
         return runs
 
     def run(self, name: str) -> Run:
-        """The run of this name; GatewayError AOS902 if there is none."""
-        found = self.runs().get(name)
+        """The run of this name, of `latest` this machine's newest; GatewayError AOS902 if there is none."""
+        runs = self.runs()
+        if name == LATEST:
+            name = next((one for one in runs if one not in self._remote), name)
+        found = runs.get(name)
         if found is None:
             raise GatewayError(f"there is no run {name}", code="AOS902", hint="GET /v1/runs lists them")
         return found
