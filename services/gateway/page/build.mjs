@@ -30,10 +30,14 @@ for (const name of ["index.html", "icon.svg"]) {
   await compress(join(folder, name), await readFile(join(here, "src", name)));
 }
 
+// The text of the Apache License comes with AOS already, which has the same.
+const apache = "Apache License 2.0, the text that comes with AOS as LICENSE: http://www.apache.org/licenses/LICENSE-2.0";
 const licences = [];
 for (const name of libraries) {
   const place = join(here, "node_modules", name);
   const { version } = JSON.parse(await readFile(join(place, "package.json"), "utf8"));
-  licences.push(`${name} ${version}\n\n${(await readFile(join(place, "LICENSE"), "utf8")).trim()}\n`);
+  const text = (await readFile(join(place, "LICENSE"), "utf8")).trim();
+  const told = text.startsWith("Apache License") ? apache : text;
+  licences.push(`${name} ${version}\n\n${told}\n`);
 }
 await compress(join(folder, "licences.txt"), licences.join(`\n${"-".repeat(72)}\n\n`));
