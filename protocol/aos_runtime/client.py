@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import uuid
 from collections.abc import AsyncGenerator, AsyncIterator, Iterable, Mapping
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,6 +18,7 @@ import msgspec
 
 from aos_protocol.access import OPERATOR, WATCHER, Party
 from aos_protocol.codec import UNREADABLE
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import (
     BusError,
     LateAnswerError,
@@ -32,11 +33,14 @@ from aos_protocol.messages import (
     DecisionTree,
     History,
     HistoryQuery,
+    MappingQuery,
+    MappingState,
     MissionEntry,
     MissionQuery,
     Missions,
     MissionsQuery,
     MissionState,
+    PushBundle,
     StartMission,
     StopMission,
     TreeQuery,
@@ -50,10 +54,16 @@ from aos_runtime.bus import Access, Bus
 from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
 from aos_runtime.decision_feed import DecisionFeed
 from aos_runtime.older_python import timeout
+from aos_runtime.reported_state import state_when
 from aos_runtime.steering import STEER_TIMEOUT_S, SteeringQuestions, start_mission
 from aos_runtime.subscription import Subscription, merged
 
 _HISTORY_TIMEOUT_S = 5.0
+_PUSH_TIMEOUT_S = 200.0
+"""The registry lets the solver compile a new model before it accepts it."""
+_ADAPTERS_S = 3.0
+"""An adapter that serves whatever documents name has this long to take up a new skill."""
+_TO_BIND = "It is chosen once an adapter serves its path: see `bind:` in the deploy file"
 _PAGE_RECORDS = 1000
 _HISTORY_TRIES = 3
 """A solver that builds or plans on all cores may be late with an answer."""
@@ -160,6 +170,35 @@ class AosClient(SteeringQuestions):
             server=self.keys.live("solver"),
             timeout_s=STEER_TIMEOUT_S,
         )
+
+    async def push(self, files: dict[str, bytes], source: str) -> BundleReport:
+        """Gives the registry documents. Its report also warns of what is new and nobody could run now.
+
+        Errors are those of `Bus.ask`.
+        """
+        bus, keys = self.bus, self.keys
+        bundle = PushBundle(files, source)
+        report = await bus.ask(keys.push_bundle, bundle, BundleReport, timeout_s=_PUSH_TIMEOUT_S)
+        async with bus.presence(keys.live("middleware")) as middleware:
+            if not (report.is_accepted and middleware.has_items):
+                return report
+        away: dict[str, str] = {}
+
+        def can_be_run(state: MappingState) -> bool:
+            nonlocal away
+            new = {*report.added, *report.changed}
+            away = {skill: why for skill, why in state.unavailable.items() if skill in new}
+            return not away and max(state.revision, state.refused) >= report.revision
+
+        with suppress(BusError):
+            await state_when(
+                bus, keys.mapping_state, MappingQuery(), MappingState, can_be_run, timeout_s=_ADAPTERS_S
+            )
+        warnings = (
+            Diagnostic(Severity.WARNING, "AOS505", f"nobody can run it now: {why}", Span(skill), _TO_BIND)
+            for skill, why in away.items()
+        )
+        return msgspec.structs.replace(report, diagnostics=(*report.diagnostics, *warnings))
 
     async def missions(self) -> Missions:
         """The missions of the system so far."""

@@ -15,6 +15,7 @@ from typer.testing import CliRunner, Result
 
 from aos_deploy.cli import aos_app
 from aos_protocol.keys import Keys
+from aos_protocol.messages import MappingQuery, MappingState
 from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
@@ -110,6 +111,19 @@ async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
     assert "changed ask" in (await aos("bundle", "push", str(skill))).output
     assert "activation: skill /say()" in (await aos("bundle", "show")).output
     assert "removed ask" in (await aos("bundle", "rm", "armadillo", "ask")).output
+
+
+async def test_a_pushed_skill_that_nobody_serves_is_told(
+    aos: Aos, bus: Bus, keys: Keys, bundles: Path
+) -> None:
+    async def state(_: MappingQuery, __: str) -> MappingState:
+        return MappingState(1, ("pick",), unavailable={"pick": "no adapter answers calls of /pick"})
+
+    await bus.answer(keys.mapping_state, MappingQuery, state)
+    await bus.announce(keys.live("middleware"))
+    pushed = await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    assert pushed.exit_code == 0
+    assert "pick: warning[AOS505]: nobody can run it now: no adapter answers calls of /pick" in pushed.output
 
 
 async def test_what_is_not_there_is_not_removed(aos: Aos, bundles: Path) -> None:

@@ -105,14 +105,6 @@ async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
     assert (entry.project, entry.revision, entry.skills) == ("armadillo", 1, tuple(sorted(report.added)))
 
 
-async def test_the_same_content_again_is_accepted_and_makes_no_revision(
-    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
-    first = await push(bus, keys, finer)
-    again = await push(bus, keys, finer)
-    assert (again.is_accepted, again.revision, again.added) == (True, first.revision, ())
-
-
 async def test_a_skill_can_be_pushed_on_its_own_and_a_better_document_replaces_the_old_one(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes], bundles: Path
 ) -> None:
@@ -185,16 +177,6 @@ async def test_a_skill_of_an_unknown_project_is_refused_with_the_nearest_name(
     report = await push(bus, keys, files)
     assert not report.is_accepted
     assert any("Did you mean `armadillo`?" in diagnostic.hint for diagnostic in report.diagnostics)
-
-
-async def test_an_unknown_project_is_an_error_that_names_the_known_ones(
-    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
-    await push(bus, keys, finer)
-    with pytest.raises(DocumentError) as error:
-        await current(bus, keys, "armadilo")
-    assert error.value.code == "AOS110"
-    assert error.value.hint == "Did you mean `armadillo`?"
 
 
 async def test_a_dropped_folder_is_taken_in_once_it_is_complete(

@@ -23,7 +23,6 @@ from aos_protocol.messages import (
     CatalogueQuery,
     ProjectQuery,
     ProjectRevision,
-    PushBundle,
     RemoveDocuments,
     Revisions,
     RevisionsQuery,
@@ -73,11 +72,7 @@ def push(
         hint = "Documents end in .ef, .sd, .am, .lf or .json"
         raise DocumentError(f"there are no documents in {path}", code="AOS120", hint=hint)
 
-    async def send(client: AosClient) -> BundleReport:
-        bundle = PushBundle(files, str(path))
-        return await client.bus.ask(client.keys.push_bundle, bundle, BundleReport, timeout_s=PUSH_TIMEOUT_S)
-
-    report = system.do(send)
+    report = system.do(lambda client: client.push(files, str(path)))
     if as_json:
         print_json(report)
     else:

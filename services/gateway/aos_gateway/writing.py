@@ -16,9 +16,7 @@ from aos_language.load import load_files, with_excerpts
 from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import DocumentError, GatewayError
-from aos_protocol.messages import BundleReport, MissionState, PushBundle, Steer, SteeringVerb
-
-_PUSH_S = 200.0
+from aos_protocol.messages import BundleReport, MissionState, Steer, SteeringVerb
 
 
 class Report(msgspec.Struct, frozen=True):
@@ -161,9 +159,7 @@ async def push(gateway: Gateway, run: str, query: Named, body: bytes) -> BundleR
     if has_errors(remarks) or not files:
         raise _refused(query.name, tuple(remarks))
     async with found.asking(OPERATOR) as client:
-        report = await client.bus.ask(
-            client.keys.push_bundle, PushBundle(files, query.name), BundleReport, timeout_s=_PUSH_S
-        )
+        report = await client.push(files, query.name)
     if not report.is_accepted:
         raise _refused(query.name, report.diagnostics)
     return report
