@@ -1,16 +1,19 @@
 """Skills that fail: what the rules make of it, what may move next, and what is not used."""
 
 import asyncio
+import os
+import signal
 from typing import Any
 
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import SENSE, System, answering, hang
+from middleware_system import HANG_S, SENSE, System, answering, hang
 
 from aos_protocol.codec import MAX_BYTES
 from aos_protocol.errors import SkillError
-from aos_protocol.messages import Cancelled, Outcome, SkillCall, SkillResult, Stray
+from aos_protocol.messages import Activate, ActivationId, Cancelled, Outcome, SkillCall, SkillResult, Stray
+from aos_runtime.asking import ask_until_answered
 from aos_runtime.journal import Journal
 
 JAMMED = """\
@@ -111,6 +114,37 @@ async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system
     await system.adapter.serve_cancel("/sense")
     await system.state_when(lambda state: "sense" not in state.unavailable)
     assert (await system.activate("sense", 3)).status == "observed"
+
+
+async def test_a_call_of_a_middleware_that_a_signal_has_frozen_is_joined_and_no_adapter_is_lost(
+    system: System,
+) -> None:
+    is_over = asyncio.Event()
+
+    async def pick(_: SkillCall) -> dict[str, Any]:
+        await is_over.wait()
+        return {"success": True}
+
+    await system.adapter.serve("/pick", pick)
+    key, live, request = (
+        system.keys.activate("pick"),
+        system.keys.live("middleware"),
+        Activate(ActivationId("m", 1), "pick", {}, HANG_S),
+    )
+    asked = ask_until_answered(system.bus, key, request, Outcome, server=live, timeout_s=HANG_S)
+    waiting = asyncio.create_task(asked)
+    await asyncio.wait_for(system.adapter.is_called.wait(), HANG_S)
+    assert system.child is not None
+    async with asyncio.timeout(HANG_S), system.bus.presence(live) as presence:
+        os.kill(system.child.pid, signal.SIGSTOP)
+        while (await anext(presence))[1]:
+            pass
+        os.kill(system.child.pid, signal.SIGCONT)
+        while not (await anext(presence))[1]:
+            pass
+    is_over.set()
+    outcome = await waiting
+    assert (outcome.status, outcome.fault) == ("observed", None)
 
 
 async def test_a_skill_whose_time_is_over_when_the_earlier_one_stands_still_is_not_called(

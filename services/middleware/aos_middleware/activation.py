@@ -145,6 +145,8 @@ class _Activation:
         """The fields of the call from the parameters; none where that fails and the adapter needs none."""
         constants = self._evaluator.emitted.constants
         try:
+            await self._evaluator.start()
+            self.call.begin()
             return await self._evaluator.begin(*self._around.low_level.arguments(self._request, constants))
         except MappingFault as error:
             if not self._around.is_played(self._mapping.activation.path):
@@ -222,7 +224,7 @@ class _Activation:
     def _missed_topics(self) -> SkillError:
         skill = self._request.skill
         return SkillError(
-            f"middleware or router were started again while {skill} ran, and its topics were missed",
+            f"middleware or router stood still or were started again while {skill} ran: topics were missed",
             code="AOS504",
             hint="The skill has ended; let the robot sense what became of it",
         )

@@ -3,7 +3,10 @@
 A call is asked for again where the router has gone, and cancelled where it is late.
 """
 
+import asyncio
 import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from typing import Any
 
 from aos_middleware.motion_gate import GONE_S
@@ -15,9 +18,11 @@ from aos_protocol.documents import Activation
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.messages import Activate, Cancel, Cancelled, SkillCall, SkillResult, Stray
 from aos_runtime.asking import AWAY_S
+from aos_runtime.bus_config import LEASE_S
 from aos_runtime.failpoints import reach
 
 _REPLY_GRACE_S = 0.2
+_LOOK_S = 0.25
 _CANCEL_S = 0.25
 """An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
 _TOLD_BEFORE_S = 0.1
@@ -29,7 +34,7 @@ _log = logging.getLogger("aos.middleware")
 
 
 class Call:
-    """One call of a skill. The time of its activation begins when this is made.
+    """One call of a skill. The time of its activation begins when this is made, or with `begin`.
 
     `was_called` says that the skill may have begun, `has_lost_router` that messages may have been lost since.
     """
@@ -43,7 +48,11 @@ class Call:
         self._around = around
         self._bus, self._keys, self._clock = around.bus, around.keys, around.clock
         self._stop = stop
-        self._ends_at_s = self._clock.monotonic_s() + request.deadline_s
+        self.begin()
+
+    def begin(self) -> None:
+        """The time of its activation begins now: what came before was none of the skill's."""
+        self._ends_at_s = self._clock.monotonic_s() + self._request.deadline_s
 
     async def run(self, fields: dict[str, Any]) -> SkillResult:
         """Calls the skill once nothing else moves, and returns its result.
@@ -111,25 +120,48 @@ class Call:
         return result
 
     async def _answer(self, path: str, call: SkillCall) -> SkillResult:
-        """Returns the adapter's answer; the call is asked for again where the router has gone."""
+        """Returns the adapter's answer; the call is asked for again where the router has gone, and where this
+        process stood still for so long that the router took it for dead."""
         limit_s = call.deadline_s + _REPLY_GRACE_S
-        while True:
-            router = self._bus.router
-            reach("middleware.call.before")
-            try:
-                result = await self._bus.ask(
-                    self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
-                )
-            except (LostAnswerError, NobodyAnswersError):
-                if not await self._bus.has_lost_router(router):
-                    raise
-                self.has_lost_router = True
-                if not await self._around.served.is_back(path, AWAY_S):
-                    raise
-                _log.info("%s is asked again, since the router was away", path)
-            else:
-                reach("middleware.call.after")
-                return result
+        async with self._pauses() as pauses_s:
+            while True:
+                router = self._bus.router
+                reach("middleware.call.before")
+                try:
+                    result = await self._bus.ask(
+                        self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
+                    )
+                except (LostAnswerError, NobodyAnswersError):
+                    if not await self._bus.has_lost_router(router) and not pauses_s:
+                        raise
+                    pauses_s.clear()
+                    self.has_lost_router = True
+                    if not await self._around.served.is_back(path, AWAY_S):
+                        raise
+                    _log.info("%s is asked again, since the link to the router was lost", path)
+                else:
+                    reach("middleware.call.after")
+                    return result
+
+    @asynccontextmanager
+    async def _pauses(self) -> AsyncIterator[list[float]]:
+        """The seconds for which this process stood still, each time that it did so for LEASE_S."""
+        pauses_s: list[float] = []
+
+        async def look() -> None:
+            while True:
+                before_s = self._clock.monotonic_s()
+                await asyncio.sleep(_LOOK_S)
+                pause_s = self._clock.monotonic_s() - before_s - _LOOK_S
+                if pause_s >= LEASE_S - _LOOK_S:
+                    pauses_s.append(pause_s)
+                    _log.warning("the middleware stood still for %.1f s, as if frozen by a signal", pause_s)
+
+        looking = asyncio.create_task(look())
+        try:
+            yield pauses_s
+        finally:
+            looking.cancel()
 
     async def _cancel(self, reason: str) -> bool:
         """Has the skill stopped; whether its adapter says that it has."""

@@ -14,8 +14,9 @@ from aos_solver.mission.past import Past
 from aos_solver.mission.takeover import RunningModel, Takeover
 from aos_solver.settings import Settings
 
-ACTIVATION_MARGIN_S = 5.0
-"""An answer may take this much longer than the activation itself."""
+ACTIVATION_MARGIN_S = 20.0
+"""An answer may take this much longer than the activation itself: its time begins once its mapping
+runs and monitors listen."""
 
 
 class BusPorts:
