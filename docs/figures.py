@@ -35,7 +35,7 @@ LINTING = (
     Row("150 seeded mistakes in 10 bundles of all dialects", ("python", "tests/mistakes.py"), "150, 143", 3),
     Row(
         "2,000 mutated documents, read, lowered and emitted",
-        ("python", "tests/fuzz/mutate_documents.py", "--count", "2000", "--seed", "1"),
+        ("python", "tests/mutate_documents.py", "--count", "2000", "--seed", "1"),
         "no crash, each below 1 s", 20,
     ),
 )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The seeded mistakes of tests/data/bad/mistakes.toml: is each told, at its place?
+"""The seeded mistakes of tests/data/mistakes.toml: is each told, at its place?
 
 python tests/mistakes.py [--json]
 
@@ -56,7 +56,7 @@ class Verdict(msgspec.Struct, frozen=True):
 
 def mistakes() -> Iterator[Mistake]:
     """All of the table, in its order."""
-    table = tomllib.loads((ROOT / "tests/data/bad/mistakes.toml").read_text(encoding="utf-8"))
+    table = tomllib.loads((ROOT / "tests/data/mistakes.toml").read_text(encoding="utf-8"))
     for bundle, rows in table.items():
         files = _bundle(bundle)
         for number, (file, code, change) in enumerate(rows, 1):

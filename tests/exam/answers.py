@@ -1,9 +1,20 @@
 """The answers of the driver that are no answers: problems at which the engine failed."""
 
 import dataclasses
+from collections import defaultdict
 from typing import Any
 
 from .problem import Problem
+
+
+def lists() -> defaultdict[str, list[Any]]:
+    """Lists by a name."""
+    return defaultdict(list)
+
+
+def lists_of_lists() -> defaultdict[str, defaultdict[str, list[Any]]]:
+    """Lists by two names."""
+    return defaultdict(lists)
 
 
 @dataclasses.dataclass

@@ -55,6 +55,10 @@ class Register:
     def is_number(self) -> bool:
         return self.kind in ("int", "field", "array", "double")
 
+    def is_a(self, kind: str) -> bool:
+        """Tells whether it is of this kind; `number` is any number, and "" anything."""
+        return self.is_number if kind == "number" else kind in ("", self.kind)
+
 
 Idiom = Callable[[Register, Register, str], str | None]
 """Code that takes the first's value to the second in the named state; None where it does not fit."""
@@ -62,11 +66,16 @@ Idiom = Callable[[Register, Register, str], str | None]
 IDIOMS: dict[str, Idiom] = {}
 
 
-def _text(name: str, code: str, *, needs: Callable[[Register, Register], bool] = lambda x, y: True) -> None:
-    """An idiom as a template: READ a number, WRITE(...) a statement, PLACE and FROM places."""
+def _text(name: str, code: str, *, source: str = "", target: str = "", alike: bool = False) -> None:
+    """An idiom as a template: READ a number, WRITE(...) a statement, PLACE and FROM places.
+
+    It is for registers of these kinds: `number` is any number, and "" anything. If they are `alike`, both are
+    of one kind.
+    """
+    from_kind, to_kind = source, target
 
     def fill(source: Register, target: Register, state: str) -> str | None:
-        if not needs(source, target):
+        if not (source.is_a(from_kind) and target.is_a(to_kind)) or (alike and source.kind != target.kind):
             return None
         filled = code.replace("READ", source.read("state")).replace("FROM", source.place("state"))
         filled = filled.replace("PLACE", target.place(state)).replace("NEXT", f"{state}.{target.name}")
@@ -89,18 +98,6 @@ def _closed(text: str) -> tuple[str, str, str]:
         if depth == 0:
             return text[:place], ")", text[place + 1 :].removeprefix(";")
     raise ValueError(text)
-
-
-def _to_number(source: Register, target: Register) -> bool:
-    return target.is_number
-
-
-def _both_boxes(source: Register, target: Register) -> bool:
-    return source.kind == target.kind == "field"
-
-
-def _same_number(source: Register, target: Register) -> bool:
-    return source.is_number and source.kind == target.kind
 
 
 _text("plain", "WRITE(READ);")
@@ -143,76 +140,57 @@ _text("alias_now", "{ const auto& now = state; int v = READ; WRITE(v); }")
 _text(
     "reference_from",
     "{ const auto& from = FROM; int v = static_cast<int>(from); WRITE(v); }",
-    needs=lambda x, y: x.is_number,
+    source="number",
 )
 _text(
     "pointer_from",
     "{ const auto* from = &FROM; int v = static_cast<int>(*from); WRITE(v); }",
-    needs=lambda x, y: x.is_number,
+    source="number",
 )
 _text(
     "whole_copy",
     "{ const auto before = NOW; int v = static_cast<int>(before.level); WRITE(v); }",
-    needs=lambda x, y: x.kind == "field",
+    source="field",
 )
-_text("reference_to", "{ auto& to = PLACE; to = READ; }", needs=_to_number)
-_text("pointer_to", "{ auto* to = &PLACE; *to = READ; }", needs=_to_number)
+_text("reference_to", "{ auto& to = PLACE; to = READ; }", target="number")
+_text("pointer_to", "{ auto* to = &PLACE; *to = READ; }", target="number")
 _text(
     "pointer_chosen",
     "{ int other = 0; auto* to = &other; auto* real = &PLACE; *real = READ; *to = 1; }",
-    needs=_to_number,
+    target="number",
 )
-_text("add", "{ PLACE = 0; PLACE += READ; }", needs=_to_number)
-_text("increment", "{ PLACE = 0; if (READ == 1) PLACE++; }", needs=_to_number)
-_text("swap", "{ auto v = PLACE; v = READ; std::swap(PLACE, v); }", needs=_to_number)
-_text("tie", "{ int rest; std::tie(PLACE, rest) = std::make_tuple(READ, 3); }", needs=_to_number)
-_text(
-    "assign_through_choice",
-    "{ int other = 0; (true ? PLACE : other) = READ; }",
-    needs=lambda x, y: y.kind == "int",
-)
-_text("compound", "NEXT = NOW;", needs=_both_boxes)
-_text("compound_reference", "{ auto& box = NEXT; box.level = READ; }", needs=lambda x, y: y.kind == "field")
-_text("compound_pointer", "{ auto* box = &NEXT; box->level = READ; }", needs=lambda x, y: y.kind == "field")
-_text("array_copy", "NEXT = NOW;", needs=lambda x, y: x.kind == y.kind == "array")
-_text(
-    "range_for",
-    "{ int n = 0; for (const auto& item : NOW) n += item; WRITE(n); }",
-    needs=lambda x, y: x.kind == "array",
-)
+_text("add", "{ PLACE = 0; PLACE += READ; }", target="number")
+_text("increment", "{ PLACE = 0; if (READ == 1) PLACE++; }", target="number")
+_text("swap", "{ auto v = PLACE; v = READ; std::swap(PLACE, v); }", target="number")
+_text("tie", "{ int rest; std::tie(PLACE, rest) = std::make_tuple(READ, 3); }", target="number")
+_text("assign_through_choice", "{ int other = 0; (true ? PLACE : other) = READ; }", target="int")
+_text("compound", "NEXT = NOW;", source="field", target="field")
+_text("compound_reference", "{ auto& box = NEXT; box.level = READ; }", target="field")
+_text("compound_pointer", "{ auto* box = &NEXT; box->level = READ; }", target="field")
+_text("array_copy", "NEXT = NOW;", source="array", target="array")
+_text("range_for", "{ int n = 0; for (const auto& item : NOW) n += item; WRITE(n); }", source="array")
 _text(
     "range_for_write",
     "{ int i = 0; for (auto& item : NEXT) { item = i == 1 ? READ : 0; i++; } }",
-    needs=lambda x, y: y.kind == "array",
+    target="array",
 )
-_text(
-    "index_loop",
-    "{ int n = 0; for (int i = 0; i < 3; i++) n += NOW[i]; WRITE(n); }",
-    needs=lambda x, y: x.kind == "array",
-)
-_text(
-    "accumulate", "WRITE(std::accumulate(NOW.begin(), NOW.end(), 0));", needs=lambda x, y: x.kind == "array"
-)
-_text(
-    "copy", "std::copy(NOW.begin(), NOW.end(), NEXT.begin());", needs=lambda x, y: x.kind == y.kind == "array"
-)
-_text("fill", "std::fill(NEXT.begin() + 1, NEXT.begin() + 2, READ);", needs=lambda x, y: y.kind == "array")
-_text(
-    "find",
-    "WRITE(std::find(NOW.begin(), NOW.end(), 1) != NOW.end() ? 1 : 0);",
-    needs=lambda x, y: x.kind == "array",
-)
+_text("index_loop", "{ int n = 0; for (int i = 0; i < 3; i++) n += NOW[i]; WRITE(n); }", source="array")
+_text("accumulate", "WRITE(std::accumulate(NOW.begin(), NOW.end(), 0));", source="array")
+_text("copy", "std::copy(NOW.begin(), NOW.end(), NEXT.begin());", source="array", target="array")
+_text("fill", "std::fill(NEXT.begin() + 1, NEXT.begin() + 2, READ);", target="array")
+_text("find", "WRITE(std::find(NOW.begin(), NOW.end(), 1) != NOW.end() ? 1 : 0);", source="array")
 _text(
     "sort",
     "{ std::vector<int> v(NOW.begin(), NOW.end()); std::sort(v.begin(), v.end()); WRITE(v[2]); }",
-    needs=lambda x, y: x.kind == "array",
+    source="array",
 )
-_text("bytes", "std::memcpy(&PLACE, &FROM, sizeof FROM);", needs=_same_number)
-_text("alias_next", "{ auto& next = INTO; next.TARGET = READ; }", needs=lambda x, y: y.kind == "int")
+_text("bytes", "std::memcpy(&PLACE, &FROM, sizeof FROM);", source="number", alike=True)
+_text("alias_next", "{ auto& next = INTO; next.TARGET = READ; }", target="int")
 _text(
     "alias_both",
     "{ auto& now = state; auto& next = INTO; next.TARGET = now.SOURCE; }",
-    needs=lambda x, y: x.kind == y.kind == "int",
+    source="int",
+    target="int",
 )
-_text("pointer_next", "{ auto* next = &INTO; next->TARGET = READ; }", needs=lambda x, y: y.kind == "int")
-_text("pointer_now", "{ const auto* now = &state; WRITE(now->SOURCE); }", needs=lambda x, y: x.kind == "int")
+_text("pointer_next", "{ auto* next = &INTO; next->TARGET = READ; }", target="int")
+_text("pointer_now", "{ const auto* now = &state; WRITE(now->SOURCE); }", source="int")

@@ -5,7 +5,7 @@ from collections import Counter, defaultdict
 from statistics import fmean
 from typing import Any
 
-from .answers import Answers
+from .answers import Answers, lists, lists_of_lists
 from .problem import Problem
 
 MEAN_TARGET, WORST_TARGET = 0.01, 0.10
@@ -96,13 +96,11 @@ def _number(value: float | None) -> str:
 class Regrets(Answers):
     """Shares of the range that planners lose, by family and planner."""
 
-    regrets: dict[str, dict[str, list[float]]] = dataclasses.field(
-        default_factory=lambda: defaultdict(lambda: defaultdict(list))
-    )
-    worst: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
-    sound: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
-    by_decisions: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
-    times: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
+    regrets: dict[str, dict[str, list[float]]] = dataclasses.field(default_factory=lists_of_lists)
+    worst: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lists)
+    sound: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lists)
+    by_decisions: dict[str, list[float]] = dataclasses.field(default_factory=lists)
+    times: dict[str, list[float]] = dataclasses.field(default_factory=lists)
     """The processor time of each decision, in seconds."""
 
     used: dict[str, Counter[str]] = dataclasses.field(default_factory=lambda: defaultdict(Counter))

@@ -3,11 +3,11 @@ mean of missions."""
 
 import dataclasses
 import math
-from collections import Counter, defaultdict
+from collections import Counter
 from statistics import fmean
 from typing import Any
 
-from .answers import Answers
+from .answers import Answers, lists_of_lists
 from .problem import Problem
 
 ALLOWED_SHARE = 0.05
@@ -77,9 +77,7 @@ def _text(bound: float | None) -> str:
 class Values(Answers):
     """Values of first decisions by the planner that was asked for and the family."""
 
-    values: dict[str, dict[str, list[Told]]] = dataclasses.field(
-        default_factory=lambda: defaultdict(lambda: defaultdict(list))
-    )
+    values: dict[str, dict[str, list[Told]]] = dataclasses.field(default_factory=lists_of_lists)
     left_out: Counter[str] = dataclasses.field(default_factory=Counter)
 
     def add(self, problem: Problem, answer: dict[str, Any]) -> bool:

@@ -9,7 +9,7 @@ from scripted_models import bundle_project
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower
 
-GOLDEN = Path(__file__).parent / "cpp"
+GOLDEN = Path(__file__).parent
 
 
 @pytest.mark.parametrize("example", ["kettle-json", "kettle-sdl"])

@@ -9,6 +9,7 @@ from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
 
+from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.child.engine import Engine
 
 STATES, ACTIONS, RESPONSES = 5, 2, 3
@@ -207,13 +208,26 @@ DEPLETING = {
 """2^40 states, of which each activation rules out half: 5,000 particles last for 12 of 40."""
 
 
+async def turn(engine: Engine, card: int, hand: list[bool]) -> BeliefUpdate:
+    """Turns a card, which the belief holds possible."""
+    update = await engine.update(f"turn(number={card})", "yes" if hand[card] else "no")
+    assert not update.is_impossible, card
+    return update
+
+
+async def turn_and_look(engine: Engine, card: int, hand: list[bool]) -> None:
+    """Turns a card and holds the belief in it against what was seen."""
+    update = await turn(engine, card, hand)
+    marginals = {marginal.variable: marginal.values for marginal in update.summary.marginals}
+    assert marginals[f"cards[{card}]"].get("true" if hand[card] else "false", 0.0) > 0.9, card
+
+
 async def test_particles_outlive_more_observations_than_they_can_tell_apart(cache_dir: Path) -> None:
     dice = random.Random(1)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
     async with engine_of_text(DEPLETING, cache_dir) as engine:
-        for card, is_on in enumerate(hand):
-            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
-            assert not update.is_impossible, card
+        for card in range(CARDS):
+            update = await turn(engine, card, hand)
     for card, marginal in enumerate(update.summary.marginals):
         assert marginal.values.get("true" if hand[card] else "false", 0.0) > 0.9, card
 
@@ -235,33 +249,24 @@ async def test_what_all_particles_have_by_chance_is_given_up_when_it_is_observed
     dice = random.Random(2)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
     async with engine_of_text(SHAKEN, cache_dir) as engine:
-        for card, is_on in enumerate(hand):
-            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
-            assert not update.is_impossible, card
-            marginal = update.summary.marginals[card]
-            assert marginal.values.get("true" if is_on else "false", 0.0) > 0.9, card
+        for card in range(CARDS):
+            await turn_and_look(engine, card, hand)
 
 
 async def test_what_has_not_been_observed_outlives_a_crash_and_a_change_of_engines(cache_dir: Path) -> None:
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
 
-    async def turn(engine: Engine, card: int) -> None:
-        update = await engine.update(f"turn(number={card})", "yes" if hand[card] else "no")
-        assert not update.is_impossible, card
-        marginal = update.summary.marginals[card]
-        assert marginal.values.get("true" if hand[card] else "false", 0.0) > 0.9, card
-
     built = await built_text(SHAKEN, cache_dir)
     async with engine_of(built) as first, engine_of(built) as second:
         for card in range(CARDS // 2):
-            await turn(first, card)
+            await turn_and_look(first, card, hand)
         await kill_engine(first.pid)
         for card in range(CARDS // 2, 3 * CARDS // 4):
-            await turn(first, card)
+            await turn_and_look(first, card, hand)
         await second.import_belief(await first.export_belief())
         for card in range(3 * CARDS // 4, CARDS):
-            await turn(second, card)
+            await turn_and_look(second, card, hand)
 
 
 DEALT = SHAKEN | {
@@ -285,8 +290,5 @@ async def test_what_opened_up_since_the_beginning_is_given_up_as_well(cache_dir:
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
     async with engine_of_text(DEALT, cache_dir) as engine:
-        for card, is_on in enumerate(hand):
-            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
-            assert not update.is_impossible, card
-            marginal = {m.variable: m.values for m in update.summary.marginals}[f"cards[{card}]"]
-            assert marginal.get("true" if is_on else "false", 0.0) > 0.9, card
+        for card in range(CARDS):
+            await turn_and_look(engine, card, hand)

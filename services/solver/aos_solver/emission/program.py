@@ -60,15 +60,20 @@ class Enum(msgspec.Struct, frozen=True):
     storage: str
 
 
-class Field(msgspec.Struct, frozen=True):
+class _Typed(msgspec.Struct, frozen=True):
+    """A name with its C++ type."""
+
     name: str
     type: str
-    default: Piece | None = None
 
     @property
     def is_over_enum(self) -> bool:
         """True for an array over an enum, whose default may be that of each element."""
         return self.type.startswith("aos::Named<")
+
+
+class Field(_Typed, frozen=True):
+    default: Piece | None = None
 
 
 class Compound(msgspec.Struct, frozen=True):
@@ -83,7 +88,7 @@ class Axis(msgspec.Struct, frozen=True):
     key: str
 
 
-class Variable(msgspec.Struct, frozen=True):
+class Variable(_Typed, frozen=True):
     """A state variable. One that nothing changes is a constant, which no particle holds.
 
     `is_relevant`: what is earned or observed may depend on it (see `lower_relevance`).
@@ -93,8 +98,6 @@ class Variable(msgspec.Struct, frozen=True):
     `state.`.
     """
 
-    name: str
-    type: str
     is_constant: bool
     is_parameter_value: bool = False
     default_value: Piece | None = None
@@ -103,11 +106,6 @@ class Variable(msgspec.Struct, frozen=True):
     is_relevant: bool = True
     is_fixed: bool = False
     is_mission_parameter: bool = False
-
-    @property
-    def is_over_enum(self) -> bool:
-        """True for an array over an enum, whose default may be that of each element."""
-        return self.type.startswith("aos::Named<")
 
 
 class ObjectList(msgspec.Struct, frozen=True):

@@ -1,6 +1,6 @@
 """Mutated bundles through reader, checks and model generation: nothing may crash, and nothing may take long.
 
-python tests/fuzz/mutate_documents.py --count 50000 --seed 1
+python tests/mutate_documents.py --count 50000 --seed 1
 
 Each mutation changes one document of a bundle: some bytes, or words and lines as a careless editor would. Its
 number and the seed give it again: --first NUMBER --count 1. Exit code 1 if a bundle crashed or was too slow.
@@ -21,7 +21,7 @@ from aos_language.load import load_files, read_bundle_files
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 LIMIT_S = 1.0
 WORD = re.compile(rb"\w+|[^\w\s]")
 INTERESTING = tuple(
