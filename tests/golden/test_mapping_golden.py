@@ -24,10 +24,6 @@ def compare(folder: Path, expected: Path) -> None:
     assert generated == stored
 
 
-def test_our_armadillo_mappings_are_generated_as_stored(bundles: Path) -> None:
-    compare(bundles / "armadillo-finer", EXPECTED / "armadillo")
-
-
 def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path) -> None:
     rough, finer = (project_in(bundles / f"armadillo-{name}") for name in ("rough", "finer"))
     assert [mapping.python for mapping in emit_project(rough)] == [mapping.python for mapping in emit_project(finer)]
