@@ -92,12 +92,12 @@ def test_missions_that_all_bring_the_same_have_no_range_to_compare_with() -> Non
 
 
 def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_path: Path) -> None:
-    results = results_of(part_of("model"))
+    results = results_of(part_of("model"), part_of("system", (SERVED,)))
     page, whole = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
     text = page.read_text()
-    assert (
-        "| one | model | it \\| picks first | **not seen** | 2 of 3 | 0.67 [0.21, 0.94] | 0.90 | 3 |" in text
-    )
+    assert "| part | claim | played by model | played by system |" in text
+    broken = "**not seen**: 2 of 3, 0.67 [0.21, 0.94], wanted 0.90, not in seeds 3"
+    assert f"| one | it \\| picks first | {broken} | " in text
     assert "| one | model | 3 (1 broke) | 0.33 [0.06, 0.79] |" in text
     assert "one, model, seed 3 broke: the engine | has ended" in text
     assert "| one | model | robot.yaml |  | 1 to 3 | digest |" in text

@@ -8,6 +8,7 @@ from pathlib import Path
 from aos_lab.experiments.markdown import head, row, shown, tally
 from aos_lab.experiments.markdown import page as page_of
 from aos_lab.experiments.results import PartResult, Results
+from aos_lab.trials.claims import Verdict
 
 _SHOWN_SEEDS = 20
 
@@ -54,19 +55,23 @@ def markdown_report(results: Results, *, has_pictures: bool = True) -> str:
 
 
 def _claims(results: Results) -> Iterator[str]:
-    yield from head("part", "played by", "claim", "", "missions", "share", "wanted", "not in seeds")
+    """A row for each claim of a part, with the verdicts of all who played it beside each other."""
+    players = list(dict.fromkeys(part.by for part in results.parts))
+    cells: dict[tuple[str, str], dict[str, str]] = {}
     for part in results.parts:
         for verdict in part.verdicts:
-            yield row(
-                part.name,
-                part.by,
-                verdict.says,
-                verdict.word if verdict.is_seen else f"**{verdict.word}**",
-                f"{verdict.held} of {verdict.missions}",
-                shown(verdict.share),
-                f"{verdict.wanted:.2f}",
-                _first_of(verdict.failed_seeds),
-            )
+            cells.setdefault((part.name, verdict.says), {})[part.by] = _cell(verdict)
+    yield from head("part", "claim", *(f"played by {player}" for player in players))
+    for (name, says), by in cells.items():
+        yield row(name, says, *(by.get(player, "") for player in players))
+
+
+def _cell(verdict: Verdict) -> str:
+    word = verdict.word if verdict.is_seen else f"**{verdict.word}**"
+    text = (
+        f"{word}: {verdict.held} of {verdict.missions}, {shown(verdict.share)}, wanted {verdict.wanted:.2f}"
+    )
+    return text + (f", not in seeds {_first_of(verdict.failed_seeds)}" if verdict.failed_seeds else "")
 
 
 _REGRET = (
