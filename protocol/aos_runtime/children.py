@@ -241,8 +241,13 @@ class Child:
     def _signal(self, number: signal.Signals) -> None:
         if self.returncode is not None:
             return
+        # A guard that SIGSTOP has stopped hears nothing, nor does its keeper.
+        stopped = [pid for pid in (self.pid, *_children(self.pid)) if _state(pid) == "T"]
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.pid, number)
+        for pid in stopped:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGCONT)
 
 
 def _children(pid: int) -> list[int]:
@@ -260,10 +265,13 @@ def _starved_s(pid: int) -> float:
     return waited_ns / 1e9 + sum(map(_starved_s, _children(pid)))
 
 
-def _is_stopped(pid: int) -> bool:
+def _state(pid: int) -> str:
     try:
         # The state follows the name, which may itself have brackets.
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
-        return False
-    return state == "T" or any(map(_is_stopped, _children(pid)))
+        return ""
+
+
+def _is_stopped(pid: int) -> bool:
+    return _state(pid) == "T" or any(map(_is_stopped, _children(pid)))
