@@ -40,6 +40,14 @@ def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]
     return answer.fields
 
 
+def raised(mapping: LoadedMapping, then: Take | Finish) -> Raised:
+    """The fault of what comes after the beginning of an activation."""
+    fields(mapping, {})
+    answer = mapping.answer(then)
+    assert isinstance(answer, Raised), answer
+    return answer
+
+
 def observed(
     mapping: LoadedMapping, parameters: dict[str, Any], messages: Messages, result: dict[str, Any]
 ) -> Observed:

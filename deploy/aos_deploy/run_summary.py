@@ -12,11 +12,27 @@ class ProcessEnd(msgspec.Struct, frozen=True):
     then: str
 
 
-class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file.
+class RunEnd(msgspec.Struct, frozen=True, kw_only=True):
+    """The end of a run; `actions` and `responses` are those of the steps.
 
     The ending and its probabilities are those of the last belief: nobody tells a robot how its world ended.
     `cautious_goal_probability` is that of the goal if nothing ran that was not observed.
+    """
+
+    ending: str
+    remark: str
+    exit_code: int
+    actions: tuple[str, ...] = ()
+    responses: tuple[str, ...] = ()
+    goal_probability: float = 0.0
+    cautious_goal_probability: float = 0.0
+    over_probability: float = 0.0
+    failure_probability: float = 0.0
+
+
+class Summary(RunEnd, frozen=True, kw_only=True):
+    """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file.
+
     `process_ends` are the processes that ended by themselves, in this order. `mission_parameters` are the
     values of all parts of mission parameters.
     """
@@ -25,16 +41,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     deploy_file: str
     seed: int
     started: str
-    ending: str
-    remark: str
-    exit_code: int
     steps: int
-    goal_probability: float
-    cautious_goal_probability: float
-    over_probability: float
-    failure_probability: float
-    actions: tuple[str, ...]
-    responses: tuple[str, ...]
     services_ready_s: float | None
     first_decision_s: float | None
     duration_s: float

@@ -116,17 +116,7 @@ class SystemRun(MissionRun):
         if fault is not None:
             ending = "fault" if has_begun else "not_started"
             remark, code = str(fault), ExitCode.FAULT if has_begun else exit_code_of_error(fault)
-        return Verdict(
-            ending=ending,
-            remark=remark,
-            exit_code=int(code),
-            actions=(),
-            responses=(),
-            goal_probability=0.0,
-            cautious_goal_probability=0.0,
-            over_probability=0.0,
-            failure_probability=0.0,
-        )
+        return Verdict(ending=ending, remark=remark, exit_code=int(code))
 
 
 def _durations(journal: Path, begun_ns: int) -> dict[str, float | None]:

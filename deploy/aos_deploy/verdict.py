@@ -9,29 +9,18 @@ from collections.abc import Iterable
 import msgspec
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
+from aos_deploy.run_summary import RunEnd
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionState
 from aos_protocol.mission_rows import DECISION, STATE
 from aos_runtime.journal import JournalRow
 
 
-class Verdict(msgspec.Struct, frozen=True, kw_only=True):
+class Verdict(RunEnd, frozen=True, kw_only=True):
     """The end of a run; the `ending` is empty where it goes on, or where its `aos-up` was killed.
 
     The endings are those of a mission, and `not_started` where a fault came before the first decision.
-    `actions` and `responses` are those of the steps. The probabilities are those of the last belief:
-    `cautious_goal_probability` is that of the goal if nothing ran that was not observed.
     """
-
-    ending: str
-    remark: str
-    exit_code: int
-    actions: tuple[str, ...]
-    responses: tuple[str, ...]
-    goal_probability: float
-    cautious_goal_probability: float
-    over_probability: float
-    failure_probability: float
 
     @property
     def steps(self) -> int:

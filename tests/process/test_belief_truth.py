@@ -199,13 +199,13 @@ async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cach
     assert update.summary.effective_states > 1000
 
 
-CARDS = 40
+CARDS = 28
 DEPLETING = {
     "cards.ef": row_of_bools("cards", CARDS, "0.5"),
     "turn.sd": looking_at_one("cards", CARDS, "state.cards[number]"),
     "turn.am": reading("cards", parameters=["number"]),
 }
-"""2^40 states, of which each activation rules out half: 5,000 particles last for 12 of 40."""
+"""2^28 states, of which each activation rules out half: 5,000 particles last for 12 of 28."""
 
 
 async def turn(engine: Engine, card: int, hand: list[bool]) -> BeliefUpdate:

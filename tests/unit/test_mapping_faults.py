@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from mapping_runs import emitted_with, fields, loaded, observed, running
+from mapping_runs import emitted_with, loaded, observed, raised, running
 
 from aos_middleware.frames import Begin, Finish, Raised, Take
 
@@ -19,10 +19,7 @@ def of(value):
     return value.levle
 return of(__input)
 """)
-    mapping = loaded(emission)
-    fields(mapping, {})
-    answer = mapping.answer(Take([("/level", {"level": 1})]))
-    assert isinstance(answer, Raised)
+    answer = raised(loaded(emission), Take([("/level", {"level": 1})]))
     assert answer.error == "AttributeError: no field 'levle'; did you mean 'level'?"
     assert str(emission.locate(answer.line, answer.column)) == "look.am:9:12"
 
@@ -44,9 +41,7 @@ message_type: Level
 code:
 return __input.data
 """)
-    fields(mapping, {})
-    answer = mapping.answer(Finish({}))
-    assert isinstance(answer, Raised)
+    answer = raised(mapping, Finish({}))
     assert answer.unset == ("level",)
     assert answer.local_variables == {"level": "null"}
 
@@ -58,10 +53,7 @@ from_ros_service_response: true
 code:
 succes = __input.success
 """)
-    mapping = loaded(emission)
-    fields(mapping, {})
-    answer = mapping.answer(Finish({"success": True}))
-    assert isinstance(answer, Raised)
+    answer = raised(loaded(emission), Finish({"success": True}))
     assert "success" in answer.error
     assert emission.locate(answer.line).line == 4
 
@@ -80,9 +72,7 @@ code:
 success = __input.success
 """)
     mapping = loaded(emission)
-    fields(mapping, {})
-    answer = mapping.answer(Finish({"success": success}))
-    assert isinstance(answer, Raised)
+    answer = raised(mapping, Finish({"success": success}))
     assert answer.error.startswith("TypeError: success has the type bool and is ")
     assert str(emission.locate(answer.line, answer.column)) == "look.am:12:1"
     for value, response in ((1, "done"), (0.0, "not_done"), (None, "not_done")):

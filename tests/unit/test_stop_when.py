@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 from mapping_documents import emitted
-from mapping_runs import HEAD, fields, loaded
+from mapping_runs import HEAD, fields, loaded, raised
 
 from aos_language.load import load_files
 from aos_middleware.frames import Raised, Take, Taken
@@ -113,8 +113,6 @@ def test_truth_values_of_numpy_are_some_and_what_is_none_is_an_error_at_its_plac
     assert mapping.answer(Take([("/near", {"data": True})])) == Taken(1, stops=True)
     emission = emitted(f"{HEAD}stop_when:\n(near\n    or near)\n{NEAR}")
     mapping = loaded(emission)
-    fields(mapping, {})
-    answer = mapping.answer(Take([("/near", {"data": 3.5})]))
-    assert isinstance(answer, Raised)
+    answer = raised(mapping, Take([("/near", {"data": 3.5})]))
     assert answer.error == "TypeError: stop_when is 3.5, which is neither True nor False"
     assert str(emission.locate(answer.line, answer.column)) == "look.am:5:1"
