@@ -10,12 +10,7 @@ import typer
 from aos_deploy.told_mistakes import findings_of, refuse_errors
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode
 from aos_language.findings import Findings
-from aos_language.mission_parameters import (
-    OPTION,
-    checked_values,
-    mission_value_of_option,
-    parameter_leaves,
-)
+from aos_language.mission_parameters import OPTION, checked_values, mission_value_of_option, parameter_leaves
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
 

@@ -14,14 +14,7 @@ from pygls.workspace import PositionCodec, ServerTextPosition
 from aos_editor.checking import check_folder, end_column, lines_of
 from aos_editor.documents import Entry, meaning_at, outline, proposals_at
 from aos_editor.highlighting import TOKEN_KINDS, tokens_of
-from aos_editor.navigation import (
-    Lines,
-    definition,
-    encoded,
-    quick_fixes,
-    references,
-    renamed,
-)
+from aos_editor.navigation import Lines, definition, encoded, quick_fixes, references, renamed
 from aos_editor.symbols import Bundle, Occurrence, UnrenamableError, files_of, read_bundle
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity

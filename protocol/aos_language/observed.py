@@ -9,14 +9,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from aos_language.cpp.snippets import (
-    Access,
-    Call,
-    Cpp,
-    Extent,
-    Mention,
-    strip_comments,
-)
+from aos_language.cpp.snippets import Access, Call, Cpp, Extent, Mention, strip_comments
 from aos_language.document_code import snippets_of
 from aos_protocol.documents import SkillModel, Snippet
 

@@ -19,13 +19,7 @@ import msgspec
 from aos_protocol.access import OPERATOR, WATCHER, Party
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
-from aos_protocol.errors import (
-    BusError,
-    LateAnswerError,
-    LostAnswerError,
-    NobodyAnswersError,
-    SkillError,
-)
+from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     BundleReport,

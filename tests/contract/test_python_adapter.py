@@ -13,13 +13,7 @@ from processes import HANG_S
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import (
-    ActivationId,
-    SkillCall,
-    SkillProgress,
-    SkillResult,
-    TopicMessage,
-)
+from aos_protocol.messages import ActivationId, SkillCall, SkillProgress, SkillResult, TopicMessage
 from aos_runtime.adapters import Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child

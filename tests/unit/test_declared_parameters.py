@@ -10,11 +10,7 @@ from texts import encoded, write_texts
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import read_deploy_file
 from aos_language.load import load_files
-from aos_language.mission_parameters import (
-    mission_value_of_option,
-    parameter_leaves,
-    usable_values,
-)
+from aos_language.mission_parameters import mission_value_of_option, parameter_leaves, usable_values
 from aos_language.outline import outline
 from aos_protocol.documents import Project, StateVariable
 from aos_protocol.errors import DeployError, DocumentError, PlanningError

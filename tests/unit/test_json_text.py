@@ -9,13 +9,7 @@ from hypothesis import strategies as st
 from json_values import plain
 
 from aos_language.findings import Findings
-from aos_language.reading.json_text import (
-    JsonArray,
-    JsonString,
-    JsonValue,
-    code_snippet,
-    parse_json,
-)
+from aos_language.reading.json_text import JsonArray, JsonString, JsonValue, code_snippet, parse_json
 from aos_language.reading.source import Source
 from aos_protocol.diagnostics import Diagnostic
 

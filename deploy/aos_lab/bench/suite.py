@@ -8,12 +8,7 @@ from pathlib import Path
 import msgspec
 
 from aos_lab.bench import baseline, pomdp_py_peer
-from aos_lab.bench.measure import (
-    discounted_returns,
-    sampling_rate,
-    search_rate,
-    threaded_search_rates,
-)
+from aos_lab.bench.measure import discounted_returns, sampling_rate, search_rate, threaded_search_rates
 from aos_lab.bench.problems import Problem
 from aos_lab.bench.rows import OURS, Report, Row, Skipped, figure, this_machine, with_ratios
 from aos_language.load import load_bundle

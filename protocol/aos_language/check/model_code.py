@@ -4,26 +4,12 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_language.check.blocks import (
-    DEFAULT,
-    STATES,
-    Block,
-    environment_blocks,
-    read_block,
-    skill_blocks,
-)
+from aos_language.check.blocks import DEFAULT, STATES, Block, environment_blocks, read_block, skill_blocks
 from aos_language.check.built_ins import BUILT_INS, check_built_in
 from aos_language.check.mentions import LITERAL_NAMES, MentionCheck, listing
 from aos_language.check.scope import Scope
 from aos_language.check.weights import check_weights
-from aos_language.cpp.snippets import (
-    Call,
-    Cpp,
-    DeclarationKind,
-    Extent,
-    FaultKind,
-    read_cpp,
-)
+from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, FaultKind, read_cpp
 from aos_language.cpp.unset import unset_reads
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Span

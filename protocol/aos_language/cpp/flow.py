@@ -11,13 +11,7 @@ from collections.abc import Iterator, Sequence
 import msgspec
 import tree_sitter
 
-from aos_language.cpp.facts import (
-    CHANGING_METHODS,
-    HANDLE_METHODS,
-    READING_FUNCTIONS,
-    READING_METHODS,
-    Cpp,
-)
+from aos_language.cpp.facts import CHANGING_METHODS, HANDLE_METHODS, READING_FUNCTIONS, READING_METHODS, Cpp
 from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
 

@@ -9,12 +9,7 @@ Source: the paper, sections 3.2.1 and 3.2.2; the AOS documentation manual, versi
 
 from __future__ import annotations
 
-from aos_protocol.documents.code import (
-    Assignment,
-    Iteration,
-    Snippet,
-    TemporaryVariable,
-)
+from aos_protocol.documents.code import Assignment, Iteration, Snippet, TemporaryVariable
 from aos_protocol.documents.environment import (
     MAX_HORIZON,
     CompoundType,
@@ -25,11 +20,7 @@ from aos_protocol.documents.environment import (
     SpecialState,
     StateVariable,
 )
-from aos_protocol.documents.low_level import (
-    LowLevelConstant,
-    LowLevelDocument,
-    LowLevelType,
-)
+from aos_protocol.documents.low_level import LowLevelConstant, LowLevelDocument, LowLevelType
 from aos_protocol.documents.mapping import (
     ACTIVATION_KINDS,
     NO_ACTIVATION,
@@ -42,16 +33,8 @@ from aos_protocol.documents.mapping import (
     LowLevelAssignment,
     ResponseRule,
 )
-from aos_protocol.documents.project import (
-    Constraint,
-    MissionValue,
-    Project,
-    Skill,
-)
-from aos_protocol.documents.skill_model import (
-    Parameter,
-    SkillModel,
-)
+from aos_protocol.documents.project import Constraint, MissionValue, Project, Skill
+from aos_protocol.documents.skill_model import Parameter, SkillModel
 
 __all__ = [
     "ACTIVATION_KINDS",

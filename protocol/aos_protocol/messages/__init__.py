@@ -6,11 +6,7 @@ people and journals; nothing is decided by them. Unknown fields are ignored, so 
 
 from __future__ import annotations
 
-from aos_protocol.messages.base import (
-    Envelope,
-    Fault,
-    Message,
-)
+from aos_protocol.messages.base import Envelope, Fault, Message
 from aos_protocol.messages.bundles import (
     BundleReport,
     Catalogue,

@@ -19,14 +19,7 @@ from typing import Any
 
 from aos_protocol.errors import AosError, DeployError, LateAnswerError
 from aos_protocol.keys import Serving
-from aos_protocol.messages import (
-    Cancel,
-    Missions,
-    MissionsQuery,
-    ProjectQuery,
-    ProjectRevision,
-    SkillCall,
-)
+from aos_protocol.messages import Cancel, Missions, MissionsQuery, ProjectQuery, ProjectRevision, SkillCall
 from aos_protocol.spelling import did_you_mean
 from aos_runtime.adapters.adapter import Adapter
 from aos_runtime.adapters.calls import Calls

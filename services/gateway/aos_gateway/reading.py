@@ -15,14 +15,7 @@ from aos_gateway.shared import Gateway
 from aos_gateway.trace import Trace, steps_of
 from aos_protocol import __version__
 from aos_protocol.errors import AosError, GatewayError
-from aos_protocol.messages import (
-    BeliefSummary,
-    DecisionRecord,
-    History,
-    MissionEntry,
-    MissionState,
-    Outcome,
-)
+from aos_protocol.messages import BeliefSummary, DecisionRecord, History, MissionEntry, MissionState, Outcome
 
 _PAGE = 1000
 _TRACE_RECORDS = 4000

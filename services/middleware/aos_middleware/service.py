@@ -23,14 +23,7 @@ from aos_middleware.settings import Settings
 from aos_middleware.silent_topics import SilentTopics
 from aos_middleware.surroundings import Surroundings
 from aos_protocol.errors import BusError, SkillError
-from aos_protocol.messages import (
-    Activate,
-    ActivationId,
-    MappingQuery,
-    MappingState,
-    Outcome,
-    ProjectRevision,
-)
+from aos_protocol.messages import Activate, ActivationId, MappingQuery, MappingState, Outcome, ProjectRevision
 from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
 from aos_runtime.registry_watch import RegistryWatch

@@ -5,14 +5,7 @@ from pathlib import Path
 
 from aos_protocol.documents import Project
 from aos_protocol.keys import Keys
-from aos_protocol.messages import (
-    DecisionTree,
-    TreeQuery,
-    WhatIf,
-    WhatIfQuery,
-    Why,
-    WhyQuery,
-)
+from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.bus import Bus
 from aos_runtime.journal import Journal
 from aos_runtime.registry_watch import RegistryWatch

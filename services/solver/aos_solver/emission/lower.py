@@ -20,15 +20,7 @@ from aos_protocol.documents import AbstractionMapping, Assignment, Environment, 
 from aos_protocol.documents import Constraint as DocumentedConstraint
 from aos_solver.emission.cpp_library import headers_for
 from aos_solver.emission.lower_averages import averaged_draws
-from aos_solver.emission.lower_code import (
-    BELIEF,
-    DYNAMIC,
-    EXTRINSIC,
-    GIVEN,
-    LOOKING,
-    Pieces,
-    SectionLowering,
-)
+from aos_solver.emission.lower_code import BELIEF, DYNAMIC, EXTRINSIC, GIVEN, LOOKING, Pieces, SectionLowering
 from aos_solver.emission.lower_copies import copies_of
 from aos_solver.emission.lower_names import check_names
 from aos_solver.emission.lower_relevance import (

@@ -8,12 +8,7 @@ from aos_protocol.messages import BeliefSummary, ChosenBy, SearchMade
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.choices import Choice, Ended, Held, Refused
-from aos_solver.mission.endings import (
-    Ending,
-    ending_after_planning,
-    is_held_back,
-    is_worth_nothing,
-)
+from aos_solver.mission.endings import Ending, ending_after_planning, is_held_back, is_worth_nothing
 from aos_solver.mission.endings import remark_of as remark_of_ending
 from aos_solver.mission.endless_loops import EndlessLoops
 from aos_solver.mission.failures import Failures

@@ -11,15 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from aos_protocol.errors import SkillError
-from aos_protocol.messages import (
-    DecisionRecord,
-    DecisionTree,
-    TreeQuery,
-    WhatIf,
-    WhatIfQuery,
-    Why,
-    WhyQuery,
-)
+from aos_protocol.messages import DecisionRecord, DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_solver.study.looking_ahead import tree_below
 from aos_solver.study.other_circumstances import OtherDocuments, decided_otherwise
 from aos_solver.study.reasons import Reasons
