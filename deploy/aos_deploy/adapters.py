@@ -230,8 +230,9 @@ def _adapter_word(node: YamlNode) -> object:
 def _check_others(name: str, node: YamlNode, named: Mapping[str, AdapterPlan], findings: Findings) -> None:
     """Tells what `"*"` cannot say: which function serves a path, and what the adapter calls it."""
     if (named[name].kind_name if name in named else name) == PYTHON:
+        function = "FILE.py:pick" if name == PYTHON else "pick"
         message = f"bind.{EVERYTHING_ELSE} names {name}, whose paths are bound one by one to functions"
-        findings.error("AOS106", message, node.span, f"Write it as /pick: {{{name}: pick}}")
+        findings.error("AOS106", message, node.span, f"Write it as /pick: {{{name}: {function}}}")
     elif isinstance(node, YamlMap):
         message = f"bind.{EVERYTHING_ELSE} says more than an adapter's name"
         findings.error("AOS106", message, node.span, f'Write it as "{EVERYTHING_ELSE}": {name}')

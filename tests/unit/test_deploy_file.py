@@ -237,6 +237,11 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
             "5:13 AOS106 bind.* names arm, whose paths are bound one by one to functions. Write it as /pick:",
         ),
         (
+            "bind: {'*': python}",
+            "4:13 AOS106 bind.* names python, whose paths are bound one by one to functions. "
+            "Write it as /pick: {python: FILE.py:pick}",
+        ),
+        (
             "bind: {'*': {pybullet: /go, fields: {}}}",
             '4:13 AOS106 bind.* says more than an adapter\'s name. Write it as "*": pybullet',
         ),

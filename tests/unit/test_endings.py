@@ -150,12 +150,21 @@ def belief(goal: float, over: float, failure: float) -> BeliefSummary:
         (0.5, 0.0, 0.45, Ending.FAILURE),
         (0.0, 0.5, 0.45, Ending.FAILURE),
         (0.4, 0.2, 0.2, None),
+        (0.899, 0.0, 0.001, None),
+        (0.86, 0.05, 0.0, None),
+        (0.5, 0.35, 0.06, None),
     ],
 )
 def test_a_mission_that_is_surely_over_counts_as_what_it_is_at_least(
     goal: float, over: float, failure: float, ending: Ending | None
 ) -> None:
     assert believed_ending(belief(goal, over, failure), MissionLimits(goal_probability=0.9)) is ending
+
+
+def test_a_mission_that_cannot_go_on_ends_whatever_the_rounding() -> None:
+    odds = [(goal / 100, over / 100) for goal in range(101) for over in range(101 - goal)]
+    beliefs = [belief(goal, over, 1 - goal - over) for goal, over in odds]
+    assert all(believed_ending(each, MissionLimits(goal_probability=0.9)) for each in beliefs)
 
 
 @pytest.mark.parametrize(
@@ -181,9 +190,9 @@ def test_an_ending_is_no_better_than_where_nothing_ran_that_was_not_observed(
     ("goal", "over", "failure", "said"),
     [
         (0.05, 0.0, 0.95, "the mission is over without its goal"),
-        (0.78, 0.0, 0.17, "the mission is over, and nobody can tell how: goal 0.780"),
+        (0.78, 0.0, 0.17, "the mission is over, nobody can tell how, and it counts as failure: goal 0.780"),
         (0.0, 0.95, 0.0, "the mission is over without its goal or a failure"),
-        (0.5, 0.45, 0.05, "the mission is over, and nobody can tell how"),
+        (0.5, 0.45, 0.05, "the mission is over, nobody can tell how, and it counts as over: "),
     ],
 )
 def test_a_mission_whose_end_is_not_known_is_not_said_to_be_without_its_goal(

@@ -67,7 +67,8 @@ def opened_bundle(path: Path) -> list[Path]:
         if not folder.is_dir():
             _unpack(path, folder)
     except UNREADABLE_ARCHIVE as error:
-        raise DeployError(f"{path} cannot be opened: {error}", code="AOS801") from error
+        why = getattr(error, "strerror", None) or error
+        raise DeployError(f"{path} cannot be opened: {why}", code="AOS801") from error
     runs = sorted(record.parent for record in folder.glob("*/run.json"))
     if not runs:
         raise _no_bundle(path, "no run is in it")

@@ -59,14 +59,15 @@ class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
 
 
 _WORST = (Ending.GOAL, Ending.OVER, Ending.FAILURE)
+_ROUNDING = 1e-9
 
 
 def believed_ending(belief: BeliefSummary, limits: MissionLimits) -> Ending | None:
     """The ending that a belief holds for sure enough; None where the mission may well go on.
 
     A mission that is surely over, but not surely in one way, counts as what it is at least: the endings are,
-    from the best to the worst, goal, over and failure. It is no better than where nothing ran that was not
-    observed, and not over where it goes on there.
+    from the best to the worst, goal, over and failure. It goes on where what is not over could yet make it a
+    better one. It is no better than where nothing ran that was not observed, and not over where it goes on there.
     """
     held = _held_ending(belief, limits)
     if held is None or belief.cautious is None:
@@ -81,14 +82,15 @@ def is_held_back(belief: BeliefSummary, limits: MissionLimits) -> bool:
 
 
 def _held_ending(belief: BeliefSummary | EndingOdds, limits: MissionLimits) -> Ending | None:
-    probability = belief.goal_probability
-    if probability >= limits.goal_probability:
+    wanted, goal = limits.goal_probability, belief.goal_probability
+    no_failure = goal + belief.over_probability
+    is_over = no_failure + belief.failure_probability
+    goes_on = 1 - is_over if is_over < 1 - _ROUNDING else 0.0
+    if goal >= wanted:
         return Ending.GOAL
-    probability += belief.over_probability
-    if probability >= limits.goal_probability:
+    if no_failure >= wanted and goal + goes_on < wanted:
         return Ending.OVER
-    probability += belief.failure_probability
-    return Ending.FAILURE if probability >= limits.goal_probability else None
+    return Ending.FAILURE if is_over >= wanted and no_failure + goes_on < wanted else None
 
 
 def ending_of_belief(belief: BeliefSummary, steps_taken: int, limits: MissionLimits) -> Ending | None:
@@ -145,4 +147,4 @@ def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> s
         return f"the mission is over without its goal or a failure: {odds}"
     if ending == Ending.FAILURE and belief.failure_probability >= limits.goal_probability:
         return f"the mission is over without its goal: {odds}"
-    return f"the mission is over, and nobody can tell how: {odds}"
+    return f"the mission is over, nobody can tell how, and it counts as {ending}: {odds}"
