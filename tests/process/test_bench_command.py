@@ -46,6 +46,12 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
     assert ours["return, pomcp", ""]["unit"] == "2 runs"
 
 
+def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_path: Path) -> None:
+    done = run_bench(str(tmp_path), "--quick")
+    assert done.returncode == 1
+    assert f"not measured: {tmp_path.name}: AOS104" in done.stdout
+
+
 def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(
     bundles: Path, tmp_path: Path
 ) -> None:

@@ -88,6 +88,8 @@ def bench(
         typer.echo(markdown(report))
     else:
         print_report(report)
+    if not report.rows:
+        raise typer.Exit(1)
 
 
 def _bundles_or_known(names: list[str]) -> list[str]:

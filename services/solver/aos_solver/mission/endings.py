@@ -67,7 +67,8 @@ def believed_ending(belief: BeliefSummary, limits: MissionLimits) -> Ending | No
 
     A mission that is surely over, but not surely in one way, counts as what it is at least: the endings are,
     from the best to the worst, goal, over and failure. It goes on where what is not over could yet make it a
-    better one. It is no better than where nothing ran that was not observed, and not over where it goes on there.
+    better one. It is no better than where nothing ran that was not observed, and not over where it goes on
+    there.
     """
     held = _held_ending(belief, limits)
     if held is None or belief.cautious is None:
