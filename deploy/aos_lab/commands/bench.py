@@ -61,7 +61,6 @@ def bench(
     Against hand-written C++, and against pomdp-py if it is installed. All of it
     takes an hour, with --quick some minutes.
     """
-    problems = problems_named(_bundles_or_known(names or []))
     effort = Effort(
         metrics=tuple(_known(metric or [], METRICS, "--metric")) or METRICS,
         repetitions=2 if quick else 5,
@@ -79,7 +78,7 @@ def bench(
         def on_step(what: str) -> None:
             bar.update(task, description=what, advance=1)
 
-        suite = Suite(problems, effort, cache_dir(), on_step)
+        suite = Suite(problems_named(_bundles_or_known(names or [])), effort, cache_dir(), on_step)
         bar.update(task, total=suite.steps)
         report = asyncio.run(suite.run())
     if as_json:
@@ -88,8 +87,7 @@ def bench(
         typer.echo(markdown(report))
     else:
         print_report(report)
-    if not report.rows:
-        raise typer.Exit(1)
+    raise typer.Exit(0 if report.rows else 1)
 
 
 def _bundles_or_known(names: list[str]) -> list[str]:
