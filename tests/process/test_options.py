@@ -8,7 +8,6 @@ from wide.delivery import delivery
 from wide.leaving import questions, survey
 from wide.lock import lock
 from wide.problems import open_field, parcels
-from wide.rescue import rescue
 from wide.towers import towers
 from wide.writing import BundleWriter
 
@@ -102,17 +101,6 @@ state.x = AOS.SampleUniform(0, 4);
         value = told[f"reach(where={where})"]
         assert abs(value.q - mean) < 3 * value.stderr
     assert plan.best.action == "reach(where=1)"
-
-
-async def test_a_reward_that_was_earned_is_not_expected_again_where_the_mission_may_end_with_it(
-    cache_dir: Path,
-) -> None:
-    """Two people are helped, who may be in one room. A rule by hand returns 26, and random actions -42."""
-    async with engine_of_text(rescue(3), cache_dir) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=40)
-        searches = (Search(simulations=1000, seed=seed) for seed in range(8))
-        runs = [await simulate_mission(engine, search, limits) for search in searches]
-    assert fmean(run.discounted_return for run in runs) > 10
 
 
 async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir: Path) -> None:

@@ -66,4 +66,36 @@ TEST("Before a robot leaves for what may be better elsewhere it looks where it i
   }
 }
 
+// Two jobs, each done by its action, which earns 20; the mission ends when both are done. A state has a bit for each.
+TEST("A reward that an action has earned does not count again where the mission may end with it") {
+  Problem problem = units::world(4, 2, 0.95);
+  problem.starts = {{0, 0.4}, {1, 0.3}, {2, 0.3}};
+  problem.values = {0, 0, 1, 0, 0, 1, 1, 1};
+  problem.endings[3] = 1;
+  for (std::uint32_t state = 0; state < 3; ++state) {
+    for (const std::uint32_t job : {0u, 1u}) {
+      if (!(state & 1u << job)) units::row(problem, state, job) = {{1.0, state | 1u << job, 0, 20}};
+    }
+  }
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  const aos::DecisionClock clock;
+  aos::OptionLibrary<TableModel> library{clock};
+  library.prepare(belief, random);
+  aos::SampledBelief<TableModel> sampled;
+  sampled.draw(belief, 30, random);
+  double steps = 10'000;
+  library.extend(sampled, steps, random);
+  aos::OwnChanges<TableModel> changes;
+  changes.measure(sampled.states(), library.cells(), steps, random);
+  aos::OptionGains<TableModel> gains;
+  gains.measure(library, sampled.states(), changes, steps, random);
+  for (std::size_t k = 0; k < sampled.size(); ++k) {
+    const bool is_one_done = sampled.states()[k].variables[0] + sampled.states()[k].variables[1] == 1;
+    EXPECT(gains.best_in(k) >= 20);
+    EXPECT(gains.best_in(k) <= (is_one_done ? 20 : 20 + 0.95 * 20) + 1e-9);
+  }
+}
+
 }  // namespace option_policy_tests

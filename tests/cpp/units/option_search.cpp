@@ -1,6 +1,9 @@
-// Ways to rewards that ask for many conditions at once: option_search.hpp.
+// Ways to rewards that ask for many conditions at once, and to ends that can be had at once: option_search.hpp, best_end.hpp.
 #include "aos/planning/options/option_search.hpp"
 
+#include "aos/planning/options/best_end.hpp"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -73,6 +76,29 @@ TEST("No new value and no new pair of values leads to a reward that asks for fiv
   const units::Problem problem = lock();
   double steps = 20'000;
   EXPECT(ways<SilentLock>(problem, steps).empty());
+}
+
+// Action 0 goes on to the next of four places, and action 1 ends the mission, which pays 8 for each place behind it, less 12.
+TEST("Before an end that can be had at once comes what makes it earn more") {
+  units::Problem problem = units::world(5, 2, 0.95);
+  problem.horizon = 20;
+  problem.variables = 1;
+  problem.values = {0, 1, 2, 3, 4};
+  problem.endings[4] = 1;
+  for (std::uint32_t place = 0; place < 4; ++place) {
+    units::row(problem, place, 0) = {{1.0, std::min(place + 1, 3U), 0, -0.5}};
+    units::row(problem, place, 1) = {{1.0, 4, 0, 8.0 * place - 12}};
+  }
+  SilentLock::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<SilentLock>::initial(random);
+  const aos::DecisionClock clock;
+  const aos::BestEnd<SilentLock> search{clock};
+  double steps = 1'000;
+  EXPECT((search.way_from(belief.particles().front().state, steps, random) == aos::Option{0, 0, 0, 1}));
+  for (std::uint32_t place = 0; place < 4; ++place) units::row(problem, place, 1).front().next = place;
+  SilentLock::take(problem);
+  EXPECT(search.way_from(belief.particles().front().state, steps, random).empty());
 }
 
 }  // namespace option_search_tests

@@ -54,6 +54,13 @@ class OptionFollowing {
     State after{};      // of the last try
   };
 
+  struct Tried {
+    double income;
+    const Option* option;
+    double earned;
+    bool ends;  // the mission
+  };
+
   Followed best_known(const State& state, std::size_t horizon, double& left, Sampler& random) const {
     first_.clear();
     for (const std::vector<Option>* options : {&library_.options(), &std::as_const(found_)}) {
@@ -62,16 +69,20 @@ class OptionFollowing {
         State next = state;
         const double earned = taken_option<Model>(option, next, random, library_.retries()).earned;
         left -= static_cast<double>(option.size());
-        if (earned > 0) first_.emplace_back(income<Model>(earned, option.size()), &option);
+        if (earned > 0) first_.push_back({income<Model>(earned, option.size()), &option, earned, Model::ending(next) != Ending::running});
       }
     }
     const auto count = static_cast<std::ptrdiff_t>(std::min(tried_again, first_.size()));
-    std::partial_sort(first_.begin(), first_.begin() + count, first_.end(), [](const auto& one, const auto& other) { return one.first > other.first; });
+    const auto sort_first = [&](auto&& comes_before) { std::partial_sort(first_.begin(), first_.begin() + count, first_.end(), comes_before); };
+    sort_first([](const Tried& one, const Tried& other) { return one.income > other.income; });
+    // After an end nothing is earned, so that ends compare by what they earn in all.
+    const bool ends = !first_.empty() && first_.front().ends;
+    if (ends) sort_first([](const Tried& one, const Tried& other) { return std::pair(one.ends, one.earned) > std::pair(other.ends, other.earned); });
     Followed best;
     double most = 0;
     for (auto entry = first_.begin(); entry != first_.begin() + count; ++entry) {
-      Followed again = tried(*entry->second, state, left, random);
-      const double now = income<Model>(again.earned, again.option.size());
+      Followed again = tried(*entry->option, state, left, random);
+      const double now = ends ? again.earned : income<Model>(again.earned, again.option.size());
       if (now <= most) continue;
       most = now;
       best = std::move(again);
@@ -98,7 +109,7 @@ class OptionFollowing {
   }
 
   const OptionLibrary<Model>& library_;
-  mutable std::vector<std::pair<double, const Option*>> first_;
+  mutable std::vector<Tried> first_;
   mutable std::vector<Option> found_;
 };
 

@@ -10,6 +10,7 @@
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/options/best_end.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_search.hpp"
@@ -50,9 +51,11 @@ class OptionLibrary {
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
     double found = 0;
     std::vector<State> rests;
+    const std::size_t end_stride = std::max<std::size_t>(belief.size() / searched_ends, 1);
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
-      bool has_way = !counts_ && follow(state, steps, random);
+      const bool has_end = !counts_ && k % end_stride == 0 && is_left(steps) && add_best_end(state, steps, random);
+      bool has_way = !counts_ && (follow(state, steps, random) || has_end);
       if (!has_way && is_left(steps) && add_from(state, steps, random)) has_way = counts_ || follow(state, steps, random);
       if (!has_way) continue;
       found += belief.weights()[k];
@@ -88,6 +91,7 @@ class OptionLibrary {
  private:
   static constexpr std::size_t max_options = 256;
   static constexpr std::size_t many_options = 64;
+  static constexpr std::size_t searched_ends = 8;   // states from which an end is put off
   static constexpr std::size_t searched_rests = 8;  // states where the known options end
   static constexpr std::size_t longest = 40;        // options in a row
 
@@ -96,6 +100,12 @@ class OptionLibrary {
   // The same for those from a state. Of ways that were searched for by conditions no rests are added.
   bool add_from(const State& state, double& steps, Sampler& random) {
     return add(OptionSearch<Model>{cells_, clock_, counts_}.from(state, steps, random), counts_ ? 1 : max_options);
+  }
+
+  // Adds the way that earns most before an end that can be had at once. Returns whether there is one.
+  bool add_best_end(const State& state, double& steps, Sampler& random) {
+    const Option way = BestEnd<Model>{clock_}.way_from(state, steps, random);
+    return !way.empty() && add({way}, 1);
   }
 
   // Adds options, and what is left of each after its first actions: at most so many for each. Returns whether there were any.
