@@ -120,7 +120,9 @@ class MissionRun:
         await send_rest(run, is_wanted=bool(self._deployment.file.spans.otlp))
         run.close()
         took = f"{count(summary.steps, 'step')} in {summary.duration_s:.1f} s"
-        self._report(Told(f"{summary.ending} after {took}; everything is kept in {from_here(run.path)}"))
+        lacks = self.error is not None and self.error.code == StorageError.code
+        kept = "what could be written is" if lacks else "everything is kept"
+        self._report(Told(f"{summary.ending} after {took}; {kept} in {from_here(run.path)}"))
         return summary
 
     def _settled(self, run: RunDirectory, *, was_interrupted: bool) -> Summary:

@@ -310,6 +310,16 @@ def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Pa
     assert not (project / "port").exists()
 
 
+def test_on_a_full_disk_not_everything_is_said_to_be_kept(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_FAILPOINT", "journal.decision.before:full:1")
+    done = up("--model")
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert "; what could be written is in runs/" in done.stdout
+    assert "AOS701" in done.stderr
+
+
 def test_documents_that_cannot_be_played_are_told_at_once(project: Path) -> None:
     document = project / "fetch" / "fetch.ef"
     document.write_text(

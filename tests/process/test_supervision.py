@@ -77,7 +77,7 @@ async def test_a_defect_in_a_service_is_told_in_one_line(system: System) -> None
 
 async def test_a_service_on_a_full_disk_is_told_as_that_though_its_fault_has_no_space(system: System) -> None:
     error = await system.error(small("registry"), small("skills", "full"))
-    assert str(error).startswith("AOS701: skills could not write or read its files. Its log is ")
+    assert str(error).startswith("AOS701: skills could not write or read its files. See that the disk of the")
     assert "database or disk is full" in error.hint
 
 
