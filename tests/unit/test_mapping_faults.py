@@ -46,6 +46,24 @@ return __input.data
     assert answer.local_variables == {"level": "null"}
 
 
+def test_a_result_without_a_value_is_told_and_not_the_silent_topic_beside_it() -> None:
+    mapping = running("""\
+response: high
+response_rule: level is not None and level > 3 or weight > 3
+local_variable: level
+topic: /level
+message_type: Level
+code:
+return __input.data
+local_variable: weight
+from_ros_service_response: true
+code:
+weight = None
+""")
+    answer = raised(mapping, Finish({}))
+    assert answer.unset == ("weight",)
+
+
 def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place() -> None:
     emission = emitted_with("""\
 local_variable: success

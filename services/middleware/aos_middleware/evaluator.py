@@ -231,10 +231,10 @@ class Evaluator:
         """Most errors in rules that are about None are about a topic that said nothing."""
         if "NoneType" not in answer.error or not answer.error.startswith(("TypeError", "AttributeError")):
             return ""
-        for variable in self.emitted.mapping.local_variables:
-            if variable.name in answer.unset and variable.source is LocalSource.TOPIC:
-                return f"{variable.name} has no value, for no message came on {variable.topic}"
-        return ""
+        without = [each for each in self.emitted.mapping.local_variables if each.name in answer.unset]
+        if not without or any(variable.source is not LocalSource.TOPIC for variable in without):
+            return ""  # It may be about the result.
+        return f"{without[0].name} has no value, for no message came on {without[0].topic}"
 
     async def _why_it_ended(self, child: Child, limit_s: float) -> MappingFault:
         """The fault behind a worker that ended instead of answering, from what it left in the log."""

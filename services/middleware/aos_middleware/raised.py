@@ -1,10 +1,12 @@
 """The error that code in a worker raised: its text, and the place in the generated module."""
 
+import re
 from types import CodeType, TracebackType
 
 from aos_middleware.frames import Raised
 
 _MAX_ERROR_CHARACTERS = 2000
+_NAME = re.compile(r"[^\W\d]\w*")
 
 
 class NoTruthValue(TypeError):
@@ -23,14 +25,20 @@ def raised(
     local_variables: dict[str, str] | None = None,
 ) -> Raised:
     """Returns what an exception says, and where in the module it was: at the innermost of the module's
-    frames."""
+    frames.
+
+    Of the `unset` variables those are told that stand in the expression that raised, else all.
+    """
+    failed = ""
     if isinstance(error, NoTruthValue):
         text, (line, column) = f"TypeError: {_said(error)}", _start(error.code, lines)
     else:
         text = f"{type(error).__name__}: {_said(error)}"
-        line, column = _place(error.__traceback__, file_name, lines)
+        line, column, failed = _place(error.__traceback__, file_name, lines)
     text = text[:_MAX_ERROR_CHARACTERS].rstrip(": ")
-    return Raised(text, line, column, unset, local_variables or {})
+    named = set(_NAME.findall(failed))
+    told = tuple(name for name in unset if name in named) or unset
+    return Raised(text, line, column, told, local_variables or {})
 
 
 def _said(error: BaseException) -> str:
@@ -40,17 +48,19 @@ def _said(error: BaseException) -> str:
         return f"(its text raised {type(failure).__name__})"
 
 
-def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int]:
-    place = (0, 0)
+def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int, str]:
+    """The line and the column, and the text of the expression up to the end of its line."""
+    place = (0, 0, "")
     while trace is not None:
         code = trace.tb_frame.f_code
         if code.co_filename == file_name:
             line = trace.tb_lineno
-            start = list(code.co_positions())[trace.tb_lasti // 2][2]
+            _, end_line, start, end = list(code.co_positions())[trace.tb_lasti // 2]
             text = lines[line - 1] if 0 < line <= len(lines) else ""
             # Python counts bytes, documents characters.
             column = len(text.encode()[: start or 0].decode(errors="ignore")) + 1
-            place = (line, column)
+            failed = text.encode()[start or 0 : end if end_line == line else None]
+            place = (line, column, failed.decode(errors="ignore"))
         trace = trace.tb_next
     return place
 
