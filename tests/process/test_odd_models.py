@@ -6,7 +6,7 @@ import pytest
 from mappings import mapping_text
 from models import engine_of_text
 
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DocumentError, IntractableError
 
 CROWDED = {
     "odd.ef": "project: odd\nhorizon: 5\ndiscount: 0.9\n\n"
@@ -68,6 +68,28 @@ async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir
         assert plan.index in (7, 8)
         after = await engine.update(plan.best.action, "done")
     assert after.probability == pytest.approx(1)
+
+
+MANY = {
+    "odd.ef": "project: odd\nhorizon: 2\n\nstate_variable: int x\n\nstate_variable: int y\n",
+    "go.sd": """project: odd
+
+dynamic_model:
+vector<double> all(800, 1 / 800.0);
+state__.y = state.x;
+state__.x = 1 + AOSUtils::SampleDiscrete(all);
+__reward = (state__.x > 400) - (state.y > 900);
+__moduleResponse = gone;
+""",
+}
+
+
+async def test_a_short_question_is_answered_after_one_that_went_over_the_limit(cache_dir: Path) -> None:
+    async with engine_of_text(MANY, cache_dir) as engine:
+        with pytest.raises(IntractableError):
+            await engine.exact_values(3)
+        (value,) = (await engine.exact_values(1)).actions
+    assert value.q == pytest.approx(0.5)
 
 
 async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path) -> None:

@@ -90,12 +90,23 @@ class StudyCommands {
   ExactEvaluation evaluation_for(const Command& command, const Belief<Model>& belief, int horizon) {
     const std::chrono::duration<double> limit{command.number<double>("seconds")};
     const auto start = std::chrono::steady_clock::now();
-    if (!space_) space_ = std::make_unique<StateSpace<Model>>();
-    space_->reach_within(belief, horizon);
+    reach(belief, horizon);
     observable_.prepare(space_->rows(), space_->numbering(), horizon);
     return {space_->rows(), observable_,
             {.beliefs = command.number<std::uint64_t>("beliefs"),
              .is_over = [=] { return std::chrono::steady_clock::now() - start > limit; }}};
+  }
+
+  // Lists what a belief reaches. Where that and what is kept do not fit together, it is listed alone.
+  void reach(const Belief<Model>& belief, int horizon) {
+    try {
+      if (space_) return space_->reach_within(belief, horizon);
+    } catch (const NotEnumerable&) {
+      blame::at(0);
+    }
+    space_ = std::make_unique<StateSpace<Model>>();
+    observable_ = {};
+    space_->reach_within(belief, horizon);
   }
 
   const BeliefCommands<Model>& beliefs_;
