@@ -8,7 +8,7 @@ import keyword
 from collections.abc import Collection, Iterator
 
 from aos_language.cpp.keywords import SPECIAL_NAMES
-from aos_language.cpp.snippets import Cpp, DeclarationKind
+from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Extent, Mention
 from aos_language.cpp.values import value_names
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.local_types import RESERVED_LOCAL_NAMES
@@ -129,6 +129,12 @@ def _responses(model: SkillModel, environment: Environment | None) -> dict[str, 
                     holders.append(name)
                 elif name not in known and name not in declared:
                     found.setdefault(name, _place(snippet, cpp, offset))
+    if not found:
+        found = {
+            mention.path[0]: _place(snippet, cpp, mention.extent.start)
+            for snippet, cpp, mention in reversed(list(_kept_names(read, declared)))
+            if mention.path[0] not in known and mention.path[0] not in declared
+        }
     return dict(sorted(found.items(), key=lambda item: item[1]))
 
 
@@ -140,6 +146,38 @@ def _values_of(variable: str, cpp: Cpp) -> Iterator[tuple[str, int]]:
         if extent is not None:
             text = cpp.code[extent.start : extent.end]
             yield from ((name, extent.start + offset) for name, offset in value_names(text))
+
+
+def _kept_names(
+    read: list[tuple[Snippet, Cpp]], declared: Collection[str]
+) -> Iterator[tuple[Snippet, Cpp, Mention]]:
+    """The lone names that are put into what `__moduleResponse` is taken out of: a list, a map, a lambda."""
+    sources = {
+        mention.path[0]
+        for _, cpp in read
+        for extent in _assigned_to("__moduleResponse", cpp)
+        for mention in _within(extent, cpp)
+        if mention.path[0] in declared
+    }
+    for source in sources:
+        for snippet, cpp in read:
+            for extent in _assigned_to(source, cpp):
+                names = (each for each in _within(extent, cpp) if len(each.path) == 1)
+                yield from ((snippet, cpp, each) for each in names if each.access is Access.READ)
+
+
+def _assigned_to(variable: str, cpp: Cpp) -> Iterator[Extent]:
+    """The extents of what a variable or a part of it is set to, and of the calls of its methods."""
+    extents = [declaration.initial for declaration in cpp.declarations if declaration.name == variable]
+    extents += [mention.assigned for mention in cpp.mentions if mention.path[0] == variable]
+    extents += [call.extent for call in cpp.calls if call.name[:1] == (variable,) and len(call.name) > 1]
+    yield from (extent for extent in extents if extent is not None)
+
+
+def _within(extent: Extent, cpp: Cpp) -> Iterator[Mention]:
+    for mention in cpp.mentions:
+        if extent.start <= mention.extent.start < extent.end:
+            yield mention
 
 
 def _place(snippet: Snippet, cpp: Cpp, offset: int) -> Span:

@@ -193,3 +193,18 @@ def test_a_type_with_a_name_of_cpp_is_told_where_it_stands_and_not_in_code_that_
     found = load_files(files).diagnostics
     assert "AOS126" in {each.code for each in found}
     assert "AOS108" not in {each.code for each in found}
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "const auto t = std::vector{seen, unseen}; __moduleResponse = t[state.at];",
+        "auto say = [&](int k) { return k == 1 ? seen : unseen; }; __moduleResponse = say(state.at);",
+        "int t[2]; t[0] = seen; t[1] = unseen; __moduleResponse = t[state.at];",
+        "vector<int> t; t.push_back(seen); t.push_back(unseen); __moduleResponse = t.at(state.at);",
+        "map<Side, int> t{{Left, seen}, {Right, unseen}}; __moduleResponse = t[state.at];",
+    ],
+)
+def test_responses_are_found_in_what_the_response_is_taken_out_of(code: str) -> None:
+    look = LOOK.partition("dynamic_model:\n")[0] + f"dynamic_model:\n{code}\n"
+    assert [rule.response for rule in mapping_of(look).rules] == ["seen", "unseen"]
