@@ -76,7 +76,7 @@ if (fault == eResponse)
 """
 ANSWERING = mapping_text("ok: True", project="ward", skill="slip")
 FAULTS = {
-    "eNull": ("AOS210", "signal 11"),
+    "eNull": ("AOS210", "signal 11, as for an index out of range or a pointer"),
     "eRange": ("AOS215", "element 7 of a vector of 3"),
     "eThrow": ("AOS215", "no way"),
     "eReward": ("AOS214", "the reward is"),

@@ -290,6 +290,17 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said: str, name: s
             "could not convert `is_in(r, c)` from `void` to `bool`",
             "",
         ),
+        (
+            "'const class aos::Vector<int, 64>' has no member named 'push_bak'; did you mean 'push_back'?",
+            "`vector<int>` has no member named `push_bak`",
+            "Did you mean `push_back`?",
+        ),
+        (
+            "conversion from 'std::ios_base& (*)(std::ios_base&)' to 'int'\nm.cpp:{line}:6: error: could not "
+            "convert 'std::right' from 'std::ios_base&(std::ios_base&)' to 'int'",
+            "`right` was not declared",
+            "",
+        ),
     ],
 )
 def test_messages_are_told_in_the_documents_terms_with_what_to_write(
@@ -297,6 +308,7 @@ def test_messages_are_told_in_the_documents_terms_with_what_to_write(
 ) -> None:
     emitted = emit(program())
     line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
+    said = said.replace("{line}", str(line))
     (error,) = read_messages(f"m.cpp:{line}:6: error: {said}\n", "m.cpp", emitted).diagnostics
     assert (error.message, error.hint) == (message, hint)
 

@@ -25,6 +25,8 @@ _A_TEXT = re.compile(
 """A text meets another type: a number, an enum's value, a response."""
 _WITHIN = re.compile(r"(?:\b\w+::)?\b\w+<aos::[^>]*>\((?:[^()]|\([^()]*\))*\)(?: const)?::")
 """The function of ours in which a struct or a lambda of a document's code stands."""
+_OF_STREAMS = re.compile(r".*`std::(\w+)` from `std::ios_base&.*")
+"""A name without an enum is found in C++'s library: `left`, `right`, `fixed`, `internal` and their like."""
 _FAULTS = ("error", "fatal error", "Error")
 
 
@@ -86,7 +88,10 @@ def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Each complaint once for a line: a template is complained about for every use of it."""
     first: dict[tuple[str, int, str], Diagnostic] = {}
+    named = {found.span for found in diagnostics if _NOT_DECLARED.fullmatch(found.message)}
     for diagnostic in diagnostics:
+        if "std::ios_base" in diagnostic.message and diagnostic.span in named:
+            continue  # Said of the same name.
         first.setdefault((diagnostic.span.file, diagnostic.span.line, diagnostic.message), diagnostic)
     return list(first.values())
 
@@ -119,6 +124,7 @@ def _plain(text: str) -> tuple[str, str]:
     """The message in the documents' terms, and the compiler's suggestion as a hint."""
     text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
     text = re.sub(r"\.<lambda\([^)]*\)>(?=\()", "", _WITHIN.sub("", text))
+    text = re.sub(r"(?:const )?(?:class )?aos::Vector<(.+?), \d+>", r"vector<\1>", text)
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
     text = text.replace("was not declared in this scope", "was not declared").replace(
@@ -129,6 +135,8 @@ def _plain(text: str) -> tuple[str, str]:
             "this array is indexed by another enum",
             "Use a value of its own enum, or a number: `int(value)`",
         )
+    if (name := _OF_STREAMS.fullmatch(text)) is not None:
+        return f"`{name[1]}` was not declared", ""
     if _A_TEXT.search(text):
         return text, "Numbers, values of enums and responses are written without quotes"
     message, separator, suggestion = text.partition("; ")

@@ -272,6 +272,8 @@ class EngineChild:
         if not piece:
             message = f"the engine ended outside of the documents' code ({how})"
             return ModelError(message, code="AOS213", hint=_MEMORY_HINT)
+        if status == -signal.SIGSEGV:
+            how += ", as for an index out of range or a pointer that leads nowhere"
         return self.fault(kind.code, f"{message} ({how})", piece)
 
     async def _status(self) -> int | None:
