@@ -1,6 +1,7 @@
 """The answers of the checks to mistakes that a newcomer makes; each is said once."""
 
 import json
+import re
 
 import pytest
 from texts import encoded
@@ -247,6 +248,13 @@ def test_a_penalty_above_0_is_told() -> None:
     assert finding_texts(skill=SKILL.replace("violate_penalty: -1", "violate_penalty: 2.5")) == [
         "5 AOS147 walk earns 2.5 where this does not hold. A penalty is added to the reward: write -2.5"
     ]
+
+
+def test_a_skill_that_may_always_be_used_needs_no_penalty() -> None:
+    skill = SKILL.replace("violate_penalty: -1\n", "")
+    assert any("AOS147" in told for told in finding_texts(skill=skill))
+    always = re.sub(r"__meetPrecondition = .*", "__meetPrecondition = true;", skill)
+    assert not any("AOS147" in told for told in finding_texts(skill=always))
 
 
 def test_a_kind_of_type_in_capitals_is_read_and_no_type_is_unknown() -> None:

@@ -1,6 +1,7 @@
 """Preconditions that nothing keeps, or whose violation earns something: a skill runs also where its
 precondition does not hold."""
 
+import re
 from collections.abc import Iterable
 
 from aos_language.document_code import snippets_of
@@ -8,6 +9,8 @@ from aos_language.findings import Findings
 from aos_protocol.documents import Assignment, SkillModel
 
 _MEETS = "__meetPrecondition"
+_ALWAYS = re.compile(rf"\s*(?:{_MEETS}\s*=\s*(?:true|1)\s*;?\s*)?")
+"""Code that says that a skill may always be used."""
 
 
 def check_precondition(model: SkillModel, findings: Findings) -> None:
@@ -24,6 +27,8 @@ def check_precondition(model: SkillModel, findings: Findings) -> None:
         hint = f"A penalty is added to the reward: write -{model.violation_penalty:g}"
         findings.warning("AOS147", message, span, hint)
     if model.violation_penalty or not _mentions(model.precondition) or _mentions(model.dynamic_model):
+        return
+    if all(_ALWAYS.fullmatch(snippet.code) for snippet, _ in snippets_of(model.precondition)):
         return
     message = f"nothing keeps the planner from using {model.name} where this does not hold"
     hint = f"Add `violate_penalty: -10`, or say in the dynamic model what happens where {_MEETS} is false"
