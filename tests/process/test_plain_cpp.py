@@ -78,6 +78,11 @@ CODE = {
         "__reward = copy.size();",
         4,
     ),
+    "member": (
+        "auto m = &Parameters::weight; state__.third.*m += 3; __reward = state__.third.*m;"
+        "state__.third = state.third;",
+        5,
+    ),
     "rows": ("for (auto line : state.grid) { line.push_back(5); __reward += line[2]; }", 10),
     "captured": ("auto next = [&, n = amount]() mutable { return n++; }; next(); __reward = next();", 4),
     "bound": (

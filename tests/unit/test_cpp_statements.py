@@ -1,7 +1,10 @@
 """Marks at the statements of C++ code."""
 
+from random import Random
+
 import pytest
 
+from aos_language.cpp import tree
 from aos_language.cpp.statements import Marks, Statement, marked
 
 
@@ -63,3 +66,21 @@ def test_any_depth_is_marked() -> None:
     text = marked("{" * 2000 + "a();" + "}" * 2000, MARKS)
     assert text is not None
     assert "@1:2001; a();" in text
+
+
+def test_no_text_with_a_variable_that_is_read_as_a_function_is_passed_over() -> None:
+    """The first look of `tree_of` finds each text in which its slow search finds something."""
+    random = Random(1)
+    found = 0
+    for _ in range(3000):
+        parts = [random.choice(TOKENS) + random.choice(["", " "]) for _ in range(random.randrange(12))]
+        start = random.choice(["Row row", "auto& row", "A::B *row", "Row row/*c*/", "Row\nrow // c\n", ""])
+        text = f"void f() {{ {random.choice(['', 'x; ', 'else '])}{start}({''.join(parts)}; }}"
+        root = tree._PARSER.parse(text.encode()).root_node
+        if tree._starts(root):
+            found += 1
+            assert tree._MAY_DECLARE.search(text.encode(), text.index("{")), text
+    assert found > 50
+
+
+TOKENS = [*"1:;{}()[]<>&*x,=.$\n", "row", "int", "const", "return", "else", "if", "case", "::", "->", "/*c*/"]

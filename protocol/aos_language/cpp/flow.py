@@ -12,7 +12,7 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import CHANGING_METHODS, HANDLE_METHODS, READING_FUNCTIONS, READING_METHODS, Cpp
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, picks_member, text_of
 from aos_language.cpp.tree import tree_of
 
 STATES = frozenset({"state", "state_", "state__", "state___"})
@@ -292,6 +292,9 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
     waiting = [node]
     while waiting:
         part = waiting.pop()
+        field = part.child_by_field_name("field") if picks_member(part) else None
+        if field is not None:
+            yield Name(text_of(field))
         if part.type == "field_expression" and (name := _of_state(part)) is not None:
             yield name
         elif part.type == "identifier":
@@ -318,6 +321,8 @@ def _name_of_draw(start_byte: int) -> Name:
 
 def _of_state(node: tree_sitter.Node) -> Name | None:
     """The variable behind `state.x`."""
+    if picks_member(node):
+        return None
     argument, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
     while argument is not None and argument.type == "parenthesized_expression":
         argument = argument.named_children[0] if argument.named_child_count == 1 else None

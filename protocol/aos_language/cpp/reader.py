@@ -15,7 +15,7 @@ from aos_language.cpp.facts import (
     DeclarationKind,
     Mention,
 )
-from aos_language.cpp.nodes import text_of
+from aos_language.cpp.nodes import below, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
@@ -102,6 +102,8 @@ class TreeReader:
         parts, root = self._flatten(node, access)
         if root is None:
             return
+        if any(picks_member(part) for part in below(node)):
+            access, assigned = Access.UPDATE if access is Access.WRITE else access, None
         if node.type == "qualified_identifier" and _is_type(node):
             self.types.append((text_of(node).split("<")[0], self.extent(node)))
         else:
@@ -115,7 +117,13 @@ class TreeReader:
         parts: list[str] = []
         current = node
         while True:
-            if current.type == "field_expression":
+            if picks_member(current):
+                parts.clear()  # The field may be any.
+                chosen = _child(current, "field")
+                extent = self.extent(chosen)
+                self.mentions.append(Mention((text_of(chosen),), Access.READ, extent, extent))
+                current = _child(current, "argument")
+            elif current.type == "field_expression":
                 parts += reversed(_names(current.child_by_field_name("field")))
                 current = _child(current, "argument")
             elif current.type == "subscript_expression":

@@ -13,12 +13,16 @@ _SHORT_BYTES = 10_000
 _PIECE_BYTES = 65536
 _LANGUAGE = tree_sitter.Language(tree_sitter_cpp.language())
 _PARSER = tree_sitter.Parser(_LANGUAGE)
+_FUNCTION = "(function_declarator declarator: (identifier)) @declared"
 _DECLARED = (
-    "(declaration declarator: [(function_declarator) @declared (reference_declarator (function_declarator)"
-    " @declared) (pointer_declarator declarator: (function_declarator) @declared)])"
+    f"(declaration declarator: [{_FUNCTION} (reference_declarator {_FUNCTION})"
+    f" (pointer_declarator declarator: {_FUNCTION})])"
 )
+_LETTER = rb"[A-Za-z_$\x80-\xff]"
 _MAY_DECLARE = re.compile(
-    rb"(?:(?<!return)(?<!else)\s|[>&*/)\]])\s*(?!(?:if|for|while|switch|return)\b)[A-Za-z_]\w*\s*\("
+    rb"(?:(?<!return)\s|[>&*/)\]])\s*(?!(?:if|for|while|switch|return)\b)"
+    rb"%s(?:%s|\d)*(?:\s|\\|/\*.*?\*/|//[^\n]*\n)*\(" % (_LETTER, _LETTER),
+    re.DOTALL,
 )
 """A name and a bracket behind a type: each function that a body declares has them, most texts have not."""
 
@@ -66,9 +70,7 @@ def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
     """The tree with the variables that the parser has taken for functions."""
     if _MAY_DECLARE.search(data, max(data.find(b"{"), 0)) is None:
         return root
-    declared = tree_sitter.QueryCursor(_local_functions()).captures(root).get("declared", ())
-    lists = [node.child_by_field_name("parameters") for node in declared]
-    starts = [values for values in lists if values is not None and _are_values(values)]
+    starts = _starts(root)
     if not starts:
         return root
     text = bytearray(data)
@@ -76,6 +78,13 @@ def _with_variables(root: tree_sitter.Node, data: bytes) -> tree_sitter.Node:
         text[values.start_byte : values.start_byte + 1] = b"{"
         text[values.end_byte - 1 : values.end_byte] = b"}"
     return _PARSER.parse(bytes(text)).root_node
+
+
+def _starts(root: tree_sitter.Node) -> list[tree_sitter.Node]:
+    """The values in brackets that were read as the parameters of a function."""
+    declared = tree_sitter.QueryCursor(_local_functions()).captures(root).get("declared", ())
+    lists = [node.child_by_field_name("parameters") for node in declared]
+    return [values for values in lists if values is not None and _are_values(values)]
 
 
 def _are_values(parameters: tree_sitter.Node) -> bool:
