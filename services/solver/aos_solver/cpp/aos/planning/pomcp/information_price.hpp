@@ -17,7 +17,6 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
@@ -26,6 +25,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
+#include "aos/planning/values/few_outcomes.hpp"
 #include "aos/planning/values/state_values.hpp"
 
 namespace aos {
@@ -33,8 +33,6 @@ namespace aos {
 template <class Model>
 class InformationPrice {
  public:
-  InformationPrice() { paths_.report_to(&ignored_numbers); }
-
   // The price for the rest of the mission, from the running belief of its first decision by `values`. Beliefs of the same
   // entropy have the same price.
   double of(const Belief<Model>& belief, const StateValues<Model>& values, int horizon) {
@@ -184,13 +182,10 @@ class InformationPrice {
 
   template <class Visit>
   void walk(const State& state, int action, Visit&& visit) {
-    Step step;
-    const auto run = [&](Enumerator& path) {
+    outcomes_.walk(state, action, [&](const State& next, const Step& step, double probability) {
       if (++work_ > most_priced_steps) throw NotEnumerable{"missions take too long"};
-      next_ = state;
-      step = Model::step(next_, action, path);
-    };
-    paths_.for_nearly_each_path(run, [&](Enumerator& path) { visit(next_, step, path.probability()); }, max_reward_paths);
+      visit(next, step, probability);
+    });
   }
 
   double worth(const State& state) const { return values_->value(state, horizon_); }
@@ -204,8 +199,7 @@ class InformationPrice {
   const StateValues<Model>* values_ = nullptr;
   int horizon_ = 1;
   std::size_t work_ = 0;  // steps of the model
-  Enumerator paths_;
-  State next_{};
+  FewOutcomes<Model> outcomes_;
   State true_state_{};
   ObservationOddsOfStep own_;
   ObservationOddsOfStep all_;

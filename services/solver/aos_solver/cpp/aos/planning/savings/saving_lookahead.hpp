@@ -76,17 +76,10 @@ class SavingLookahead {
     const Step step = Model::step(next, action, random);
     told_.emplace_back(step.observation, k);
     double* const incomes = &incomes_[k * (ways_.size() + 1)];
-    const bool goes_on = Model::ending(next) == Ending::running;
     for (std::size_t i = 0; i <= ways_.size(); ++i) {
-      double earned = step.reward;
-      double discount = Model::discount;
-      State state = next;
-      const std::size_t length = i < ways_.size() ? ways_[i].size() : 0;
-      for (std::size_t t = 0; t < length && goes_on && Model::ending(state) == Ending::running; ++t, discount *= Model::discount) {
-        Sampler draws = lucks_[k].of(t + 1);
-        earned += discount * Model::step(state, ways_[i][t], draws).reward;
-      }
-      incomes[i] = income<Model>(earned + discount * values_.value(state) - rests_[k].returned(length + 1), length + 1);
+      const Option& way = i < ways_.size() ? ways_[i] : nothing_;
+      const double returned = returned_along(values_, way, next, lucks_[k], step.reward, 1);
+      incomes[i] = income<Model>(returned - rests_[k].returned(way.size() + 1), way.size() + 1);
     }
   }
 
@@ -111,6 +104,7 @@ class SavingLookahead {
 
   const RestValues<Model>& values_;
   const std::vector<Option>& ways_;
+  const Option nothing_;  // to do after an action
   const SampledBelief<Model>* belief_ = nullptr;
   std::vector<StepLuck> lucks_;       // by state
   std::vector<Rest<Model>> rests_;    // by state

@@ -45,16 +45,21 @@ class Rest {
   std::vector<double> returned_;  // by how many steps are taken before states are valued
 };
 
-// What a way saves against the rest.
+// What is returned by a way, and what the state after it is worth. So much was earned in `taken` steps before.
 template <class Model>
-double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Option& way, typename Model::State state, const StepLuck& luck) {
-  double earned = 0;
-  double discount = 1;
+double returned_along(const RestValues<Model>& values, const Option& way, typename Model::State state, const StepLuck& luck, double earned = 0, std::size_t taken = 0) {
+  double discount = taken == 0 ? 1 : Model::discount;
   for (std::size_t step = 0; step < way.size() && Model::ending(state) == Ending::running; ++step, discount *= Model::discount) {
-    Sampler random = luck.of(step);
+    Sampler random = luck.of(taken + step);
     earned += discount * Model::step(state, way[step], random).reward;
   }
-  return earned + discount * values.value(state) - rest.returned(way.size());
+  return earned + discount * values.value(state);
+}
+
+// What a way saves against the rest.
+template <class Model>
+double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Option& way, const typename Model::State& state, const StepLuck& luck) {
+  return returned_along(values, way, state, luck) - rest.returned(way.size());
 }
 
 // How many steps of the model take as long as a rest, or a way, whose states are valued: a value takes about as long as a step.

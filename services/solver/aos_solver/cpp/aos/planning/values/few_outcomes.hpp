@@ -24,19 +24,24 @@ class FewOutcomes {
   template <class Visit>
   bool visit_each(const typename Model::State& state, int action, Visit&& visit) {
     if (is_left_out_[static_cast<std::size_t>(action)]) return false;
-    Step step;
-    const auto run = [&](Enumerator& path) {
-      next_ = state;
-      step = Model::step(next_, action, path);
-    };
     try {
-      paths_.for_nearly_each_path(run, [&](Enumerator& path) { visit(next_, step, path.probability()); }, max_reward_paths);
+      walk(state, action, visit);
       return true;
     } catch (const NotEnumerable&) {
     } catch (const ModelFault&) {  // a path that may never be drawn
     }
     leave_out(action);
     return false;
+  }
+  // The same, and throws what a step throws, or NotEnumerable.
+  template <class Visit>
+  void walk(const typename Model::State& state, int action, Visit&& visit) {
+    Step step;
+    const auto run = [&](Enumerator& path) {
+      next_ = state;
+      step = Model::step(next_, action, path);
+    };
+    paths_.for_nearly_each_path(run, [&](Enumerator& path) { visit(next_, step, path.probability()); }, max_reward_paths);
   }
 
  private:
