@@ -27,7 +27,7 @@ aos: 1
 robot: tiger
 bundles: [{root}/deploy/bundles/bench/tiger]
 bus: {{listen: "{endpoint}"}}
-mission: {{goal_probability: 1.0, step_limit: 1_000_000}}
+mission: {{goal_probability: 1.0, step_limit: 1_000_000, activation_timeout_s: 1000}}
 solver: {{simulations: 100, planner: pomcp, ponder_while_acting: false}}
 bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
 runs: runs
