@@ -15,6 +15,7 @@ from aos_deploy.run_record import RunRecord
 from aos_gateway.run_shelf import RunShelf
 from aos_gateway.runs import RemoteRun
 from aos_protocol.errors import GatewayError
+from aos_runtime.mission_folders import make_folder_of_missions
 
 
 class EndingRun(RemoteRun):
@@ -61,3 +62,13 @@ def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path) -> None:
                 listed.result()
     finally:
         sys.setswitchinterval(usual_s)
+
+
+async def test_a_system_that_stays_tells_the_name_of_its_first_mission_before_that_begins(tmp_path: Path) -> None:
+    run = RunDirectory.create(tmp_path, "r", 0)
+    run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1))
+    make_folder_of_missions(run.path)
+    entry = await RunShelf([tmp_path]).run("latest").entry()
+    run.close()
+    assert entry.stays
+    assert entry.missions == (f"{run.path.name}-1",)

@@ -19,7 +19,7 @@ from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEn
 from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder, mission_folders, number_in
+from aos_runtime.mission_folders import mission_folder, mission_folders, mission_name, number_in, stays
 from aos_solver.mission.history import history_page
 from aos_solver.mission.logbook import JOURNAL, entries_of
 
@@ -153,8 +153,8 @@ class KeptRun(Run):
 
     def _entry(self) -> RunEntry:
         path, record = self.directory.path, self.record
-        numbers = list(mission_folders(path))
-        names = tuple(f"{path.name}-{number}" for number in numbers) if numbers else (path.name,)
+        numbers = list(mission_folders(path)) or [1]  # The first one has no folder before it begins.
+        names = tuple(mission_name(path, number) for number in numbers) if stays(path) else (path.name,)
         summary = self.directory.read_summary()
         self._has_summary = summary is not None
         is_running = summary is None and self.is_running
@@ -170,7 +170,7 @@ class KeptRun(Run):
             seed=record.seed,
             is_played=record.is_played,
             sandbox=record.sandbox,
-            stays=bool(numbers),
+            stays=stays(path),
             missions=names,
         )
 
