@@ -64,7 +64,7 @@ def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path) -> None:
         sys.setswitchinterval(usual_s)
 
 
-async def test_a_system_that_stays_tells_the_name_of_its_first_mission_before_that_begins(tmp_path: Path) -> None:
+async def test_a_system_that_stays_names_its_first_mission_before_that_begins(tmp_path: Path) -> None:
     run = RunDirectory.create(tmp_path, "r", 0)
     run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1))
     make_folder_of_missions(run.path)
