@@ -78,15 +78,19 @@ class RandomModel:
         total = sum(joint)
         return [weight / total if total else 0.0 for weight in joint], total
 
+    def drawn(self, belief: list[float], dice: random.Random) -> tuple[int, int]:
+        """An action, and a response that it may well have."""
+        action = dice.randrange(ACTIONS)
+        odds = [self.updated(belief, action, response)[1] for response in range(RESPONSES)]
+        return action, dice.choices(range(RESPONSES), odds)[0]
+
 
 async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path) -> None:
     model, dice = RandomModel(1), random.Random(1)
     belief = model.start
     async with engine_of_text(model.documents(), cache_dir) as engine:
         for _ in range(20):
-            action = dice.randrange(ACTIONS)
-            odds = [model.updated(belief, action, response)[1] for response in range(RESPONSES)]
-            response = dice.choices(range(RESPONSES), odds)[0]
+            action, response = model.drawn(belief, dice)
             belief, probability = model.updated(belief, action, response)
             update = await engine.update(f"act{action}", f"r{response}")
             assert update.probability == pytest.approx(probability, abs=1e-9)
@@ -102,9 +106,7 @@ async def test_particles_follow_a_random_chain_closely(cache_dir: Path) -> None:
     async with engine_of_text(model.documents(), cache_dir) as engine:
         assert (await engine.draw_belief()).error_bound == 1
         for _ in range(20):
-            action = dice.randrange(ACTIONS)
-            odds = [model.updated(belief, action, response)[1] for response in range(RESPONSES)]
-            response = dice.choices(range(RESPONSES), odds)[0]
+            action, response = model.drawn(belief, dice)
             belief, _ = model.updated(belief, action, response)
             summary = (await engine.update(f"act{action}", f"r{response}")).summary
             found = summary.marginals[0].values

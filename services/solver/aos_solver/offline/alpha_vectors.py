@@ -6,13 +6,12 @@ values[vectors][states].
 """
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Self
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from aos_solver.offline.explicit_model import Floats, Integers
+from aos_solver.offline.explicit_model import Floats, Integers, PackedArrays
 
 
 class RegionSize(msgspec.Struct, frozen=True):
@@ -54,20 +53,13 @@ class AlphaVectors(msgspec.Struct, frozen=True):
     @classmethod
     def of_bytes(cls, action_count: int, sizes: Sequence[RegionSize], data: bytes) -> Self:
         """Those of a file behind its line; ValueError if the length is wrong."""
-        regions, place = [], 0
-
-        def take(kind: str, count: int) -> NDArray[Any]:
-            nonlocal place
-            array = np.frombuffer(data, kind, count, place)
-            place += array.nbytes
-            return array
-
+        arrays, regions = PackedArrays(data), []
         for size in sizes:
-            states = take("<u4", size.states).astype(np.int64)
-            actions = take("<u4", size.vectors).astype(np.int64)
-            values = take("<f8", size.states * size.vectors).reshape(size.vectors, size.states)
+            states = arrays.take("<u4", size.states).astype(np.int64)
+            actions = arrays.take("<u4", size.vectors).astype(np.int64)
+            values = arrays.take("<f8", size.states * size.vectors).reshape(size.vectors, size.states)
             regions.append(RegionVectors(states, actions, values))
-        if place != len(data):
+        if arrays.place != len(data):
             raise ValueError("its length is wrong")
         return cls(action_count, tuple(regions))
 

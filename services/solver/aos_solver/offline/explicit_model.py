@@ -152,15 +152,23 @@ def with_more_outcomes(
     return Ragged(first, numbers[order], probabilities[order]), sensings[order]
 
 
+class PackedArrays:
+    """Arrays that stand one after the other in bytes; the next one begins at `place`."""
+
+    def __init__(self, data: bytes, place: int = 0) -> None:
+        self._data = data
+        self.place = place
+
+    def take(self, kind: Any, count: int) -> NDArray[Any]:
+        """The next array; ValueError if the bytes end before."""
+        array = np.frombuffer(self._data, kind, count, self.place)
+        self.place += array.nbytes
+        return array
+
+
 def read_flat(data: bytes) -> FlatModel:
     """The model that an engine has written."""
-    place = len(_MARK)
-
-    def take(kind: Any, count: int) -> NDArray[Any]:
-        nonlocal place
-        array = np.frombuffer(data, kind, count, place)
-        place += array.nbytes
-        return array
+    take = PackedArrays(data, len(_MARK)).take
 
     def rows(count: int, entries: int) -> tuple[Ragged, Integers]:
         first, found = take("<u8", count + 1).astype(np.int64), take(_ENTRY, entries)
