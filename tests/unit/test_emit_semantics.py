@@ -167,7 +167,8 @@ ENDED_AT_THE_START = {
             ]},
             "ModuleExecutionTimeDynamicModel": [{"AssignmentCode": "__moduleExecutionTime = state.n * 7;"}],
             "DynamicModel": {"NextStateAssignments": [
-                {"AssignmentCode": "state__.copy = state.n * 100 + __moduleExecutionTime;"}
+                {"AssignmentCode": "if (state.n > 9) return;"},
+                {"AssignmentCode": "// Apart.\nelse state__.copy = state.n * 100 + __moduleExecutionTime;"}
             ]},
         },
         "PLP",

@@ -38,6 +38,14 @@ def guarded(condition: Snippet, code: Snippet) -> Snippet:
     return Snippet(f"if (\n{condition.code}\n) {{\n{code.code}\n}}", origins, tuple(escapes))
 
 
+def joined(first: Snippet, second: Snippet) -> Snippet:
+    """Returns both, the second one below the first."""
+    shift = len(first.origins)
+    escapes = [(line + shift, index, width) for line, index, width in second.escapes]
+    code = f"{first.code}\n{second.code}"
+    return Snippet(code, (*first.origins, *second.origins), (*first.escapes, *escapes))
+
+
 def without_blank_lines(snippet: Snippet) -> Snippet:
     """Returns the snippet without blank lines at the start and blanks at the end."""
     code = snippet.code.rstrip()

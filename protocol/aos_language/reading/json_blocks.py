@@ -1,14 +1,40 @@
 """The JSON form of model code: blocks of assignments, temporary variables, loops over state variables."""
 
+import re
+
+import msgspec
+
+from aos_language.reading.code import joined
 from aos_language.reading.document import check_name, enum_type, normal_type
 from aos_language.reading.json_record import Record
 from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
 
+_ELSE = re.compile(r"(?:\s|//[^\n]*\n|/\*.*?\*/)*else\b", re.DOTALL)
+
 
 def read_block(record: Record, key: str) -> tuple[Assignment, ...]:
-    """The assignments of a block, in order; empty ones are left out."""
-    blocks = (_assignment(item) for item in record.records(key, f'an assignment of "{key}"'))
-    return tuple(block for block in blocks if block is not None)
+    """The assignments of a block, in order; empty ones are left out.
+
+    The code of a skill is one text in the original AOS. So an `else` may begin an assignment: it goes on with
+    the one before.
+    """
+    blocks: list[Assignment] = []
+    for item in record.records(key, f'an assignment of "{key}"'):
+        block = _assignment(item)
+        if block is not None and blocks and (whole := _gone_on(blocks[-1], block)) is not None:
+            blocks[-1] = whole
+        elif block is not None:
+            blocks.append(block)
+    return tuple(blocks)
+
+
+def _gone_on(before: Assignment, block: Assignment) -> Assignment | None:
+    """Returns the one before with the code of one that begins with `else`; None for every other one."""
+    if before.code is None or block.code is None or _ELSE.match(block.code.code) is None:
+        return None
+    if block.temporary or block.over_previous or block.over_next:
+        return None
+    return msgspec.structs.replace(before, code=joined(before.code, block.code))
 
 
 def _assignment(record: Record) -> Assignment | None:
