@@ -51,10 +51,9 @@ class OptionLibrary {
   double extend(const SampledBelief<Model>& belief, double& steps, Sampler& random) {
     double found = 0;
     std::vector<State> rests;
-    const std::size_t end_stride = std::max<std::size_t>(belief.size() / searched_ends, 1);
     for (std::size_t k = 0; k < belief.size(); ++k) {
       State state = belief.states()[k];
-      const bool has_end = !counts_ && k % end_stride == 0 && is_left(steps) && add_best_end(state, steps, random);
+      const bool has_end = !counts_ && is_left(steps) && add_best_end(state, steps, random);
       bool has_way = !counts_ && (follow(state, steps, random) || has_end);
       if (!has_way && is_left(steps) && add_from(state, steps, random)) has_way = counts_ || follow(state, steps, random);
       if (!has_way) continue;
@@ -91,7 +90,6 @@ class OptionLibrary {
  private:
   static constexpr std::size_t max_options = 256;
   static constexpr std::size_t many_options = 64;
-  static constexpr std::size_t searched_ends = 8;   // states from which an end is put off
   static constexpr std::size_t searched_rests = 8;  // states where the known options end
   static constexpr std::size_t longest = 40;        // options in a row
 
