@@ -47,7 +47,7 @@ def writable(path: Path | None) -> Path | None:
         if path.is_char_device() and not path.samefile("/dev/null"):
             with path.open("wb", buffering=0) as device:
                 _ = device.isatty() or device.write(b"\0")
-        elif os.statvfs(path.parent).f_bavail == 0:
+        elif (disk := os.statvfs(path.parent)).f_blocks and not disk.f_bavail:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     except OSError as error:
         raise typer.BadParameter(f"{path} cannot be written: {error.strerror}") from None
