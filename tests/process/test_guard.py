@@ -87,11 +87,12 @@ asyncio.run(main())
 """
 
 
-async def test_grandchildren_end_when_the_parent_is_killed() -> None:
+async def test_grandchildren_end_when_the_parent_is_killed_though_the_keeper_is_frozen() -> None:
     parent = await Child.start([sys.executable, "-c", START_GUARDED], stdout=PIPE)
     await parent.stdout.readline()
     below = descendants(parent.pid)
     assert len(below) == 5  # the guard as well
+    os.kill(below[1], signal.SIGSTOP)
     os.kill(parent.pid, signal.SIGKILL)
     await parent.wait()
     await until_ended(below)
