@@ -53,9 +53,8 @@ class BeliefTree final : public TreePlanner<Model> {
   const char* name() const override { return "belief-tree"; }
 
   bool prepare(const Question<Model>& question, Sampler& /*random*/, Choosing& choosing) override {
-    // Its tables repeat the draws of listed outcomes, and an estimated draw has no outcomes of its own. They are of texts alone.
-    const bool has_tables = question.is_listed && !Model::reports_numbers() && !space_.lists_observations() && !space_.estimates_draws();
-    if (!switches::belief_tree || !has_tables) return false;
+    // Its tables repeat the draws of listed outcomes, and an estimated draw has no outcomes of its own.
+    if (!switches::belief_tree || !question.is_listed || space_.lists_observations() || space_.estimates_draws()) return false;
     const std::string obstacle = prepare(question.belief, question.horizon);
     choosing.why += obstacle.empty() ? "; their probabilities are estimated" : "; their probabilities cannot be estimated: " + obstacle;
     return obstacle.empty();

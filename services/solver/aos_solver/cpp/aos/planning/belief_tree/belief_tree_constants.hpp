@@ -26,6 +26,8 @@ inline constexpr std::size_t compared_runs = 8;
 // Runs and draws by which sensors' draws are told from those that shape the next state.
 inline constexpr std::size_t tested_runs = 4;
 inline constexpr std::size_t max_tested_draws = 64;
+// The highest logarithm of a ratio of densities, so that no weight is infinite.
+inline constexpr double highest_log_ratio = 60;
 // Of what is observed, the share that no run gave, above which POMCP decides.
 inline constexpr double max_unknown_share = 0.5;
 

@@ -1,10 +1,13 @@
-// Tables of what is observed: each tells with which probability a step writes a text, piece by piece.
+// Tables of what is observed: each tells with which probability a step writes a text, piece by piece, and what
+// distributions its numbers have.
 //
 // A table is made of reports of runs. How often a piece was written is its probability, and the probability of a text
-// is the product over its pieces.
+// is the product over its pieces. Numbers have the density of their distributions.
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -12,16 +15,18 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/described_distribution.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 
 namespace aos {
 
-// What one run reported, in numbers. Reports of one kind have as many pieces.
+// What one run reported, in numbers. Reports of one kind have as many pieces, and numbers of the same names.
 struct NumberedReport {
   std::uint32_t kind = 0;
-  std::vector<std::uint32_t> symbols;  // of the pieces
+  std::vector<std::uint32_t> symbols;        // of the pieces
+  std::vector<std::uint32_t> distributions;  // of the numbers
 };
 
 // An observation that was drawn from a table.
@@ -30,6 +35,8 @@ struct TabledObservation {
 
   std::uint32_t kind = nothing;
   std::vector<std::uint32_t> symbols;
+  std::vector<double> values;  // of the numbers
+  double log_density = 0;
 };
 
 class ObservationTables {
@@ -39,12 +46,20 @@ class ObservationTables {
   // How much of what is observed as texts no run has shown, by the share of texts that came once (Good, 1953).
   double unknown_share() const { return texts_ > 0 ? unknown_ / texts_ : 0; }
 
+  std::uint32_t number_of(const DescribedDistribution& distribution) {
+    Key key{static_cast<std::uint64_t>(distribution.kind)};
+    for (const double number : distribution.numbers) key.push_back(std::bit_cast<std::uint64_t>(number));
+    const auto [entry, is_new] = by_parameters_.try_emplace(std::move(key), static_cast<std::uint32_t>(distributions_.size()));
+    if (is_new) distributions_.push_back(distribution);
+    return entry->second;
+  }
+
   // Adds a table, and returns its number.
   std::uint32_t add(const std::vector<NumberedReport>& reports) {
-    std::map<std::uint32_t, std::vector<const NumberedReport*>> by_kind;
-    for (const NumberedReport& report : reports) by_kind[report.kind].push_back(&report);
+    std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, std::vector<const NumberedReport*>> by_form;
+    for (const NumberedReport& report : reports) by_form[{report.kind, report.distributions}].push_back(&report);
     const auto first = static_cast<std::uint32_t>(forms_.size());
-    for (const auto& [kind, same] : by_kind) add_form(same, static_cast<double>(same.size()) / static_cast<double>(reports.size()));
+    for (const auto& [form, same] : by_form) add_form(same, static_cast<double>(same.size()) / static_cast<double>(reports.size()));
     tables_.push_back({first, static_cast<std::uint32_t>(forms_.size())});
     return static_cast<std::uint32_t>(tables_.size() - 1);
   }
@@ -52,7 +67,9 @@ class ObservationTables {
   void draw(std::uint32_t table, Sampler& random, TabledObservation& drawn) const {
     const Table& from = tables_[table];
     drawn.kind = TabledObservation::nothing;
+    drawn.log_density = 0;
     drawn.symbols.clear();
+    drawn.values.clear();
     if (from.first == from.last) return;
     double place = random.uniform();
     std::uint32_t chosen = from.first;
@@ -60,8 +77,14 @@ class ObservationTables {
     const Form& form = forms_[chosen];
     drawn.kind = form.kind;
     for (std::uint32_t i = form.pieces; i < form.pieces_end; ++i) drawn.symbols.push_back(pieces_[piece_ids_[i]].draw(random));
+    for (std::uint32_t i = form.numbers; i < form.numbers_end; ++i) {
+      const DescribedDistribution& distribution = distributions_[number_ids_[i]];
+      drawn.values.push_back(distribution.quantile(random.uniform()));
+      drawn.log_density += distribution.log_density(drawn.values.back());
+    }
   }
 
+  // The probability, or the density relative to that where the numbers were drawn.
   double likelihood(std::uint32_t table, const TabledObservation& seen) const {
     double sum = 0;
     for (std::uint32_t f = tables_[table].first; f < tables_[table].last; ++f) {
@@ -72,12 +95,29 @@ class ObservationTables {
       for (std::uint32_t i = form.pieces; i < form.pieces_end && product > 0; ++i) {
         product *= pieces_[piece_ids_[i]].probability(*symbol++);
       }
+      if (form.numbers != form.numbers_end && product > 0) {
+        double log_density = -seen.log_density;
+        const double* value = seen.values.data();
+        for (std::uint32_t i = form.numbers; i < form.numbers_end; ++i) {
+          log_density += distributions_[number_ids_[i]].log_density(*value++);
+        }
+        product *= std::exp(std::min(log_density, highest_log_ratio));
+      }
       sum += product;
     }
     return sum;
   }
 
-  void clear() { *this = {}; }
+  // Drops the tables. The distributions keep their numbers.
+  void clear() {
+    tables_.clear();
+    forms_.clear();
+    piece_ids_.clear();
+    number_ids_.clear();
+    pieces_.clear();
+    by_counts_.clear();
+    unknown_ = texts_ = 0;
+  }
 
  private:
   using Key = std::vector<std::uint64_t>;
@@ -101,21 +141,25 @@ class ObservationTables {
       return first + last;
     }
   };
-  // A response, or a text of so many pieces.
+  // A response, or a text of so many pieces, with the distributions of its numbers.
   struct Form {
     double probability;
     std::uint32_t kind;
     std::uint32_t pieces, pieces_end;
+    std::uint32_t numbers, numbers_end;
   };
   struct Table {
     std::uint32_t first, last;  // forms
   };
 
   void add_form(const std::vector<const NumberedReport*>& reports, double share) {
-    Form form{share, reports[0]->kind, static_cast<std::uint32_t>(piece_ids_.size()), 0};
+    Form form{share, reports[0]->kind, static_cast<std::uint32_t>(piece_ids_.size()), 0,
+              static_cast<std::uint32_t>(number_ids_.size()), 0};
     double known = 1;
     for (std::size_t place = 0; place < reports[0]->symbols.size(); ++place) known *= 1 - add_piece(reports, place);
+    number_ids_.insert(number_ids_.end(), reports[0]->distributions.begin(), reports[0]->distributions.end());
     form.pieces_end = static_cast<std::uint32_t>(piece_ids_.size());
+    form.numbers_end = static_cast<std::uint32_t>(number_ids_.size());
     forms_.push_back(form);
     unknown_ += share * (1 - known);
     texts_ += reports[0]->symbols.empty() ? 0 : share;
@@ -149,8 +193,11 @@ class ObservationTables {
   std::vector<Table> tables_;
   std::vector<Form> forms_;
   std::vector<std::uint32_t> piece_ids_;
+  std::vector<std::uint32_t> number_ids_;
   std::vector<Piece> pieces_;
+  std::vector<DescribedDistribution> distributions_;
   std::unordered_map<Key, std::uint32_t, NumbersHash> by_counts_;
+  std::unordered_map<Key, std::uint32_t, NumbersHash> by_parameters_;
 };
 
 }  // namespace aos

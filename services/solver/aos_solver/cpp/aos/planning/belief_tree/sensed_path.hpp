@@ -12,8 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/described_distribution.hpp"
 #include "aos/base/directed.hpp"
+#include "aos/base/distributions.hpp"
 #include "aos/base/enumerator.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
@@ -41,14 +44,17 @@ class Strata {
   std::unordered_map<std::uint64_t, std::vector<double>> columns_;  // by draw
 };
 
-class SensedPath final : public DirectedDraws {
+class SensedPath final : public DirectedDraws, private NumberSink {
  public:
   // What a run reports. A text is cut where a draw was made after it had grown, and after separators.
   static constexpr std::string_view separators = " ,;|\n\t";
   struct Report {
     Observation response = default_observation;  // -2 for a text
     std::vector<std::string> pieces;
+    std::vector<std::pair<NumberKey, DescribedDistribution>> numbers;
   };
+
+  SensedPath() { report_to(this); }
 
   // Follows the enumerator and notes the outcomes of its draws.
   void follow(Enumerator& path, std::vector<int>& taken) {
@@ -70,7 +76,7 @@ class SensedPath final : public DirectedDraws {
 
   // What a step has reported whose text was `text`.
   Report report(Observation observation, const std::string& text) {
-    Report report{observation, {}};
+    Report report{observation, {}, std::move(numbers_)};
     if (observation >= default_observation) return report;
     report.response = default_observation - 1;
     if (is_rewritten_ || !text.starts_with(written_)) cuts_.clear();
@@ -112,6 +118,7 @@ class SensedPath final : public DirectedDraws {
     other_ = no_draw;
     next_ = sensing_ = since_cut_ = 0;
     is_lost_ = is_rewritten_ = false;
+    numbers_.clear();
     cuts_.clear();
     written_.clear();
     takes_sensing();  // a step that was broken off may have left it
@@ -130,6 +137,10 @@ class SensedPath final : public DirectedDraws {
     const bool is_other = sensing_++ == other_;
     return strata_.value(is_other ? run_ + sensing_runs / 2 : run_, name);
   }
+  void take(NumberKey key, const Distribution& distribution) override {
+    numbers_.emplace_back(key, DescribedDistribution{});
+    distribution.describe(numbers_.back().second);
+  }
 
   Strata strata_;
   Enumerator* path_ = nullptr;
@@ -142,6 +153,7 @@ class SensedPath final : public DirectedDraws {
   std::size_t since_cut_ = 0;  // of these
   bool is_lost_ = false;
   bool is_rewritten_ = false;
+  std::vector<std::pair<NumberKey, DescribedDistribution>> numbers_;
   std::string written_;
   std::vector<std::size_t> cuts_;
 };

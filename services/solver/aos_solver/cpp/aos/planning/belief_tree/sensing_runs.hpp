@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aos/base/enumerator.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
@@ -33,6 +34,7 @@ class SensingRuns {
     paths_.clear();
     Enumerator draws;
     draws.skip_sensing(true);
+    draws.report_to(&ignored_numbers);
     std::vector<int> taken;
     State next;
     const auto run = [&](Enumerator& path) {

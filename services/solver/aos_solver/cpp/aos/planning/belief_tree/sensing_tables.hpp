@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -43,6 +42,7 @@ class SensingTables {
   // Drops everything, so that what follows does not depend on what came before.
   void forget() {
     forget_tables();
+    tables_ = {};
     kinds_.clear();
     whole_.assign(whole_.size(), false);
     symbols_.clear();
@@ -120,6 +120,7 @@ class SensingTables {
       NumberedReport& numbers = result.emplace_back();
       numbers.kind = kind_of(report);
       for (const std::string& piece : report.pieces) numbers.symbols.push_back(symbol_of(piece));
+      for (const auto& [name, distribution] : report.numbers) numbers.distributions.push_back(tables_.number_of(distribution));
     }
     return result;
   }
@@ -128,13 +129,16 @@ class SensingTables {
     return symbols_.try_emplace(std::to_string(skill_) + "=" + piece, static_cast<std::uint32_t>(symbols_.size())).first->second;
   }
   std::uint32_t kind_of(const Report& report) {
-    return kinds_.try_emplace({report.response, report.pieces.size()}, static_cast<std::uint32_t>(kinds_.size())).first->second;
+    std::vector<std::uint64_t> key{static_cast<std::uint64_t>(report.response), report.pieces.size()};
+    for (const auto& [name, distribution] : report.numbers) key.push_back(name);
+    return kinds_.try_emplace(std::move(key), static_cast<std::uint32_t>(kinds_.size())).first->second;
   }
   static std::uint64_t hash_of(const std::vector<NumberedReport>& reports) {
     std::vector<std::uint64_t> key;
     for (const NumberedReport& report : reports) {
       key.push_back(report.kind);
       key.insert(key.end(), report.symbols.begin(), report.symbols.end());
+      key.insert(key.end(), report.distributions.begin(), report.distributions.end());
     }
     return NumbersHash{}(key);
   }
@@ -154,7 +158,7 @@ class SensingTables {
   std::vector<bool> whole_;              // by skill: texts are not parted
   ObservationTables tables_;
   std::unordered_map<std::uint64_t, std::uint32_t> by_reports_;  // by a hash of the first ones
-  std::map<std::pair<Observation, std::size_t>, std::uint32_t> kinds_;  // by response and pieces
+  std::unordered_map<std::vector<std::uint64_t>, std::uint32_t, NumbersHash> kinds_;
   std::unordered_map<std::string, std::uint32_t> symbols_;  // pieces
 
   int skill_ = 0;  // whose reports these are
