@@ -48,7 +48,7 @@ class Rest {
 // What is returned by a way, and what the state after it is worth. So much was earned in `taken` steps before.
 template <class Model>
 double returned_along(const RestValues<Model>& values, const Option& way, typename Model::State state, const StepLuck& luck, double earned = 0, std::size_t taken = 0) {
-  double discount = taken == 0 ? 1 : Model::discount;
+  double discount = std::pow(Model::discount, taken);
   for (std::size_t step = 0; step < way.size() && Model::ending(state) == Ending::running; ++step, discount *= Model::discount) {
     Sampler random = luck.of(taken + step);
     earned += discount * Model::step(state, way[step], random).reward;
