@@ -5,7 +5,7 @@ A call is asked for again where the router has gone, and cancelled where it is l
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -23,6 +23,8 @@ from aos_runtime.failpoints import reach
 
 _REPLY_GRACE_S = 0.2
 _LOOK_S = 0.25
+_PAUSE_S = 0.7 * LEASE_S - _LOOK_S
+"""The router, which hears of this process each quarter of the lease, may take it for dead after this."""
 _CANCEL_S = 0.25
 """An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
 _TOLD_BEFORE_S = 0.1
@@ -123,7 +125,7 @@ class Call:
         """Returns the adapter's answer; the call is asked for again where the router has gone, and where this
         process stood still for so long that the router took it for dead."""
         limit_s = call.deadline_s + _REPLY_GRACE_S
-        async with self._pauses() as pauses_s:
+        async with self._pauses() as stood_still:
             while True:
                 router = self._bus.router
                 reach("middleware.call.before")
@@ -132,9 +134,8 @@ class Call:
                         self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
                     )
                 except (LostAnswerError, NobodyAnswersError):
-                    if not await self._bus.has_lost_router(router) and not pauses_s:
+                    if not await self._bus.has_lost_router(router) and not stood_still():
                         raise
-                    pauses_s.clear()
                     self.has_lost_router = True
                     if not await self._around.served.is_back(path, AWAY_S):
                         raise
@@ -144,22 +145,35 @@ class Call:
                     return result
 
     @asynccontextmanager
-    async def _pauses(self) -> AsyncIterator[list[float]]:
-        """The seconds for which this process stood still, each time that it did so for LEASE_S."""
-        pauses_s: list[float] = []
+    async def _pauses(self) -> AsyncIterator[Callable[[], bool]]:
+        """Gives a function that returns whether this process stood still for _PAUSE_S since it was asked
+        before."""
+        looked_at_s = self._clock.monotonic_s()
+        has_paused = False
 
-        async def look() -> None:
+        def look() -> None:
+            # Whoever asks may run before the task below, which was to look earlier.
+            nonlocal looked_at_s, has_paused
+            pause_s = self._clock.monotonic_s() - looked_at_s - _LOOK_S
+            looked_at_s = self._clock.monotonic_s()
+            if pause_s >= _PAUSE_S:
+                has_paused = True
+                _log.warning("the middleware stood still for %.1f s, as if frozen by a signal", pause_s)
+
+        def stood_still() -> bool:
+            nonlocal has_paused
+            look()
+            told, has_paused = has_paused, False
+            return told
+
+        async def keep_looking() -> None:
             while True:
-                before_s = self._clock.monotonic_s()
                 await asyncio.sleep(_LOOK_S)
-                pause_s = self._clock.monotonic_s() - before_s - _LOOK_S
-                if pause_s >= LEASE_S - _LOOK_S:
-                    pauses_s.append(pause_s)
-                    _log.warning("the middleware stood still for %.1f s, as if frozen by a signal", pause_s)
+                look()
 
-        looking = asyncio.create_task(look())
+        looking = asyncio.create_task(keep_looking())
         try:
-            yield pauses_s
+            yield stood_still
         finally:
             looking.cancel()
 
