@@ -87,7 +87,7 @@ def _leave_to_keeper(grace_s: float) -> None:
         received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
         if received != signal.SIGCHLD:
             os.kill(keeper, received)
-            os.kill(keeper, signal.SIGCONT)
+            os.kill(keeper, signal.SIGCONT)  # A frozen one hears nothing.
 
 
 def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], Sandbox, list[str]]:

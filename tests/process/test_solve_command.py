@@ -81,8 +81,9 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
     tiger: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert "/dev/full cannot be written: No space" in aos("solve", tiger, "--out", "/dev/full").output
-    _, pipe = os.pipe()
-    assert aos("solve", tiger, "--out", f"/dev/fd/{pipe}").exit_code == 0
+    reading, writing = os.pipe()
+    with os.fdopen(reading), os.fdopen(writing, "w"):
+        assert aos("solve", tiger, "--out", f"/dev/fd/{writing}").exit_code == 0
     monkeypatch.setattr("os.access", lambda path, mode: mode != os.W_OK)  # Root may write everywhere.
     result = aos("solve", tiger, "--out", tmp_path / "tiger.policy")
     assert (result.exit_code, result.stdout) == (2, "")

@@ -5,11 +5,10 @@ A call is asked for again where the router has gone, and cancelled where it is l
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
 from typing import Any
 
 from aos_middleware.motion_gate import GONE_S
+from aos_middleware.pause_watch import PauseWatch
 from aos_middleware.served_paths import no_adapter
 from aos_middleware.stopping import Stop
 from aos_middleware.surroundings import Surroundings
@@ -18,13 +17,9 @@ from aos_protocol.documents import Activation
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.messages import Activate, Cancel, Cancelled, SkillCall, SkillResult, Stray
 from aos_runtime.asking import AWAY_S
-from aos_runtime.bus_config import LEASE_S
 from aos_runtime.failpoints import reach
 
 _REPLY_GRACE_S = 0.2
-_LOOK_S = 0.25
-_PAUSE_S = 0.7 * LEASE_S - _LOOK_S
-"""The router, which hears of this process each quarter of the lease, may take it for dead after this."""
 _CANCEL_S = 0.25
 """An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
 _TOLD_BEFORE_S = 0.1
@@ -125,7 +120,9 @@ class Call:
         """Returns the adapter's answer; the call is asked for again where the router has gone, and where this
         process stood still for so long that the router took it for dead."""
         limit_s = call.deadline_s + _REPLY_GRACE_S
-        async with self._pauses() as stood_still:
+        watch = PauseWatch(self._clock)
+        watching = asyncio.create_task(watch.follow())
+        try:
             while True:
                 router = self._bus.router
                 reach("middleware.call.before")
@@ -134,7 +131,7 @@ class Call:
                         self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
                     )
                 except (LostAnswerError, NobodyAnswersError):
-                    if not await self._bus.has_lost_router(router) and not stood_still():
+                    if not await self._bus.has_lost_router(router) and not watch.stood_still():
                         raise
                     self.has_lost_router = True
                     if not await self._around.served.is_back(path, AWAY_S):
@@ -143,39 +140,8 @@ class Call:
                 else:
                     reach("middleware.call.after")
                     return result
-
-    @asynccontextmanager
-    async def _pauses(self) -> AsyncIterator[Callable[[], bool]]:
-        """Gives a function that returns whether this process stood still for _PAUSE_S since it was asked
-        before."""
-        looked_at_s = self._clock.monotonic_s()
-        has_paused = False
-
-        def look() -> None:
-            # Whoever asks may run before the task below, which was to look earlier.
-            nonlocal looked_at_s, has_paused
-            pause_s = self._clock.monotonic_s() - looked_at_s - _LOOK_S
-            looked_at_s = self._clock.monotonic_s()
-            if pause_s >= _PAUSE_S:
-                has_paused = True
-                _log.warning("the middleware stood still for %.1f s, as if frozen by a signal", pause_s)
-
-        def stood_still() -> bool:
-            nonlocal has_paused
-            look()
-            told, has_paused = has_paused, False
-            return told
-
-        async def keep_looking() -> None:
-            while True:
-                await asyncio.sleep(_LOOK_S)
-                look()
-
-        looking = asyncio.create_task(keep_looking())
-        try:
-            yield stood_still
         finally:
-            looking.cancel()
+            watching.cancel()
 
     async def _cancel(self, reason: str) -> bool:
         """Has the skill stopped; whether its adapter says that it has."""
