@@ -7,7 +7,6 @@ what a decision costs. Then a mission of 1,000 steps is loaded anew, some times.
 """
 
 import argparse
-import json
 import os
 import statistics
 import sys
@@ -50,9 +49,6 @@ def viewed(browser: Browser, served: Gateway, mission: str) -> Page:
     page.wait_for_function("document.querySelector('.connection')?.textContent === 'Live'")
     page.evaluate(OBSERVE)
     return page
-
-
-_OF_A_BLOCK = 10
 
 
 class Measured(NamedTuple):
@@ -126,39 +122,6 @@ def decisions(browser: Browser, folder: Path, number: int, viewers: int) -> Meas
     )
 
 
-def engine_cost(folder: Path, blocks: int, viewers: int) -> tuple[list[float], list[float]]:
-    """The processor time in milliseconds of a decision's engine, alone and with clients that view the
-    mission: in turns, a mean of each block of decisions.
-    """
-    alone: list[float] = []
-    viewed_by: list[float] = []
-    step = 1
-    with slow_system(folder, CACHE, simulations=20_000) as run, gateway(folder, CACHE) as served:
-        up = json.loads((run / "run.json").read_bytes())["pid"]
-        engines = [pid for pid in descendants(up) if Path(f"/proc/{pid}/exe").readlink().name == "model"]
-        assert engines
-        for block in range(2 * blocks):
-            heard: list[dict[int, float]] = [{} for _ in range(viewers if block % 2 else 1)]
-            clients = [
-                threading.Thread(target=listen, args=(served, run.name, each, step + _OF_A_BLOCK))
-                for each in heard[: viewers if block % 2 else 0]
-            ]
-            for client in clients:
-                client.start()
-            before = cpu_ms(engines)
-            for _ in range(_OF_A_BLOCK):
-                step += 1
-                (folder / "turns").write_bytes(b".")
-                while not served.ask(f"/v1/missions/{run.name}/decisions?since={2 * step - 2}").json[
-                    "records"
-                ]:
-                    time.sleep(0.05)
-            (viewed_by if block % 2 else alone).append((cpu_ms(engines) - before) / _OF_A_BLOCK)
-            for client in clients:
-                client.join()
-    return alone, viewed_by
-
-
 def reloads(browser: Browser, folder: Path, times: int) -> tuple[list[float], int]:
     """The milliseconds until 1,000 steps are drawn after a reload, and the bytes that came."""
     name = write_long_run(folder / "runs", 1000)
@@ -202,7 +165,6 @@ def main() -> None:
         folder = Path(name)
         (folder / "a").mkdir()
         (folder / "b").mkdir()
-        (folder / "c").mkdir()
         print(f"load {os.getloadavg()[0]:.1f} of {os.cpu_count()} processors")
         measured = decisions(browser, folder / "a", options.decisions, options.viewers)
         print(f"decisions on {options.viewers} screens: {told(measured.on_screens)}")
@@ -210,11 +172,6 @@ def main() -> None:
         print(
             f"processor time of a step: {measured.gateway_cpu_ms:.0f} ms of the gateway, "
             f"{measured.browsers_cpu_ms:.0f} ms of all browsers"
-        )
-        alone, beside = engine_cost(folder / "c", 4, options.viewers)
-        print(
-            f"processor time of a decision of 20,000 simulations: {statistics.median(alone):.1f} ms alone, "
-            f"{statistics.median(beside):.1f} ms with {options.viewers} clients"
         )
         taken, size = reloads(browser, folder / "b", 10)
         print(

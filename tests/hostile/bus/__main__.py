@@ -1,4 +1,4 @@
-"""Tries the bus: the matrix of the table, forgeries in a mission, malformed messages, and what it all costs.
+"""Tries the bus: the matrix of the table, forgeries in a mission and malformed messages.
 
 python -m tests.hostile.bus                     all of it
 python -m tests.hostile.bus matrix forgeries    parts
@@ -16,7 +16,6 @@ from functools import partial
 from pathlib import Path
 
 from .cell import STEPS, cell
-from .cost import cost
 from .far import FarMission, far_mission, is_possible
 from .forgeries import FORGERIES, faults_of
 from .malformed import flooded_keys, flooding
@@ -85,12 +84,6 @@ def malformed(folder: Path, options: argparse.Namespace) -> int:
     return broken + (mission.exit_code != 0)
 
 
-def costs(folder: Path, options: argparse.Namespace) -> int:
-    """The times of questions and sessions."""
-    print(cost(folder, options.questions, options.sessions))
-    return 0
-
-
 def far(folder: Path, options: argparse.Namespace) -> int:
     """Bad links to adapters on another host, all at once: cuts, a delay, lost packets, cuts with these."""
     if not is_possible():
@@ -146,7 +139,6 @@ PARTS: dict[str, Callable[[Path, argparse.Namespace], int]] = {
     "matrix": matrix,
     "forgeries": forgeries,
     "malformed": malformed,
-    "cost": costs,
     "far": far,
 }
 
@@ -156,8 +148,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.hostile.bus", description=__doc__)
     parser.add_argument("parts", nargs="*", choices=[*PARTS, []], help="of these alone")
     parser.add_argument("--messages", type=int, default=20_000, help="malformed messages on each key")
-    parser.add_argument("--questions", type=int, default=3000)
-    parser.add_argument("--sessions", type=int, default=200)
     parser.add_argument("--cuts", type=int, default=20, help="of each link to an adapter on another host")
     parser.add_argument("--motions", type=int, default=20, help="over each of these links without a cut")
     parser.add_argument("--links", nargs="+", choices=LINKS, default=list(LINKS), help="of these alone")

@@ -49,36 +49,13 @@ def routed(folder: Path, parties: tuple[Party, ...]) -> Iterator[Routed]:
     endpoint = run.make_endpoint()
     passes = Passes(run, parties)
     passes.write_dictionary()
-    with _router(run, endpoint, str(passes.dictionary), passes.parties) as router:
-        made = Routed(endpoint, passes, run.log("router"), router.pid)
-        try:
-            yield made
-        finally:
-            for session in made.sessions.values():
-                session.close()
-
-
-@contextmanager
-def open_router(folder: Path) -> Iterator[str]:
-    """The endpoint of a router that knows nobody."""
-    run = RunDirectory.create(folder, ROBOT, 0)
-    endpoint = run.make_endpoint()
-    with _router(run, endpoint, "", ()):
-        opened(endpoint, None).close()
-        yield endpoint
-
-
-@contextmanager
-def _router(
-    run: RunDirectory, endpoint: str, dictionary: str, parties: tuple[Party, ...]
-) -> Iterator[subprocess.Popen[bytes]]:
     settings = RouterSettings(
         robot=ROBOT,
         service="router",
         endpoint=endpoint,
         run_dir=str(run.path),
-        dictionary=dictionary,
-        parties=parties,
+        dictionary=str(passes.dictionary),
+        parties=passes.parties,
     )
     path = run.write_settings("router", msgspec.to_builtins(settings))
     with (
@@ -90,9 +67,12 @@ def _router(
             stderr=log,
         ) as router,
     ):
+        made = Routed(endpoint, passes, run.log("router"), router.pid)
         try:
-            yield router
+            yield made
         finally:
+            for session in made.sessions.values():
+                session.close()
             router.terminate()
     run.close()
 
