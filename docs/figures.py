@@ -1,9 +1,9 @@
-"""Measures the figures of pages and pastes them there: `python docs/figures.py linting performance`.
+"""Measures the figures of pages and pastes them there: `python docs/figures.py checking speed`.
 
-A page has one table of figures, between `<!-- figures -->` and `<!-- end -->`. The table's head says when
-it was measured, at which commit and on which machine, and the table has what the commands print. `linting`
-takes some minutes, `performance` ten and `reliability` one, longer beside other work. `--show` prints and
-changes no page.
+A page of docs/lab has one table of figures, between `<!-- figures -->` and `<!-- end -->`. The table's
+head says when it was measured, at which commit and on which machine, and the table has what the commands
+print. `checking` takes some minutes, `speed` ten and `histories` one, longer beside other work. `--show`
+prints and changes no page.
 """
 
 import argparse
@@ -27,7 +27,7 @@ class Row(NamedTuple):
     lines: int = 1
 
 
-LINTING = (
+CHECKING = (
     Row(
         "20 bundles with one crash, endless loop, exception or bad reward each",
         ("python", "tests/lint_times.py"), "each below 5 s",
@@ -39,13 +39,13 @@ LINTING = (
         "no crash, each below 1 s", 20,
     ),
 )  # fmt: skip
-RELIABILITY = (
+HISTORIES = (
     Row(
         "a long history reaches a late joiner",
         ("python", "-m", "tests.long_history"), "in order; either side grows below 50 MB", 3,
     ),
 )  # fmt: skip
-PERFORMANCE = ("aos", "bench", "--quick", "--metric", "steps", "--metric", "simulations", "--markdown")
+SPEED = ("aos", "bench", "--quick", "--metric", "steps", "--metric", "simulations", "--markdown")
 
 
 def measured(rows: tuple[Row, ...]) -> str:
@@ -65,19 +65,19 @@ def measured(rows: tuple[Row, ...]) -> str:
     return "\n".join(lines)
 
 
-def performance() -> str:
-    """Returns the output of `PERFORMANCE`, which has a head of its own, below the command and the commit.
+def speed() -> str:
+    """Returns the output of `SPEED`, which has a head of its own, below the command and the commit.
 
     What two threads do says something only while two cores are idle, so it is left out.
     """
-    lines = [line for line in _printed(PERFORMANCE).strip().splitlines() if "two threads" not in line]
-    return "\n".join([f"`{' '.join(PERFORMANCE)}`, commit {_commit()}.", *lines])
+    lines = [line for line in _printed(SPEED).strip().splitlines() if "two threads" not in line]
+    return "\n".join([f"`{' '.join(SPEED)}`, commit {_commit()}.", *lines])
 
 
 FIGURES = {
-    "linting": partial(measured, LINTING),
-    "performance": performance,
-    "reliability": partial(measured, RELIABILITY),
+    "checking": partial(measured, CHECKING),
+    "speed": speed,
+    "histories": partial(measured, HISTORIES),
 }
 
 
@@ -111,7 +111,7 @@ def main() -> int:
         if options.show:
             sys.stdout.write(table + "\n")
         else:
-            paste(table, DOCS / f"{name}.md")
+            paste(table, DOCS / "lab" / f"{name}.md")
     return 0
 
 
