@@ -4,8 +4,10 @@ python docs/examples/follow_decisions.py [RUN]
 """
 
 import asyncio
+import signal
 import sys
 
+from aos_protocol.errors import AosError
 from aos_runtime.client import AosClient
 
 
@@ -13,12 +15,19 @@ async def main(run: str = "runs/latest") -> None:
     async with AosClient.of_run(run) as aos:
         async for record in aos.decisions():
             if record.outcome is None:
-                values = {action.action: round(action.q, 2) for action in record.actions}
-                print(f"step {record.step}: {record.planner} chose {record.action}, of {values}")
+                values = ", ".join(f"{action.action} {action.q:+.2f}" for action in record.actions)
+                # An action that an operator has asked for was compared with no other.
+                why = f", {record.planner}, of {values}" if values else ""
+                print(f"step {record.step}: {record.chosen_by} chose {record.action}{why}")
             else:
-                goal = record.belief.goal_probability
-                print(f"step {record.step}: observed {record.outcome.response}, goal {goal:.3f}")
+                told = record.outcome.response or f"nothing ({record.outcome.status})"
+                print(f"step {record.step}: observed {told}, goal {record.belief.goal_probability:.3f}")
 
 
 if __name__ == "__main__":
-    asyncio.run(main(*sys.argv[1:]))
+    for ending in (signal.SIGINT, signal.SIGPIPE):  # Ctrl-C, and a reader such as `head` that has enough.
+        signal.signal(ending, signal.SIG_DFL)
+    try:
+        asyncio.run(main(*sys.argv[1:]))
+    except AosError as error:
+        sys.exit(str(error))

@@ -153,6 +153,14 @@ def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, 
     response = records[1]["outcome"]["response"]
     assert told.splitlines()[:2] == [f"step 1: {records[0]['action']}", f"step 1: {response}"]
     assert told.splitlines()[-1] == "ended: goal"
+    without = os.environ | {"TOKEN": ""}
+    lone = subprocess.run(example, env=without, capture_output=True, text=True, check=False)
+    assert (lone.returncode, lone.stderr[:8]) == (1, "AOS903: ")
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    piped = subprocess.run(example, env=with_token, stdout=write_end, stderr=subprocess.PIPE, check=False)
+    os.close(write_end)
+    assert (piped.returncode, piped.stderr) == (-signal.SIGPIPE, b"")
     assert served.ask("/v1/missions/latest/decisions").json["records"] == records
     assert served.ask("/v1/runs/latest").json["run"] == name
 

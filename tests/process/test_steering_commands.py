@@ -2,11 +2,13 @@
 
 import asyncio
 import json
+import subprocess
+import sys
 import time
 from pathlib import Path
 
 import pytest
-from processes import kill
+from processes import COMMAND_S, kill
 from test_missions import up
 
 from aos_deploy.history_check.files import check_run
@@ -15,6 +17,12 @@ from aos_protocol.errors import SteeringError
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder
+
+
+def followed(root: Path, run: Path) -> subprocess.CompletedProcess[str]:
+    """The example program of the pages, run on a mission."""
+    example = [sys.executable, root / "docs/examples/follow_decisions.py", run]
+    return subprocess.run(example, capture_output=True, text=True, timeout=COMMAND_S, check=False)
 
 
 async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(
@@ -48,7 +56,10 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert system.until("mission", phase="ended")["ending"] == "step_limit"
         code, _, error = system.aos("mission", "hold")
         assert "AOS517: no mission runs" in error
+        assert "\nstep 2: operator chose open(door=right_door)\n" in followed(root, system.run).stdout
         assert system.interrupt() == 0
+        over = followed(root, system.run)
+        assert (over.returncode, over.stderr[:3]) == (1, "AOS")
         assert check_run(system.run).violations == []
         with Journal.read(mission_folder(system.run, 1) / "journal.db") as journal:
             decisions = [json.loads(row.payload) for row in journal.walk("decision")]
