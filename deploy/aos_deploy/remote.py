@@ -30,6 +30,8 @@ HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]
 
 _SSH_FAILED = 255
 _NOT_FOUND = 127
+_FROZEN = 147
+"""128 and SIGSTOP: the program was frozen, and was killed when we asked."""
 _PORTS = (20_000, 32_000)
 _OPTIONS = (
     "BatchMode=yes",  # It asks nothing: nobody is there to answer.
@@ -49,7 +51,8 @@ _KNOWN_S = 5.0
 _NO_NEWS = ("mm_receive_fd: ", "proxy dialer did not pass back a connection")
 """Lines of an ssh whose connection could not be made, after the one that says why."""
 
-# It ends the program when its own input ends, that is with the connection, however that ends.
+# It ends the program when its own input ends, that is with the connection, however that ends. Each line of
+# input asks whether a signal has stopped the program, or a process of its session; then it is killed.
 _SCRIPT = """\
 exec 3<&0
 IFS= read -r password <&3
@@ -64,14 +67,20 @@ printf %s {settings} >"$AOS_SETTINGS" && printf '%s\\n' "$password" >"$AOS_PASSW
 password=
 export AOS_SETTINGS AOS_PASSWORD_FILE {environment}
 own_group=; target=; command -v setsid >/dev/null && {{ own_group=setsid; target=-; }}
+frozen=; trap frozen=1 USR1
 $own_group {command} </dev/null 3<&- & program=$!
 {{
-    cat <&3
+    while read -r look <&3; do
+        grep -qsE "^$program .*\\) T |\\) T [0-9]+ [0-9]+ $program " /proc/[0-9]*/stat || continue
+        kill -s USR1 $$
+        kill -s KILL -- $target$program
+    done
     kill -s TERM -- $target$program
     sleep {grace}
     kill -s KILL -- $target$program
 }} >/dev/null 2>&1 &
 wait $program; status=$?
+[ -z "$frozen" ] || {{ wait $program; status={frozen}; }}
 kill $! 2>/dev/null
 exit $status
 """
@@ -126,6 +135,7 @@ def remote_command(
         folder=shlex.quote(program.folder) if program.folder else '"$HOME"',
         program=shlex.quote(first),
         not_found=_NOT_FOUND,
+        frozen=_FROZEN,
         settings=shlex.quote(settings.read_text(encoding="utf-8")),
         environment=" ".join(f"{name}={shlex.quote(value)}" for name, value in environment.items()),
         command=shlex.join([first, *arguments]),
@@ -148,6 +158,11 @@ def remote_command(
 def is_lost(program: Program, status: int) -> bool:
     """Says whether it was the connection to a program's host that ended, as far as ssh tells."""
     return bool(program.host) and status == _SSH_FAILED
+
+
+def was_frozen(program: Program, status: int) -> bool:
+    """Says whether the other host has killed a program because it was frozen when we asked."""
+    return bool(program.host) and status == _FROZEN
 
 
 def why_it_failed(name: str, host: str, status: int, said: list[str]) -> DeployError | None:

@@ -14,6 +14,7 @@ end.
 from __future__ import annotations
 
 import asyncio
+import signal
 from collections.abc import AsyncIterator, Coroutine
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -29,7 +30,7 @@ from aos_deploy.process_end import look_at_log, status_text
 from aos_deploy.process_start import ROUTER_MODULE, start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
-from aos_deploy.remote import is_lost
+from aos_deploy.remote import is_lost, was_frozen
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_summary import ProcessEnd
 from aos_protocol.access import OPERATOR, Party
@@ -45,7 +46,7 @@ from aos_runtime.subscription import merged
 ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
 
 FROZEN_S = 5.0
-"""A process of ours that is silent for so long, after it was ready, is killed."""
+"""A process of ours that is off the bus for so long, after it was ready, is killed."""
 
 _CANCEL_TIMEOUT_S = 2.5
 _HOST_S = 2.0
@@ -264,6 +265,7 @@ class Supervisor:
         """A service has left the bus, or a program of the user's own a path: it ends, or it is frozen."""
         running.is_ready = running.is_ready and serves_less
         if running.program.is_restarted and running.silence is None:
+            running.silent_since_s = self._clock.monotonic_s()
             look = self._kill_if_stopped if serves_less else self._kill_if_frozen
             running.silence = self._beside(look(running))
 
@@ -272,7 +274,9 @@ class Supervisor:
         child = running.child
         await asyncio.sleep(FROZEN_S)
         running.silence = None
-        if running.child is child and child.is_frozen():
+        if running.child is child and running.program.host:
+            child.stdin.write(b"look\n")  # Its end says what was seen there.
+        elif running.child is child and child.is_frozen():
             self._kill_frozen(running)
 
     async def _kill_if_frozen(self, running: RunningProgram) -> None:
@@ -285,6 +289,7 @@ class Supervisor:
                 await asyncio.sleep(FROZEN_S)
             is_routed = self.bus.is_routed
             if not is_routed and router.is_ready:
+                router.silent_since_s = running.silent_since_s
                 self._kill_frozen(router)  # We are not heard either: those behind it may be well.
         running.silence = None
         if running.child is child and router.is_ready:
@@ -293,8 +298,12 @@ class Supervisor:
     def _kill_frozen(self, running: RunningProgram) -> None:
         if running.child.returncode is None:
             running.is_ready = False
-            self._changed(running.program.name, "frozen", f"silent for {FROZEN_S:g} s; it is killed")
+            self._is_frozen(running)
             _end_at_once(running)
+
+    def _is_frozen(self, running: RunningProgram) -> None:
+        silent_s = self._clock.monotonic_s() - running.silent_since_s
+        self._changed(running.program.name, "frozen", f"off the bus for {silent_s:.1f} s; it is killed")
 
     def _is_ready(self, running: RunningProgram, state: str = "ready") -> None:
         if running.silence is not None:
@@ -312,6 +321,9 @@ class Supervisor:
             status = await running.child.wait()
             if self._is_stopping:
                 return
+            if was_frozen(program, status):
+                self._is_frozen(running)
+                status = -signal.SIGKILL
             if running.seeking is not None:
                 running.seeking.cancel()
             if program.ready is not None and program.ready.exit == status:

@@ -4,14 +4,19 @@ import asyncio
 import os
 import re
 import signal
+import sys
 from collections.abc import Callable
+from pathlib import Path
 
+import msgspec
 import pytest
 from processes import HANG_S, descendants, has_listener, is_running, kill, until_ended
+from ssh_host import stand_in
 from supervised_system import System, command, small
 
 from aos_deploy.program import Program
 from aos_deploy.restarts import STARTS
+from aos_deploy.supervisor import FROZEN_S
 from aos_protocol.errors import AosError, DeployError, DocumentError
 
 NAMES = ("registry", "middleware", "skills", "solver")
@@ -210,6 +215,25 @@ async def test_a_command_that_starts_again_is_ready_again(system: System, death:
         await until_ended(victims)
     states = [event.state for event in system.events if event.service == "robot" and event.state != "frozen"]
     assert states[:5] == ["starting", "ready", "ended", "starting", "ready"]
+    assert [end.how for end in system.ends] == ["killed by SIGKILL"]
+
+
+async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_told(
+    system: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", stand_in(tmp_path) + os.pathsep + os.environ["PATH"])
+    program = command(sys.executable, "small_command.py", is_restarted=True)
+    program = msgspec.structs.replace(program, host="robot@arm")
+    async with asyncio.timeout(HANG_S), system.up(program) as supervisor:
+        await system.until("robot", "ready")
+        for pid in descendants(supervisor.pids["robot"]):
+            if Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")[1:2] == [b"small_command.py"]:
+                os.kill(pid, signal.SIGSTOP)
+        await system.until("robot", "ready", times=2)
+    (frozen,) = (event.detail for event in system.events if event.state == "frozen")
+    silence = re.fullmatch(r"off the bus for ([\d.]+) s; it is killed", frozen)
+    assert silence is not None
+    assert float(silence[1]) >= FROZEN_S
     assert [end.how for end in system.ends] == ["killed by SIGKILL"]
 
 
