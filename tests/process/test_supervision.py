@@ -222,11 +222,11 @@ async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_
     system: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", stand_in(tmp_path) + os.pathsep + os.environ["PATH"])
-    program = command(sys.executable, "small_command.py", is_restarted=True)
-    program = msgspec.structs.replace(program, host="robot@arm")
-    async with asyncio.timeout(HANG_S), system.up(program) as supervisor:
+    script = f"echo $$ > {tmp_path}/pid; exec {sys.executable} small_command.py"
+    program = msgspec.structs.replace(command("sh", "-c", script, is_restarted=True), host="robot@arm")
+    async with asyncio.timeout(HANG_S), system.up(program):
         await system.until("robot", "ready")
-        os.kill(max(descendants(supervisor.pids["robot"])), signal.SIGSTOP)
+        os.kill(int((tmp_path / "pid").read_text()), signal.SIGSTOP)
         await system.until("robot", "ready", times=2)
     (frozen,) = (event.detail for event in system.events if event.state == "frozen")
     silence = re.fullmatch(r"off the bus for ([\d.]+) s; it is killed", frozen)

@@ -2,11 +2,12 @@
 
 from typing import Any
 
+import msgspec
 from decision_records import decision_record
 
 from aos_gateway.exposition import Counter, Histogram, exposition
 from aos_gateway.metric_families import Families
-from aos_protocol.messages import ActivationId, DecisionRecord, ModelDrift, Outcome, SearchMade
+from aos_protocol.messages import ActivationId, DecisionRecord, Fault, ModelDrift, Outcome, SearchMade
 
 
 def counted(*records: DecisionRecord) -> dict[str, str]:
@@ -68,6 +69,15 @@ def test_surprise_is_that_of_observations_and_an_impossible_one_is_counted_apart
     assert samples['aos_surprise_nats_count{robot="r2"}'] == "1"
     assert samples['aos_skill_failures_total{robot="r2",skill="look",status="failed"}'] == "1"
     assert samples['aos_impossible_outcomes_total{robot="r2",skill="look"}'] == "1"
+
+
+def test_a_refusal_because_another_skill_may_move_is_no_failure_of_the_one_refused() -> None:
+    record = observed(1, "refused")
+    assert record.outcome is not None
+    outcome = msgspec.structs.replace(record.outcome, fault=Fault("AOS512", "/take may still be moving"))
+    assert not [
+        name for name in counted(msgspec.structs.replace(record, outcome=outcome)) if "failures" in name
+    ]
 
 
 def test_an_alarm_of_drift_counts_when_it_begins_and_not_while_it_stands() -> None:

@@ -61,7 +61,9 @@ class Families:
             return
         self.steps.add(robot=robot)
         self.activations.add(robot=robot, skill=record.skill)
-        if record.outcome.status != "observed" or record.outcome.fault is not None:
+        code = "" if record.outcome.fault is None else record.outcome.fault.code
+        has_failed = record.outcome.status != "observed" or code != ""
+        if has_failed and code != "AOS512":  # The failure is that of an earlier skill, and was counted.
             self.failures.add(robot=robot, skill=record.skill, status=record.outcome.status)
         if record.is_impossible:
             self.impossible.add(robot=robot, skill=record.skill)
