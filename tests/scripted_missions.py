@@ -95,6 +95,9 @@ def breaking(*, jams: int, is_late: int) -> Robot:
     return lambda request: ways.get(request.id.step, hears_left)(request)
 
 
+_SEARCH = Search(simulations=100_000, seed=1)
+
+
 async def run_mission(
     built: BuiltModel,
     robot: Robot,
@@ -103,14 +106,14 @@ async def run_mission(
     rules: FailureRules | None = None,
     around: Surroundings | None = None,
     hold_s: float = 600.0,
-    simulations: int = 100_000,
+    search: Search = _SEARCH,
 ) -> tuple[MissionState, Surroundings]:
     """A whole mission; its end, and all that was told of it."""
     around = around or Surroundings(robot)
     terms = Terms(
         name="m",
         limits=limits or MissionLimits(),
-        search=Search(simulations=simulations, seed=1),
+        search=search,
         activation_timeout_s=1.0,
         failures=rules or FailureRules(),
         hold_s=hold_s,

@@ -1,6 +1,7 @@
 """Beliefs against Bayes' rule by hand: exact where steps can be enumerated, and how far off elsewhere."""
 
 import random
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -230,6 +231,9 @@ async def test_particles_outlive_more_observations_than_they_can_tell_apart(cach
     async with engine_of_text(DEPLETING, cache_dir) as engine:
         for card in range(CARDS):
             update = await turn(engine, card, hand)
+    told = re.search(r"(\d+) particles moved \d+ times since \d+ effective samples remained", update.effort)
+    assert told is not None, update.effort
+    assert int(told[1]) > 0
     for card, marginal in enumerate(update.summary.marginals):
         assert marginal.values.get("true" if hand[card] else "false", 0.0) > 0.9, card
 

@@ -9,6 +9,7 @@ from scripted_missions import Surroundings, jammed, observed, run_mission, timed
 
 from aos_protocol.messages import Activate, Fault, Outcome, Steer
 from aos_solver.building.build import BuiltModel
+from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, SkillRule
 
@@ -63,6 +64,14 @@ async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) ->
     statuses = [record.outcome.status for record in around.records if record.outcome]
     assert statuses[0] == "timed_out"
     assert set(statuses[1:]) == {"observed"}
+
+
+async def test_an_update_that_takes_longer_than_a_decision_tells_why(finer: BuiltModel) -> None:
+    search = Search(simulations=1, seed=1, time_s=1e-9)
+    _, around = await run_mission(finer, good, search=search, limits=MissionLimits(step_limit=1))
+    over, _, counts = around.records[-1].remark.partition(", more than a decision's 1e-09 s: ")
+    assert over.startswith("the update took ")
+    assert counts.endswith(" steps of the model")
 
 
 def good(request: Activate) -> Outcome:

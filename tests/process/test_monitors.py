@@ -164,7 +164,9 @@ def robot(request: Activate) -> Outcome:
 
 
 async def test_the_journal_gives_the_belief_again(battery: BuiltModel) -> None:
-    state, around = await run_mission(battery, robot, limits=MissionLimits(step_limit=5), simulations=200)
+    state, around = await run_mission(
+        battery, robot, limits=MissionLimits(step_limit=5), search=Search(simulations=200, seed=1)
+    )
     assert state.ending == "step_limit"
     truth: Belief = {("Full", False): 1.0}
     for record in around.outcomes:

@@ -22,7 +22,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     such numbers with that response, so that the response counted alone. `uncorrected` is why the local
     variables of the outcome did not correct the belief. `remark` tells people of both. `is_foreign` says that
     the model has no such action or response, so that only time passed. `excludes_monitor` says that no state
-    explains what a monitor said.
+    explains what a monitor said. `effort` tells in counts what the update took.
     """
 
     log_probability: float
@@ -34,6 +34,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     remark: str = ""
     is_foreign: bool = False
     excludes_monitor: bool = False
+    effort: str = ""
 
     @property
     def probability(self) -> float:

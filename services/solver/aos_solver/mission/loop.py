@@ -35,7 +35,7 @@ from aos_solver.mission.holding import Holding
 from aos_solver.mission.memory import MissionMemory, Pending
 from aos_solver.mission.past import Past, evidence_of, updated
 from aos_solver.mission.ports import Ports
-from aos_solver.mission.reports import Reports
+from aos_solver.mission.reports import Reports, overrun
 from aos_solver.mission.retracing import Earlier, retraced
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.steering import LIFTS, Asked
@@ -353,7 +353,9 @@ class Mission:
         )
         self.past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
-        remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
+        failure = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
+        over = overrun(update, update_s, self._terms.search.time_s)
+        remark = "; ".join(text for text in (failure, over) if text)
         before = self.drift
         self.drift = after_use(before, decision, msgspec.structs.replace(decision, outcome=outcome))
         drift = drifts(before, self.drift, decision.skill)

@@ -158,6 +158,14 @@ class Reports:
         self._ports.publish_state(self.state)
 
 
+def overrun(update: BeliefUpdate, update_s: float, budget_s: float | None) -> str:
+    """Tells people why an update took longer than a decision may; nothing where it did not."""
+    if budget_s is None or update_s <= budget_s:
+        return ""
+    over = f"the update took {update_s:.2g} s, more than a decision's {budget_s:g} s"
+    return f"{over}: {update.effort}" if update.effort else over
+
+
 def _faults_of_monitors(outcome: Outcome) -> list[str]:
     """Tells people of monitors that gave nothing."""
     return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]

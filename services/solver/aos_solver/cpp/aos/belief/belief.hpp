@@ -21,6 +21,7 @@
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
 #include "aos/belief/drawn_step.hpp"
+#include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/initial_paths.hpp"
@@ -314,6 +315,7 @@ class Belief {
       const std::size_t limit = max_states(source_);
       double gone = 0;
       const auto add = [&](const State&, const State& next, Observation seen, double weight) {
+        ++update_effort.steps;
         if ((step.is_observed && seen != step.observation) || weight <= 0) return;
         gathering.add(next, weight);
         if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);

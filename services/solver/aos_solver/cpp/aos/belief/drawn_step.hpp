@@ -8,6 +8,7 @@
 #include "aos/base/enumerator.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/belief/effort.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/particle_filter.hpp"
 #include "aos/belief/split_filter.hpp"
@@ -54,6 +55,7 @@ class DrawnStep {
     if (steps.empty()) return filter.begun(before.particles, exact);
     Cloud<Model> cloud = filter.begun(before.history.rest().origins->particles(), false);
     for (const HistoryStep& step : steps) {
+      ++update_effort.traced;
       if (step.numbers == nullptr) {
         cloud = filter.after(std::move(cloud), step, ignored_numbers).cloud;
       } else {

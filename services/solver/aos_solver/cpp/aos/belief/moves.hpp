@@ -60,6 +60,9 @@ class Moves {
     return accepted > 0 ? gathered(cloud, copies_.size()) : cloud;
   }
 
+  std::size_t copies() const { return copies_.size(); }
+  std::size_t steps() const { return steps_; }
+
  private:
   struct Copy {
     std::size_t particle;

@@ -19,6 +19,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
+#include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
@@ -97,7 +98,7 @@ class ParticleFilter {
     for (int rescue = 0; step.is_observed && is_worth_moving; ++rescue) {
       if (updated.cloud.effective() >= enough) break;
       if (rescue >= (updated.cloud.particles.empty() ? max_rescues_of_none : max_rescues)) break;
-      before = Moves<Model>{before.history, random_}.moved(before, rescue_effort);
+      before = moved(before, updated.cloud.effective(), rescue_effort);
       Updated again = propagated(before, step);
       if (again.cloud.effective() >= updated.cloud.effective()) updated = std::move(again);
     }
@@ -159,15 +160,23 @@ class ParticleFilter {
     return block;
   }
 
+  // The cloud after moves, since so many effective samples remained.
+  Cloud<Model> moved(const Cloud<Model>& cloud, double effective, std::size_t effort) {
+    Moves<Model> moves{cloud.history, random_};
+    Cloud<Model> after = moves.moved(cloud, effort);
+    update_effort.note_move(moves.copies(), effective, moves.steps());
+    return after;
+  }
+
   void move_where_few(Cloud<Model>& cloud) {
     const bool is_few = cloud.effective() < few_effective;
     if (!is_few && (cloud.history.has_all_origins() || cloud.effective_origins() >= few_origins)) return;
     if (!cloud.history.is_time_to_move()) return;
-    Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud);
-    const double gain = is_few ? moved.effective() / cloud.effective()
-                               : moved.effective_origins() / cloud.effective_origins();
+    Cloud<Model> after = moved(cloud, cloud.effective(), 1);
+    const double gain = is_few ? after.effective() / cloud.effective()
+                               : after.effective_origins() / cloud.effective_origins();
     // Moved particles are mixed better than they were, also where they are worth as many samples.
-    if (gain >= 1) cloud = std::move(moved);
+    if (gain >= 1) cloud = std::move(after);
     cloud.history.note_moves(gain > 1.1);
   }
 
@@ -242,6 +251,7 @@ class ParticleFilter {
       const double by_weight = before.particles[i].weight / total;
       trials[i] = promised > 0 ? 0.98 * trials[i] / promised + 0.02 * by_weight : by_weight;
     }
+    update_effort.steps += guided.runs();
     return priced(before, std::move(trials), guided);
   }
 
@@ -290,6 +300,7 @@ class ParticleFilter {
         draw(parent, step, gathered);
       }
     }
+    update_effort.steps += guided.runs();
     return gathered.updated(before, step, particle_count, random_);
   }
 
@@ -308,6 +319,7 @@ class ParticleFilter {
     for (long trial = 0; trial < parent.trials; ++trial) {
       State next = parent.state;
       Block block = free_block();
+      ++update_effort.steps;
       const bool agrees = step.agrees(History<Model>::run(next, step, replay_));
       block.draws = static_cast<std::uint32_t>(replay_.draws());
       block.likelihood = agrees ? replay_.weight() : 0;

@@ -12,6 +12,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/base/split_draws.hpp"
+#include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/model/step.hpp"
@@ -44,6 +45,7 @@ class SplitFilter {
       draws_.start(weight * step.ran_probability, threshold);
       do {
         State next = state;
+        ++update_effort.steps;
         const Step done = Model::step(next, step.action, draws_);
         work += work_of_step(draws_, Model::state_bytes());
         if (draws_.weight() <= 0 || !step.agrees(done)) continue;

@@ -15,6 +15,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/belief/effort.hpp"
 #include "aos/belief/hypotheses.hpp"
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/command.hpp"
@@ -111,6 +112,7 @@ class BeliefCommands {
   // explained in hypotheses.hpp.
   void update(JsonWriter& json, const Command& command) {
     begin_change(command);
+    update_effort = {};
     const int action = action_of<Model>(command);
     const Observation observation = observation_of<Model>(action, command.text("response"));
     const ObservedNumbers numbers = numbers_from(command.text("numbers"));
@@ -143,6 +145,7 @@ class BeliefCommands {
     json.member("is_impossible", is_impossible);
     json.member("is_excluded", !is_left_out && believed_.excludes(found, report));
     json.member("has_other_numbers", has_other_numbers && !is_impossible);
+    json.member("effort", update_effort.text());
     if (!uncorrected.code.empty()) {
       json.key("uncorrected").begin_object();
       write_members(json, uncorrected);
