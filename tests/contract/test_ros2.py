@@ -192,6 +192,21 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
     assert ended.is_set()
 
 
+async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: Node, node: Node) -> None:
+    async def accept(_: dict[str, Any]) -> dict[str, Any]:
+        return {"accepted": True}
+
+    async def forget(_: dict[str, Any]) -> dict[str, Any]:
+        return {"status": 0}
+
+    robot.publisher("/lab/fibonacci/_action/feedback", f"{FIBONACCI}_FeedbackMessage")
+    robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", accept)
+    robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", forget)
+    with pytest.raises(SkillError, match="does not know the goal") as raised:
+        await node.run_action(ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S))
+    assert raised.value.code == "AOS504"
+
+
 async def test_an_action_that_fails_is_aborted_and_the_log_says_why(
     robot: Node, node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from aos_protocol.errors import AosError, SkillError
-from aos_skills.ros.faults import CANCEL_S, node_lost, not_cancelled, not_ended
+from aos_skills.ros.faults import CANCEL_S, goal_forgotten, node_lost, not_cancelled, not_ended
 from aos_skills.ros.node import DISCOVERY_S, ActionEnd, ActionRequest, Fields, ServiceRequest
 
 if TYPE_CHECKING:
@@ -17,14 +17,8 @@ if TYPE_CHECKING:
 _ASKED_S = 24 * 3600.0
 """A goal that did not end when it was told to may take this long to end after all."""
 
-STATUS = {
-    1: "accepted",
-    2: "executing",
-    3: "canceling",
-    4: "succeeded",
-    5: "canceled",
-    6: "aborted",
-}
+ENDED = {4: "succeeded", 5: "canceled", 6: "aborted"}
+"""The states in which a goal has ended. A node that does not know the goal says 0."""
 
 
 class ActionClient:
@@ -77,7 +71,9 @@ class ActionClient:
         end = result.result()
         if reason == "late":
             raise not_ended(action, request.timeout_s)
-        return ActionEnd(STATUS.get(end["status"], "aborted"), end["result"])
+        if end["status"] not in ENDED:
+            raise goal_forgotten(action)
+        return ActionEnd(ENDED[end["status"]], end["result"])
 
     async def _listen(self, action: str, type_name: str, goal: bytes, take: Callable[[Fields], None]) -> None:
         """Has a goal's feedback taken until it is forgotten."""

@@ -49,3 +49,12 @@ def node_lost(action: str) -> SkillError:
         code="AOS504",
         hint="Whether the skill did its work is not known",
     )
+
+
+def goal_forgotten(action: str) -> SkillError:
+    """The error where the node that is asked for a result does not know the goal."""
+    return SkillError(
+        f"the node of {action} does not know the goal that was accepted",
+        code="AOS504",
+        hint="Was the node started anew meanwhile, or do two nodes serve it? What the skill did is not known",
+    )
