@@ -86,7 +86,7 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
     elif kind in ROS_KINDS:
         value, meaning = ROS_KINDS[kind]
         lines += [
-            f"# Every option: in the sources of AOS, docs/adapters/{kind}.md.",
+            "# Every option: in the sources of AOS, docs/ros.md.",
             "adapters:",
             "  robot:",
             f"    {kind}: {value}    # {meaning}",

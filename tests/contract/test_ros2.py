@@ -207,6 +207,27 @@ async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: N
     assert raised.value.code == "AOS504"
 
 
+async def test_a_goal_that_was_given_up_before_it_was_accepted_may_move_the_robot(
+    robot: Node, node: Node
+) -> None:
+    was_asked = asyncio.Event()
+
+    async def never(_: dict[str, Any]) -> dict[str, Any]:
+        was_asked.set()
+        return await asyncio.Future()
+
+    robot.publisher("/lab/fibonacci/_action/feedback", f"{FIBONACCI}_FeedbackMessage")
+    robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", never)
+    robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", never)
+    goal = ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S)
+    running = asyncio.create_task(node.run_action(goal))
+    async with asyncio.timeout(HANG_S):
+        await was_asked.wait()
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
+    assert node.unended.actions == ["/lab/fibonacci"]
+
+
 async def test_an_action_that_fails_is_aborted_and_the_log_says_why(
     robot: Node, node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -1,6 +1,7 @@
 """The paths that are served to ROS: the types from the deploy file and from documents, and what is said of
 mistakes."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -123,6 +124,9 @@ def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
     made = aos(*command)
     assert made.exit_code == 0, made.output
     (adapter,) = read_deploy_file(tmp_path / "armadillo.yaml").adapters
+    page = re.search(r"in the sources of AOS, (\S+)\.$", (tmp_path / "armadillo.yaml").read_text(), re.M)
+    assert page is not None
+    assert (root / page[1]).is_file()
     assert (adapter.kind_name, adapter.serves_others) == (kind, True)
     assert "`/pick`: the type that the robot says" in (tmp_path / "interfaces" / "README.md").read_text()
 

@@ -214,13 +214,14 @@ class Calls:
         """
         running = self._running
         is_meant = running is not None and cancel.id in (None, running.call.id)
-        if running is None or not is_meant or self._fence.is_stale(cancel):
-            if cancel.id is not None and isinstance(self._adapter, MovesOn):
-                self._check_that_it_stands_still(self._adapter)
-            return Cancelled()
-        if not await self._stop(running, cancel.reason):
-            raise self._stuck(running.call)
-        return Cancelled((str(running.call.id),))
+        stopped: tuple[str, ...] = ()
+        if running is not None and is_meant and not self._fence.is_stale(cancel):
+            if not await self._stop(running, cancel.reason):
+                raise self._stuck(running.call)
+            stopped = (str(running.call.id),)
+        if cancel.id is not None and isinstance(self._adapter, MovesOn):
+            self._check_that_it_stands_still(self._adapter)  # Its call may have ended, and the robot go on.
+        return Cancelled(stopped)
 
     def _check_that_it_stands_still(self, adapter: MovesOn) -> None:
         if moving := adapter.still_moving():

@@ -61,6 +61,10 @@ class ActionClient:
                     raise node_lost(action)
                 if reason:
                     await self._cancel(action, goal_id, result, f"{type_name}_GetResult")
+        except asyncio.CancelledError:
+            # It may have been accepted. A node that knows no such goal says so at once.
+            self._doubt(action, goal_id, f"{type_name}_GetResult")
+            raise
         except ExceptionGroup as group:
             known, others = group.split(AosError)
             if known is None or others is not None:
@@ -130,9 +134,13 @@ class ActionClient:
                 await asyncio.wait([result])
         except (TimeoutError, SkillError) as error:
             result.cancel()
-            ending = self._ask(action, "get_result", {"goal_id": goal_id}, result_type, _ASKED_S)
-            self._node.unended.add(action, ending, self._node.service_gone(f"{action}/_action/get_result"))
+            self._doubt(action, goal_id, result_type)
             raise not_cancelled(action) from error
+
+    def _doubt(self, action: str, goal_id: Fields, result_type: str) -> None:
+        """Holds a goal as one that may move the robot until it has ended or its node has left."""
+        ending = self._ask(action, "get_result", {"goal_id": goal_id}, result_type, _ASKED_S)
+        self._node.unended.add(action, ending, self._node.service_gone(f"{action}/_action/get_result"))
 
 
 def _ignore(_: Fields) -> None:
