@@ -2,25 +2,18 @@
 
 from typing import Any
 
-from aos_language.reading.json_text import (
-    JsonArray,
-    JsonConstant,
-    JsonNumber,
-    JsonObject,
-    JsonString,
-    JsonValue,
-)
+from aos_language.reading import json_text
 
 
-def plain(value: JsonValue | None) -> Any:
+def plain(value: json_text.JsonValue | None) -> Any:
     """Returns what `json.loads` would give; None also where nothing could be read."""
     match value:
-        case JsonObject():
+        case json_text.JsonObject():
             return {key.text: plain(item) for key, item in value.members}
-        case JsonArray():
+        case json_text.JsonArray():
             return [plain(item) for item in value.items]
-        case JsonString():
+        case json_text.JsonString():
             return value.text
-        case JsonNumber() | JsonConstant():
+        case json_text.JsonNumber() | json_text.JsonConstant():
             return value.value
     return None

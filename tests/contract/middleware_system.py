@@ -13,22 +13,9 @@ from processes import HANG_S
 from starting import until_present
 
 from aos_middleware.settings import Settings
+from aos_protocol import messages
 from aos_protocol.documents import Project
 from aos_protocol.keys import Keys, Serving
-from aos_protocol.messages import (
-    Activate,
-    ActivationId,
-    Cancel,
-    Cancelled,
-    MappingQuery,
-    MappingState,
-    Outcome,
-    ProjectQuery,
-    ProjectRevision,
-    SkillCall,
-    SkillResult,
-    TopicMessage,
-)
 from aos_runtime.bus import Bus
 from aos_runtime.children import PIPE, Child
 from aos_runtime.reported_state import state_when
@@ -70,15 +57,15 @@ class Registry:
     def __init__(self, bus: Bus, keys: Keys, project: Project) -> None:
         self._bus = bus
         self._keys = keys
-        self.current = ProjectRevision(1, "digest 1", project)
+        self.current = messages.ProjectRevision(1, "digest 1", project)
 
-    async def answer(self, query: ProjectQuery, _: str) -> ProjectRevision:
+    async def answer(self, query: messages.ProjectQuery, _: str) -> messages.ProjectRevision:
         assert query.project == "armadillo"
         return self.current
 
     def announce(self, project: Project) -> None:
         number = self.current.revision + 1
-        self.current = ProjectRevision(number, f"digest {number}", project)
+        self.current = messages.ProjectRevision(number, f"digest {number}", project)
         self._bus.tell(self._keys.announced, self.current)
 
 
@@ -89,8 +76,8 @@ class Adapter:
         self._bus = bus
         self._keys = keys
         self._sent: dict[str, int] = {}
-        self.motions: dict[ActivationId, asyncio.Future[dict[str, Any]]] = {}
-        self.calls: list[SkillCall] = []
+        self.motions: dict[messages.ActivationId, asyncio.Future[dict[str, Any]]] = {}
+        self.calls: list[messages.SkillCall] = []
         self.cancelled: list[str] = []
         self.is_called = asyncio.Event()
         self.is_cancelled = asyncio.Event()
@@ -98,19 +85,19 @@ class Adapter:
     async def serve(
         self,
         path: str,
-        answer: Callable[[SkillCall], Awaitable[dict[str, Any]]],
-        changed: Callable[[SkillResult], SkillResult] = lambda result: result,
+        answer: Callable[[messages.SkillCall], Awaitable[dict[str, Any]]],
+        changed: Callable[[messages.SkillResult], messages.SkillResult] = lambda result: result,
     ) -> None:
-        async def run(call: SkillCall, _: str) -> SkillResult:
+        async def run(call: messages.SkillCall, _: str) -> messages.SkillResult:
             self.calls.append(call)
             self.is_called.set()
             # One motion for each id: a call that comes again joins it.
             if call.id not in self.motions:
                 self.motions[call.id] = asyncio.ensure_future(answer(call))
             fields = await asyncio.shield(self.motions[call.id])
-            return changed(SkillResult(call.id, fields, dict(self._sent)))
+            return changed(messages.SkillResult(call.id, fields, dict(self._sent)))
 
-        await self._bus.answer(self._keys.call(path), SkillCall, run)
+        await self._bus.answer(self._keys.call(path), messages.SkillCall, run)
         await self.announce(path)
 
     async def announce(self, path: str, adapter: str = "scripted") -> None:
@@ -127,18 +114,18 @@ class Adapter:
     async def serve_cancel(self, path: str, is_still: asyncio.Event | None = None) -> None:
         """Answers cancellations, once the robot stands still."""
 
-        async def cancel(request: Cancel, _: str) -> Cancelled:
+        async def cancel(request: messages.Cancel, _: str) -> messages.Cancelled:
             self.cancelled.append(request.reason)
             self.is_cancelled.set()
             if is_still is not None:
                 await is_still.wait()
-            return Cancelled()
+            return messages.Cancelled()
 
-        await self._bus.answer(self._keys.cancel(path), Cancel, cancel)
+        await self._bus.answer(self._keys.cancel(path), messages.Cancel, cancel)
 
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
         self._sent[topic] = self._sent.get(topic, 0) + 1
-        self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
+        self._bus.tell(self._keys.topic(topic), messages.TopicMessage(self._sent[topic], fields))
 
 
 class System:
@@ -176,17 +163,22 @@ class System:
             await self.child.stop(5.0)
             await self._reading
 
-    async def state(self, revision: int) -> MappingState:
+    async def state(self, revision: int) -> messages.MappingState:
         """The state of the mappings once they are those of a revision."""
         return await self.state_when(lambda state: state.revision >= revision)
 
-    async def refusal(self, revision: int) -> MappingState:
+    async def refusal(self, revision: int) -> messages.MappingState:
         """The state of the mappings once a revision is refused."""
         return await self.state_when(lambda state: state.refused >= revision)
 
-    async def state_when(self, holds: Callable[[MappingState], bool]) -> MappingState:
+    async def state_when(self, holds: Callable[[messages.MappingState], bool]) -> messages.MappingState:
         return await state_when(
-            self.bus, self.keys.mapping_state, MappingQuery(), MappingState, holds, timeout_s=HANG_S
+            self.bus,
+            self.keys.mapping_state,
+            messages.MappingQuery(),
+            messages.MappingState,
+            holds,
+            timeout_s=HANG_S,
         )
 
     async def activate(
@@ -196,13 +188,15 @@ class System:
         parameters: dict[str, Any] | None = None,
         deadline_s: float = 10.0,
         revision: int = 0,
-    ) -> Outcome:
-        request = Activate(ActivationId("m", step), skill, parameters or {}, deadline_s, revision=revision)
-        return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=HANG_S)
+    ) -> messages.Outcome:
+        request = messages.Activate(
+            messages.ActivationId("m", step), skill, parameters or {}, deadline_s, revision=revision
+        )
+        return await self.bus.ask(self.keys.activate(skill), request, messages.Outcome, timeout_s=HANG_S)
 
     async def beside_a_motion(
         self, skill: str, deadline_s: float = 10.0
-    ) -> tuple[asyncio.Task[Outcome], asyncio.Event]:
+    ) -> tuple[asyncio.Task[messages.Outcome], asyncio.Event]:
         """Activates a skill while another may still be moving; also gives what lets that stand still."""
         is_still = asyncio.Event()
         await self.adapter.serve(
@@ -236,7 +230,7 @@ async def running_system(
     sense = skill_of(SENSE, "sense.am")
     project = msgspec.structs.replace(project, skills=(*project.skills, sense))
     registry = Registry(other, keys, project)
-    await other.answer(keys.project, ProjectQuery, registry.answer)
+    await other.answer(keys.project, messages.ProjectQuery, registry.answer)
     await other.announce(keys.live("registry"))
     system = System(bus, keys, run_dir, registry, Adapter(other, keys))
     try:
@@ -247,10 +241,10 @@ async def running_system(
         await system.stop()
 
 
-def answering(fields: dict[str, Any]) -> Callable[[SkillCall], Awaitable[dict[str, Any]]]:
+def answering(fields: dict[str, Any]) -> Callable[[messages.SkillCall], Awaitable[dict[str, Any]]]:
     """A skill that ends at once with this result."""
 
-    async def answer(_: SkillCall) -> dict[str, Any]:
+    async def answer(_: messages.SkillCall) -> dict[str, Any]:
         return fields
 
     return answer
@@ -259,7 +253,7 @@ def answering(fields: dict[str, Any]) -> Callable[[SkillCall], Awaitable[dict[st
 succeed = answering({"success": True})
 
 
-async def hang(_: SkillCall) -> dict[str, Any]:
+async def hang(_: messages.SkillCall) -> dict[str, Any]:
     """A skill that never ends."""
     await asyncio.Event().wait()
     return {}

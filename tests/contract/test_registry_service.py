@@ -13,20 +13,10 @@ import pytest_asyncio
 from processes import HANG_S
 from starting import until_present
 
+from aos_protocol import messages
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DocumentError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import (
-    BundleReport,
-    Catalogue,
-    CatalogueQuery,
-    CheckModel,
-    ModelCheck,
-    ProjectQuery,
-    ProjectRevision,
-    PushBundle,
-    RemoveDocuments,
-)
 from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
@@ -65,8 +55,10 @@ async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> Async
         yield tmp_path / "run"
 
 
-async def push(bus: Bus, keys: Keys, files: dict[str, bytes]) -> BundleReport:
-    return await bus.ask(keys.push_bundle, PushBundle(files, "test"), BundleReport, timeout_s=HANG_S)
+async def push(bus: Bus, keys: Keys, files: dict[str, bytes]) -> messages.BundleReport:
+    return await bus.ask(
+        keys.push_bundle, messages.PushBundle(files, "test"), messages.BundleReport, timeout_s=HANG_S
+    )
 
 
 def drop(registry: Path, name: str, files: dict[str, bytes]) -> None:
@@ -78,14 +70,16 @@ def drop(registry: Path, name: str, files: dict[str, bytes]) -> None:
     folder.rename(registry / "drop" / name)
 
 
-async def current(bus: Bus, keys: Keys, project: str = "armadillo") -> ProjectRevision:
-    return await bus.ask(keys.project, ProjectQuery(project), ProjectRevision, timeout_s=HANG_S)
+async def current(bus: Bus, keys: Keys, project: str = "armadillo") -> messages.ProjectRevision:
+    return await bus.ask(
+        keys.project, messages.ProjectQuery(project), messages.ProjectRevision, timeout_s=HANG_S
+    )
 
 
 async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
-    async with asyncio.timeout(HANG_S), bus.listen(keys.announced, ProjectRevision) as announced:
+    async with asyncio.timeout(HANG_S), bus.listen(keys.announced, messages.ProjectRevision) as announced:
         report = await push(bus, keys, finer)
         assert report.is_accepted
         assert report.revision == 1
@@ -100,7 +94,7 @@ async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
             assert revision == await current(bus, keys)
             assert revision == await current(bus, keys, project="")
             break
-    catalogue = await bus.ask(keys.catalogue, CatalogueQuery(), Catalogue, timeout_s=HANG_S)
+    catalogue = await bus.ask(keys.catalogue, messages.CatalogueQuery(), messages.Catalogue, timeout_s=HANG_S)
     (entry,) = catalogue.entries
     assert (entry.project, entry.revision, entry.skills) == ("armadillo", 1, tuple(sorted(report.added)))
 
@@ -136,11 +130,11 @@ async def test_the_solver_is_asked_and_its_complaint_refuses_the_bundle(
 ) -> None:
     complaint = Diagnostic(Severity.ERROR, "AOS201", "no such function", Span("pick.sd", 28, 1))
 
-    async def refuse(question: CheckModel, key: str) -> ModelCheck:
+    async def refuse(question: messages.CheckModel, key: str) -> messages.ModelCheck:
         assert question.project.name == "armadillo"
-        return ModelCheck((complaint,))
+        return messages.ModelCheck((complaint,))
 
-    await other.answer(keys.check_model, CheckModel, refuse)
+    await other.answer(keys.check_model, messages.CheckModel, refuse)
     report = await push(bus, keys, finer)
     assert not report.is_accepted
     errors = [diagnostic for diagnostic in report.diagnostics if diagnostic.is_error]
@@ -156,13 +150,13 @@ async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_un
 ) -> None:
     solver = await Bus.open(endpoint, sender="solver")
 
-    async def never(_: CheckModel, __: str) -> ModelCheck:
+    async def never(_: messages.CheckModel, __: str) -> messages.ModelCheck:
         leaving.append(asyncio.create_task(solver.close()))
         await asyncio.Event().wait()
-        return ModelCheck(())
+        return messages.ModelCheck(())
 
     leaving: list[asyncio.Task[None]] = []
-    await solver.answer(keys.check_model, CheckModel, never)
+    await solver.answer(keys.check_model, messages.CheckModel, never)
     report = await push(bus, keys, finer)
     await leaving[0]
     assert not report.is_accepted
@@ -187,7 +181,7 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
         asyncio.timeout(HANG_S),
         # A copy pauses on a busy machine.
         running_registry(registry, endpoint, bus, keys, quiet_s=0.5),
-        bus.listen(keys.bundle_report, BundleReport) as reports,
+        bus.listen(keys.bundle_report, messages.BundleReport) as reports,
     ):
         shutil.copytree(bundles / "armadillo-finer", registry / "drop" / "armadillo")
         async for _, report in reports:
@@ -205,7 +199,7 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
 
 
 async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Keys, bundles: Path) -> None:
-    async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, messages.BundleReport) as reports:
         shutil.make_archive(str(registry / "drop" / "armadillo"), "zip", bundles / "armadillo-finer")
         async for _, report in reports:
             assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo.zip")
@@ -216,7 +210,7 @@ async def test_a_drop_that_lacks_the_project_waits_until_it_is_pushed(
     registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
     observe = {name: finer.pop(name) for name in list(finer) if name.startswith("observe_holding")}
-    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
         sequence = aiter(reports)
         drop(registry, "sensing", observe)
         refused = (await anext(sequence))[1]
@@ -233,7 +227,7 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
     registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
     pick = {name: finer.pop(name) for name in list(finer) if name.startswith("pick")}
-    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
         sequence = aiter(reports)
         drop(registry, "half", {"pick.am": pick["pick.am"]})
         assert (await anext(sequence))[1].is_waiting  # for an environment
@@ -244,7 +238,10 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
             "AOS114"
         }  # its skill document
         await bus.ask(
-            keys.remove_bundle, RemoveDocuments("armadillo", "serve"), BundleReport, timeout_s=HANG_S
+            keys.remove_bundle,
+            messages.RemoveDocuments("armadillo", "serve"),
+            messages.BundleReport,
+            timeout_s=HANG_S,
         )
         await push(bus, keys, pick)
         rest = [(await anext(sequence))[1] for _ in range(3)]
@@ -258,10 +255,10 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
 async def test_every_push_and_removal_is_told_on_the_bus(
     registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
-    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
         pushed = await push(bus, keys, finer)
-        request = RemoveDocuments("armadillo", "observe_holding")
-        removed = await bus.ask(keys.remove_bundle, request, BundleReport, timeout_s=HANG_S)
+        request = messages.RemoveDocuments("armadillo", "observe_holding")
+        removed = await bus.ask(keys.remove_bundle, request, messages.BundleReport, timeout_s=HANG_S)
         assert removed.removed == ("observe_holding",)
         published = [(await anext(aiter(reports)))[1] for _ in range(2)]
     assert published == [pushed, removed]

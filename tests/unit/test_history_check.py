@@ -12,21 +12,7 @@ from aos_deploy.history_check import check
 from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.rules import RULES
 from aos_deploy.verdict import Account, Verdict
-from aos_protocol.messages import (
-    ActionRefused,
-    Activate,
-    ActivationId,
-    BeliefSummary,
-    DecisionRecord,
-    Message,
-    MissionBegun,
-    MissionState,
-    ModelAdopted,
-    Outcome,
-    SkillCall,
-    SkillResult,
-    Steer,
-)
+from aos_protocol import messages
 from aos_runtime.journal import Journal, JournalRow
 
 MISSION = "run"
@@ -35,35 +21,37 @@ STEPS = 3
 replace = msgspec.structs.replace
 
 
-def belief(step: int) -> BeliefSummary:
+def belief(step: int) -> messages.BeliefSummary:
     """The belief after a step."""
-    return BeliefSummary((), 0.0, step / 10, 0.0, 1, True)
+    return messages.BeliefSummary((), 0.0, step / 10, 0.0, 1, True)
 
 
-def decided(step: int) -> DecisionRecord:
+def decided(step: int) -> messages.DecisionRecord:
     return decision_record(
         2 * step - 2, MISSION, "go", action=f"go(to={step})", parameters={"to": step}, belief=belief(step - 1)
     )
 
 
-def outcome(step: int) -> Outcome:
-    return Outcome(ActivationId(MISSION, step), "go", "observed", "arrived")
+def outcome(step: int) -> messages.Outcome:
+    return messages.Outcome(messages.ActivationId(MISSION, step), "go", "observed", "arrived")
 
 
-def observed(step: int) -> DecisionRecord:
+def observed(step: int) -> messages.DecisionRecord:
     return replace(decided(step), sequence=2 * step - 1, belief=belief(step), outcome=outcome(step))
 
 
-def intended(step: int) -> Activate:
-    return Activate(ActivationId(MISSION, step), "go", {"to": step}, 10.0, 1)
+def intended(step: int) -> messages.Activate:
+    return messages.Activate(messages.ActivationId(MISSION, step), "go", {"to": step}, 10.0, 1)
 
 
-def call(step: int) -> SkillCall:
-    return SkillCall(ActivationId(MISSION, step), "/go", {"x": 1.0}, 10.0, "go", {"to": step})
+def call(step: int) -> messages.SkillCall:
+    return messages.SkillCall(
+        messages.ActivationId(MISSION, step), "/go", {"x": 1.0}, 10.0, "go", {"to": step}
+    )
 
 
-def state(phase: str, step: int, ending: str = "") -> MissionState:
-    return MissionState(MISSION, phase, step, 0.0, ending, revision=1, epoch=1)
+def state(phase: str, step: int, ending: str = "") -> messages.MissionState:
+    return messages.MissionState(MISSION, phase, step, 0.0, ending, revision=1, epoch=1)
 
 
 class Entry(NamedTuple):
@@ -71,7 +59,7 @@ class Entry(NamedTuple):
 
     stamp_ns: int
     kind: str
-    payload: Message
+    payload: messages.Message
 
 
 class History:
@@ -82,8 +70,8 @@ class History:
         self.middleware: list[Entry] = []
         self.robot: list[Entry] = []
         self.other: list[Entry] = [
-            Entry(5, "started", SkillCall(ActivationId("by-hand", 7), "/look", {}, 1.0)),
-            Entry(6, "ended", SkillResult(ActivationId("by-hand", 7), {})),
+            Entry(5, "started", messages.SkillCall(messages.ActivationId("by-hand", 7), "/look", {}, 1.0)),
+            Entry(6, "ended", messages.SkillResult(messages.ActivationId("by-hand", 7), {})),
         ]
         self.summary: Verdict | None = None
         for step in range(1, STEPS + 1):
@@ -99,12 +87,14 @@ class History:
         self._write(now + 20, "intended", intended(step))
         self.middleware.append(Entry(now + 30, "started", intended(step)))
         self.robot.append(Entry(now + 40, "started", call(step)))
-        self.robot.append(Entry(now + 50, "ended", SkillResult(ActivationId(MISSION, step), {})))
+        self.robot.append(
+            Entry(now + 50, "ended", messages.SkillResult(messages.ActivationId(MISSION, step), {}))
+        )
         self.middleware.append(Entry(now + 60, "ended", outcome(step)))
         self._write(now + 70, "outcome", outcome(step))
         self._write(now + 80, "decision", observed(step))
 
-    def _write(self, stamp_ns: int, kind: str, payload: Message) -> None:
+    def _write(self, stamp_ns: int, kind: str, payload: messages.Message) -> None:
         self.journal.append(Entry(stamp_ns, kind, payload))
 
     def place(self, kind: str, number: int, entries: list[Entry] | None = None) -> int:
@@ -168,8 +158,8 @@ def test_a_new_solver_replays_what_an_older_model_had_handed_over() -> None:
     for by, broken in (("import", set()), ("replay", {"belief"})):
         history = History()
         history.change("decision", 2, belief=belief(7))
-        history.journal.insert(0, Entry(1, "adopted", ModelAdopted(2, "", 1, by, 0)))
-        begun = MissionBegun(MISSION, 2, 1, 2, "")
+        history.journal.insert(0, Entry(1, "adopted", messages.ModelAdopted(2, "", 1, by, 0)))
+        begun = messages.MissionBegun(MISSION, 2, 1, 2, "")
         place = history.place("decision", 2)
         history.journal[place:] = [
             Entry(190, "begun", begun),
@@ -208,13 +198,13 @@ def test_a_mission_that_was_steered_breaks_no_rule() -> None:
     for number in (0, 1):
         history.change("decision", number, chosen_by="operator")
     at = history.place("decision", 0)
-    hold = Steer("hold", by="ana")
-    _steer(history, at, hold, Steer("act", ("go(to=1)",), by="ana", request="r"))
-    refused = Steer("act", ("stay",), by="ana", request="s")
+    hold = messages.Steer("hold", by="ana")
+    _steer(history, at, hold, messages.Steer("act", ("go(to=1)",), by="ana", request="r"))
+    refused = messages.Steer("act", ("stay",), by="ana", request="s")
     at = history.place("decision", 2)
-    _steer(history, at, refused, Steer("step", by="ana"))
-    history.journal.insert(at + 2, Entry(205, "refused", ActionRefused("stay", "s", "why")))
-    _steer(history, history.place("mission", 3), Steer("resume", by="ana"))
+    _steer(history, at, refused, messages.Steer("step", by="ana"))
+    history.journal.insert(at + 2, Entry(205, "refused", messages.ActionRefused("stay", "s", "why")))
+    _steer(history, history.place("mission", 3), messages.Steer("resume", by="ana"))
     assert history.broken_rules() == set()
 
 
@@ -245,7 +235,7 @@ def _epoch_that_falls(history: History) -> None:
 
 
 def _epoch_that_leaps(history: History) -> None:
-    begun = MissionBegun(MISSION, 3, 1, 2, "")
+    begun = messages.MissionBegun(MISSION, 3, 1, 2, "")
     history.journal.insert(history.place("decision", 2), Entry(190, "begun", begun))
 
 
@@ -262,7 +252,7 @@ def _intention_without_a_decision(history: History) -> None:
 
 
 def _outcome_of_another_step(history: History) -> None:
-    history.change("outcome", 1, id=ActivationId(MISSION, 1))
+    history.change("outcome", 1, id=messages.ActivationId(MISSION, 1))
 
 
 def _outcome_that_changed_on_its_way(history: History) -> None:
@@ -298,7 +288,7 @@ def _motion_by_hand_twice(history: History) -> None:
 
 
 def _end_without_a_start(history: History) -> None:
-    history.robot.insert(0, Entry(1, "ended", SkillResult(ActivationId(MISSION, 3), {})))
+    history.robot.insert(0, Entry(1, "ended", messages.SkillResult(messages.ActivationId(MISSION, 3), {})))
 
 
 def _decision_while_it_holds(history: History) -> None:
@@ -311,18 +301,18 @@ def _motion_while_it_holds(history: History) -> None:
     history.robot[place] = history.robot[place]._replace(stamp_ns=290)
 
 
-def _steer(history: History, place: int, *steers: Steer) -> None:
+def _steer(history: History, place: int, *steers: messages.Steer) -> None:
     """Puts what somebody wants before a row."""
     stamp_ns = history.journal[place].stamp_ns
     history.journal[place:place] = [Entry(stamp_ns, "steered", steer) for steer in steers]
 
 
 def _decision_while_somebody_holds_it(history: History) -> None:
-    _steer(history, history.place("decision", 2), Steer("hold", by="ana"))
+    _steer(history, history.place("decision", 2), messages.Steer("hold", by="ana"))
 
 
 def _decision_before_what_somebody_wants(history: History) -> None:
-    _steer(history, history.place("decision", 2), Steer("act", ("stay",), by="ana", request="r"))
+    _steer(history, history.place("decision", 2), messages.Steer("act", ("stay",), by="ana", request="r"))
 
 
 def _decision_that_nobody_wants(history: History) -> None:
@@ -331,12 +321,12 @@ def _decision_that_nobody_wants(history: History) -> None:
 
 
 def _decision_for_what_is_left_out(history: History) -> None:
-    _steer(history, history.place("decision", 2), Steer("leave_out", name="go(to=2)", by="ana"))
+    _steer(history, history.place("decision", 2), messages.Steer("leave_out", name="go(to=2)", by="ana"))
 
 
 def _refusal_that_nobody_asked_for(history: History) -> None:
     place = history.place("decision", 2)
-    history.journal.insert(place, Entry(205, "refused", ActionRefused("stay", "r", "why")))
+    history.journal.insert(place, Entry(205, "refused", messages.ActionRefused("stay", "r", "why")))
 
 
 def _row_after_the_end(history: History) -> None:
@@ -411,7 +401,7 @@ def test_a_journal_that_had_no_space_for_its_end_agrees_with_a_summary_that_tell
     del history.journal[-1]
     account = Account()
     for entry in history.journal:
-        if isinstance(entry.payload, DecisionRecord | MissionState):
+        if isinstance(entry.payload, messages.DecisionRecord | messages.MissionState):
             account.take(entry.payload)
     history.summary = replace(account.verdict(), ending="fault", exit_code=7)
     assert history.broken_rules() == set()

@@ -17,19 +17,11 @@ import pytest
 from processes import HANG_S
 
 from aos_skills.pybullet.world_file import load_world_file
-from aos_skills.pybullet.worlds.tictactoe import KIND
+from aos_skills.pybullet.worlds.tictactoe import KIND, rules
 from aos_skills.pybullet.worlds.tictactoe.file import FaultModel, TicTacToeFile
 from aos_skills.pybullet.worlds.tictactoe.person import PersonAtTerminal
 from aos_skills.pybullet.worlds.tictactoe.pictures import random_board
 from aos_skills.pybullet.worlds.tictactoe.reading import board_in
-from aos_skills.pybullet.worlds.tictactoe.rules import (
-    EMPTY_BOARD,
-    best_moves,
-    empty_cells,
-    is_over,
-    marked,
-    winner,
-)
 from aos_skills.pybullet.worlds.tictactoe.world import TicTacToe
 
 pytestmark = pytest.mark.physics
@@ -74,7 +66,7 @@ def test_what_the_pen_drew_and_the_other_one_marked_is_read_from_the_picture(mak
 def test_a_pen_that_does_not_write_leaves_the_middle_empty(make: Make) -> None:
     world = make(faults=FaultModel(dry_centre=1.0))
     assert not call(world, "/draw", {"cell": 4})["success"]
-    assert board_in(world.picture()) == EMPTY_BOARD
+    assert board_in(world.picture()) == rules.EMPTY_BOARD
     assert not world.is_robots_turn
 
 
@@ -125,11 +117,11 @@ def test_a_cell_that_is_none_is_refused(make: Make) -> None:
 def test_a_perfect_player_never_loses() -> None:
     chance = random.Random(1)
     for _ in range(50):
-        board, mark = EMPTY_BOARD, "O"
-        while not is_over(board):
-            cells = empty_cells(board) if mark == "O" else best_moves(board, "X")
-            board, mark = marked(board, chance.choice(cells), mark), "X" if mark == "O" else "O"
-        assert winner(board) != "O"
+        board, mark = rules.EMPTY_BOARD, "O"
+        while not rules.is_over(board):
+            cells = rules.empty_cells(board) if mark == "O" else rules.best_moves(board, "X")
+            board, mark = rules.marked(board, chance.choice(cells), mark), "X" if mark == "O" else "O"
+        assert rules.winner(board) != "O"
 
 
 @pytest.mark.parametrize(
@@ -144,12 +136,12 @@ def test_a_perfect_player_never_loses() -> None:
 def test_by_the_rules_for_corners_the_board_is_filled_and_pairs_count(
     board: str, ended: bool, won: str | None
 ) -> None:
-    assert (is_over(board, "corners"), winner(board, "corners")) == (ended, won)
+    assert (rules.is_over(board, "corners"), rules.winner(board, "corners")) == (ended, won)
 
 
 def test_a_perfect_player_of_corners_takes_the_last_pair() -> None:
-    assert best_moves("XO?XOOOXX", "X", "corners") == [2]
-    assert best_moves("?O?XOXOXO", "X", "corners") == [0, 2]
+    assert rules.best_moves("XO?XOOOXX", "X", "corners") == [2]
+    assert rules.best_moves("?O?XOXOXO", "X", "corners") == [0, 2]
 
 
 def test_by_the_rules_for_corners_somebody_draws_after_three_in_a_row(make: Make) -> None:

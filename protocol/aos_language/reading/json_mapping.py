@@ -7,22 +7,11 @@ from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.json_record import Record
 from aos_language.reading.local_variable import LocalVariableParts, build_local_variable
 from aos_language.reading.source import Text
+from aos_protocol import documents
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import (
-    ACTIVATION_KINDS,
-    NO_ACTIVATION,
-    AbstractionMapping,
-    Activation,
-    ActivationField,
-    Import,
-    LocalVariable,
-    LowLevelAssignment,
-    ResponseRule,
-    Snippet,
-)
 
 
-def read_mapping(record: Record, project: str, name: str, span: Span) -> AbstractionMapping | None:
+def read_mapping(record: Record, project: str, name: str, span: Span) -> documents.AbstractionMapping | None:
     """The mapping; None where the activation cannot be read."""
     record.ignore("GlueFramework")
     rules, variable = _responses(record)
@@ -32,7 +21,7 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
     activation = _activation(record) if monitor is None else _of_monitor(record, monitor)
     if activation is None:
         return None
-    return AbstractionMapping(
+    return documents.AbstractionMapping(
         project=project,
         name=name,
         span=span,
@@ -46,17 +35,17 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
     )
 
 
-def _of_monitor(record: Record, monitor: Text) -> Activation:
+def _of_monitor(record: Record, monitor: Text) -> documents.Activation:
     """The activation of a monitor, which calls nothing, and is where the monitor is named."""
     if record.has("ModuleActivation"):
         message = "a mapping is that of a monitor or calls a skill, not both"
         span = record.key_span("ModuleActivation")
         record.findings.error("AOS106", message, span, "Take one of the two out")
         _activation(record)
-    return msgspec.structs.replace(NO_ACTIVATION, span=monitor.span)
+    return msgspec.structs.replace(documents.NO_ACTIVATION, span=monitor.span)
 
 
-def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:
+def _responses(record: Record) -> tuple[tuple[documents.ResponseRule, ...], Text | None]:
     group = record.record("ModuleResponse", "ModuleResponse")
     if group is None:
         return (), None
@@ -69,7 +58,7 @@ def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:
         item.finish()
         if response:
             check_name(response, "a response", record.findings)
-            rules.append(ResponseRule(response.text, condition, response.span, assignments))
+            rules.append(documents.ResponseRule(response.text, condition, response.span, assignments))
     variable = group.text("FromStringLocalVariable")
     group.ignore("Comment")
     group.obsolete("EnumResponse", "The response rules name the responses")
@@ -77,7 +66,7 @@ def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:
     return tuple(rules), variable
 
 
-def _assignments(rule: Record) -> tuple[LowLevelAssignment, ...]:
+def _assignments(rule: Record) -> tuple[documents.LowLevelAssignment, ...]:
     assignments = []
     for item in rule.records("AssignGlobalVariables", "a low-level assignment"):
         path = item.text("VarName", required=True)
@@ -86,11 +75,11 @@ def _assignments(rule: Record) -> tuple[LowLevelAssignment, ...]:
         if value is None:
             item.findings.error("AOS105", 'a low-level assignment lacks "Value"', item.span)
         elif path is not None:
-            assignments.append(LowLevelAssignment(path.text, value, path.span))
+            assignments.append(documents.LowLevelAssignment(path.text, value, path.span))
     return tuple(assignments)
 
 
-def _activation(record: Record) -> Activation | None:
+def _activation(record: Record) -> documents.Activation | None:
     group = record.record("ModuleActivation", "ModuleActivation", required=True)
     if group is None:
         return None
@@ -99,7 +88,9 @@ def _activation(record: Record) -> Activation | None:
         message = "the longest duration must be above 0 s"
         record.findings.error("AOS106", message, group.value_span("MaxDuration"))
     given = {
-        kind: service for kind, word in ACTIVATION_KINDS.items() if (service := group.record(word, word))
+        kind: service
+        for kind, word in documents.ACTIVATION_KINDS.items()
+        if (service := group.record(word, word))
     }
     group.finish()
     if not given:
@@ -117,7 +108,7 @@ def _activation(record: Record) -> Activation | None:
     service.finish()
     if path is None:
         return None
-    return Activation(
+    return documents.Activation(
         kind=kind,
         path=path.text,
         span=path.span,
@@ -128,7 +119,7 @@ def _activation(record: Record) -> Activation | None:
     )
 
 
-def _fields(record: Record) -> tuple[ActivationField, ...]:
+def _fields(record: Record) -> tuple[documents.ActivationField, ...]:
     fields = []
     for item in record.records("ServiceParameters", "a service parameter"):
         name = item.text("ServiceFieldName", required=True)
@@ -139,11 +130,11 @@ def _fields(record: Record) -> tuple[ActivationField, ...]:
             message = 'a service parameter lacks "AssignServiceFieldCode"'
             record.findings.error("AOS105", message, item.span)
         elif name and check_name(name, "a service field", record.findings):
-            fields.append(ActivationField(name.text, value))
+            fields.append(documents.ActivationField(name.text, value))
     return tuple(fields)
 
 
-def _imports(record: Record) -> tuple[Import, ...]:
+def _imports(record: Record) -> tuple[documents.Import, ...]:
     imports = []
     for item in record.records("ImportCode", "an import"):
         module = item.text("From")
@@ -154,13 +145,13 @@ def _imports(record: Record) -> tuple[Import, ...]:
             names_of_item = tuple(
                 part.strip() for name in names for part in name.text.split(",") if part.strip()
             )
-            imports.append(Import(module.text if module else "", names_of_item, item.span))
+            imports.append(documents.Import(module.text if module else "", names_of_item, item.span))
         else:
             record.findings.error("AOS105", 'an import lacks "Import"', item.span)
     return tuple(imports)
 
 
-def _local_variable(record: Record) -> LocalVariable | None:
+def _local_variable(record: Record) -> documents.LocalVariable | None:
     name = _name(record)
     parts = LocalVariableParts(
         name=name,
@@ -194,5 +185,5 @@ def _type(record: Record) -> str:
     return normal_type(kind, record.findings) if kind else ""
 
 
-def _python(code: Snippet | None) -> Snippet | None:
+def _python(code: documents.Snippet | None) -> documents.Snippet | None:
     return None if code is None else dedented(code)

@@ -11,18 +11,8 @@ from aos_language.reading.sdl_declaration import Declaration, read_declaration, 
 from aos_language.reading.sdl_sections import DEFAULT_DISCOUNT, Sections
 from aos_language.reading.sdl_text import Part, Section, listed_values
 from aos_language.reading.source import Text
+from aos_protocol import documents
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import (
-    MAX_HORIZON,
-    Assignment,
-    CompoundType,
-    EnumType,
-    Environment,
-    Field,
-    MonitorModel,
-    SpecialState,
-    StateVariable,
-)
 
 _KEY = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)|\w+")
 _KEYS = re.compile(rf"(?:{_KEY.pattern})(?:\s*,\s*(?:{_KEY.pattern}))*")
@@ -31,20 +21,22 @@ _ARRAY_MARK = re.compile(r"\[\s*([A-Za-z_]\w*|)\s*\]\s*")
 _ARRAY_WORDS = {"true": True, "false": False, "": False}
 
 
-def read_environment(sections: Sections, project: str, span: Span, findings: Findings) -> Environment:
+def read_environment(
+    sections: Sections, project: str, span: Span, findings: Findings
+) -> documents.Environment:
     """The environment; what cannot be read of it is reported and left out."""
     types = [_type(section, findings) for section in sections.all("define_type")]
     variables = [
         _variable(section, findings)
         for section in sections.of("state_variable", "action_parameter", "mission_parameter")
     ]
-    return Environment(
+    return documents.Environment(
         project=project,
         span=span,
         horizon=_horizon(sections, findings),
         discount=_discount(sections, findings),
-        enums=tuple(kind for kind in types if isinstance(kind, EnumType)),
-        compounds=tuple(kind for kind in types if isinstance(kind, CompoundType)),
+        enums=tuple(kind for kind in types if isinstance(kind, documents.EnumType)),
+        compounds=tuple(kind for kind in types if isinstance(kind, documents.CompoundType)),
         variables=tuple(variable for variable in variables if variable is not None),
         initial_belief=sections.block("initial_belief"),
         special_states=tuple(_special_states(sections, findings)),
@@ -60,7 +52,7 @@ def read_environment(sections: Sections, project: str, span: Span, findings: Fin
     )
 
 
-def _monitors(sections: Sections, findings: Findings) -> Iterator[MonitorModel]:
+def _monitors(sections: Sections, findings: Findings) -> Iterator[documents.MonitorModel]:
     """The model of each monitor; an error for one without a name or without code."""
     for section in sections.all("monitor"):
         name, part = section.value, section.last("code", findings)
@@ -71,7 +63,7 @@ def _monitors(sections: Sections, findings: Findings) -> Iterator[MonitorModel]:
             hint = "Add `code:` that sets __moduleResponse from `state`"
             findings.error("AOS105", f"the monitor {name.text} has no model", name.span, hint)
         elif check_name(name, "a monitor", findings):
-            yield MonitorModel(name.text, name.span, (Assignment(code.span, code=code),))
+            yield documents.MonitorModel(name.text, name.span, (documents.Assignment(code.span, code=code),))
 
 
 def _horizon(sections: Sections, findings: Findings) -> int:
@@ -82,8 +74,8 @@ def _horizon(sections: Sections, findings: Findings) -> int:
     number = read_number(section, findings)
     if number is None:
         return 1
-    if number != int(number) or not 1 <= number <= MAX_HORIZON:
-        message = f"the horizon must be an integer from 1 to {MAX_HORIZON}"
+    if number != int(number) or not 1 <= number <= documents.MAX_HORIZON:
+        message = f"the horizon must be an integer from 1 to {documents.MAX_HORIZON}"
         findings.error("AOS106", message, section.value.span)
         return 1
     return int(number)
@@ -101,18 +93,18 @@ def _discount(sections: Sections, findings: Findings) -> float:
     return number
 
 
-def _special_states(sections: Sections, findings: Findings) -> Iterator[SpecialState]:
+def _special_states(sections: Sections, findings: Findings) -> Iterator[documents.SpecialState]:
     for section in sections.of("reward_code", "special_state"):
         if section.word == "special_state":
             special = _form_a(section, findings)
         else:
             code = read_block(section, findings)
-            special = SpecialState(section.span, code=code) if code else None
+            special = documents.SpecialState(section.span, code=code) if code else None
         if special is not None:
             yield special
 
 
-def _form_a(section: Section, findings: Findings) -> SpecialState | None:
+def _form_a(section: Section, findings: Findings) -> documents.SpecialState | None:
     condition, reward = section.last("state_condition", findings), section.last("reward", findings)
     is_goal = read_truth(section.last("is_goal_state", findings), findings)
     is_one_time = read_truth(section.last("is_one_time_reward", findings), findings)
@@ -127,10 +119,10 @@ def _form_a(section: Section, findings: Findings) -> SpecialState | None:
     if code is None or number is None:
         return None
     holds = expression(code, drop_semicolon=True)
-    return SpecialState(section.span, holds, number, is_goal, is_one_time, is_failure)
+    return documents.SpecialState(section.span, holds, number, is_goal, is_one_time, is_failure)
 
 
-def _type(section: Section, findings: Findings) -> EnumType | CompoundType | None:
+def _type(section: Section, findings: Findings) -> documents.EnumType | documents.CompoundType | None:
     name = section.value
     if not name.text:
         findings.error("AOS105", "`define_type:` needs a name", section.span)
@@ -146,10 +138,10 @@ def _type(section: Section, findings: Findings) -> EnumType | CompoundType | Non
     if not fields:
         hint = "Add `enum_members:` or `variable:` lines"
         findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
-    return CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
+    return documents.CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
 
 
-def _field(part: Part, findings: Findings) -> Field | None:
+def _field(part: Part, findings: Findings) -> documents.Field | None:
     declaration = read_declaration(part, "a field", findings)
     if declaration is None:
         return None
@@ -167,7 +159,7 @@ def _field(part: Part, findings: Findings) -> Field | None:
     default = _without_learning_scale(rest)
     snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
     name = declaration.name
-    return Field(name.text, kind, name.span, snippet, low_level_type, declaration.type_text.span)
+    return documents.Field(name.text, kind, name.span, snippet, low_level_type, declaration.type_text.span)
 
 
 def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:
@@ -185,7 +177,7 @@ def _without_learning_scale(rest: Text) -> Text:
     return Text(match.group(1), rest.span) if match else rest
 
 
-def _variable(section: Section, findings: Findings) -> StateVariable | None:
+def _variable(section: Section, findings: Findings) -> documents.StateVariable | None:
     declaration = read_declaration(section, "a variable", findings)
     if declaration is None:
         return None
@@ -203,7 +195,7 @@ def _variable(section: Section, findings: Findings) -> StateVariable | None:
     index_span = declaration.type_text.after(declaration.type_text.text.find("[") + 1).strip().span
     if mark is not None:
         index_enum, index_span = mark[1] or index_enum, rest.after(mark.start(1)).span
-    return StateVariable(
+    return documents.StateVariable(
         name=declaration.name.text,
         type=kind,
         span=declaration.name.span,

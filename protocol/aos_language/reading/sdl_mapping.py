@@ -12,19 +12,8 @@ from aos_language.reading.sdl_declaration import read_number, read_truth
 from aos_language.reading.sdl_sections import Sections
 from aos_language.reading.sdl_text import Part, Section
 from aos_language.reading.source import Text
+from aos_protocol import documents
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import (
-    ACTIVATION_KINDS,
-    NO_ACTIVATION,
-    AbstractionMapping,
-    Activation,
-    ActivationField,
-    Import,
-    LocalVariable,
-    LowLevelAssignment,
-    ResponseRule,
-    Snippet,
-)
 
 _IMPORT = re.compile(r"(?:from(?:\s*:\s*|\s+)(?P<module>\S+)\s+)?import(?:\s*:\s*|\s+)(?P<names>.+)")
 _COLON_AFTER_WORD = re.compile(r"(?:from\s*:.*\s)?import\s*:")
@@ -32,7 +21,7 @@ _COLON_AFTER_WORD = re.compile(r"(?:from\s*:.*\s)?import\s*:")
 
 def read_mapping(
     sections: Sections, project: str, name: str, span: Span, findings: Findings
-) -> AbstractionMapping | None:
+) -> documents.AbstractionMapping | None:
     """The mapping; None where the activation cannot be read."""
     rules = [_rule(section, findings) for section in sections.all("response")]
     variables = [_local_variable(section, findings) for section in sections.all("local_variable")]
@@ -42,7 +31,7 @@ def read_mapping(
     activation = _calls(sections, monitor, name, findings)
     if activation is None:
         return None
-    return AbstractionMapping(
+    return documents.AbstractionMapping(
         project=project,
         name=name,
         span=span,
@@ -56,7 +45,9 @@ def read_mapping(
     )
 
 
-def _calls(sections: Sections, monitor: Section | None, name: str, findings: Findings) -> Activation | None:
+def _calls(
+    sections: Sections, monitor: Section | None, name: str, findings: Findings
+) -> documents.Activation | None:
     """The activation; that of a monitor calls nothing, and is where the monitor is named."""
     section = sections.last("module_activation")
     if monitor is not None:
@@ -67,7 +58,7 @@ def _calls(sections: Sections, monitor: Section | None, name: str, findings: Fin
             hint = "It is that of a `monitor:` of the environment document"
             findings.error("AOS105", "`monitor:` needs a name", monitor.span, hint)
             return None
-        return msgspec.structs.replace(NO_ACTIVATION, span=monitor.value.span)
+        return msgspec.structs.replace(documents.NO_ACTIVATION, span=monitor.value.span)
     if section is None:
         hint = "A mapping without a skill says `monitor: NAME` instead"
         findings.error("AOS105", f"the mapping {name} lacks `module_activation:`", sections.span, hint)
@@ -75,7 +66,7 @@ def _calls(sections: Sections, monitor: Section | None, name: str, findings: Fin
     return _activation(section, findings)
 
 
-def _stop_when(sections: Sections, findings: Findings) -> Snippet | None:
+def _stop_when(sections: Sections, findings: Findings) -> documents.Snippet | None:
     section = sections.last("stop_when")
     if section is None:
         return None
@@ -86,7 +77,7 @@ def _stop_when(sections: Sections, findings: Findings) -> Snippet | None:
     return expression
 
 
-def _rule(section: Section, findings: Findings) -> ResponseRule | None:
+def _rule(section: Section, findings: Findings) -> documents.ResponseRule | None:
     rule = section.last("response_rule", findings)
     condition = rule.expression() if rule is not None else None
     if rule is None:
@@ -97,10 +88,10 @@ def _rule(section: Section, findings: Findings) -> ResponseRule | None:
         return None
     check_name(section.value, "a response", findings)
     assignments = _assignments(section, findings)
-    return ResponseRule(section.value.text, condition, section.value.span, assignments)
+    return documents.ResponseRule(section.value.text, condition, section.value.span, assignments)
 
 
-def _assignments(section: Section, findings: Findings) -> tuple[LowLevelAssignment, ...]:
+def _assignments(section: Section, findings: Findings) -> tuple[documents.LowLevelAssignment, ...]:
     """Each `assign_variable:` with the `value:` after it."""
     parts = [part for part in section.parts if part.word in ("assign_variable", "value")]
     assignments = []
@@ -113,17 +104,17 @@ def _assignments(section: Section, findings: Findings) -> tuple[LowLevelAssignme
             message = f"the low-level assignment to {part.value.text or '(nothing)'} has no value"
             findings.error("AOS105", message, part.span, hint)
         else:
-            assignments.append(LowLevelAssignment(part.value.text, value, part.value.span))
+            assignments.append(documents.LowLevelAssignment(part.value.text, value, part.value.span))
     return tuple(assignments)
 
 
-def _activation(section: Section, findings: Findings) -> Activation | None:
+def _activation(section: Section, findings: Findings) -> documents.Activation | None:
     kind = section.value.text.lower()
-    if kind not in ACTIVATION_KINDS:
+    if kind not in documents.ACTIVATION_KINDS:
         name, span = section.value.text, section.value.span if kind else section.span
-        otherwise = f"It is one of {', '.join(ACTIVATION_KINDS)}"
+        otherwise = f"It is one of {', '.join(documents.ACTIVATION_KINDS)}"
         message = f"unknown activation {name!r}"
-        findings.unknown(name, ACTIVATION_KINDS, message, span, otherwise, code="AOS106")
+        findings.unknown(name, documents.ACTIVATION_KINDS, message, span, otherwise, code="AOS106")
         return None
     path, service = section.last("path", findings), section.last("srv", findings)
     duration = section.last("max_duration", findings)
@@ -137,7 +128,7 @@ def _activation(section: Section, findings: Findings) -> Activation | None:
     if path is None or not path.value.text:
         findings.error("AOS105", "the activation needs `path:`", section.span)
         return None
-    return Activation(
+    return documents.Activation(
         kind=kind,
         path=path.value.text,
         span=path.value.span,
@@ -148,9 +139,9 @@ def _activation(section: Section, findings: Findings) -> Activation | None:
     )
 
 
-def _fields(section: Section, findings: Findings) -> tuple[ActivationField, ...]:
+def _fields(section: Section, findings: Findings) -> tuple[documents.ActivationField, ...]:
     """Each `parameter:` with the `code:` below it."""
-    fields: list[ActivationField] = []
+    fields: list[documents.ActivationField] = []
     pending: Part | None = None
     for part in section.parts:
         if part.word == "parameter":
@@ -161,7 +152,7 @@ def _fields(section: Section, findings: Findings) -> tuple[ActivationField, ...]
             if pending is None:
                 findings.error("AOS104", "this `code:` belongs to no `parameter:`", part.span)
             elif value is not None and check_name(pending.value, "a service field", findings):
-                fields.append(ActivationField(pending.value.text, value))
+                fields.append(documents.ActivationField(pending.value.text, value))
             elif value is None:
                 _without_code(pending, findings)
             pending = None
@@ -175,7 +166,7 @@ def _without_code(pending: Part | None, findings: Findings) -> None:
         findings.error("AOS105", f"the field {pending.value.text} has no value", pending.span, hint)
 
 
-def _imports(section: Section, findings: Findings) -> tuple[Import, ...]:
+def _imports(section: Section, findings: Findings) -> tuple[documents.Import, ...]:
     found = []
     for part in section.all("imports"):
         match = _IMPORT.fullmatch(part.value.text)
@@ -187,11 +178,11 @@ def _imports(section: Section, findings: Findings) -> tuple[Import, ...]:
             hint = "AOS writes `from: <module> import: <name>`"
             findings.warning("AOS127", "an import as Python writes it", part.value.span, hint)
         names = tuple(name.strip() for name in match["names"].split(",") if name.strip())
-        found.append(Import(match["module"] or "", names, part.span))
+        found.append(documents.Import(match["module"] or "", names, part.span))
     return tuple(found)
 
 
-def _local_variable(section: Section, findings: Findings) -> LocalVariable | None:
+def _local_variable(section: Section, findings: Findings) -> documents.LocalVariable | None:
     def value(word: str) -> Text | None:
         part = section.last(word, findings)
         return part.value if part is not None and part.value.text else None

@@ -16,22 +16,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from aos_middleware import frames
 from aos_middleware.emit import EmittedMapping
-from aos_middleware.frames import (
-    MAX_FRAME_BYTES,
-    Begin,
-    Begun,
-    Done,
-    Finish,
-    Load,
-    Observed,
-    Question,
-    Raised,
-    Take,
-    Taken,
-    pack,
-    read_answer,
-)
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
@@ -40,7 +26,7 @@ from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.failpoints import reach
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
-A = TypeVar("A", Begun, Done, Observed, Taken)
+A = TypeVar("A", frames.Begun, frames.Done, frames.Observed, frames.Taken)
 
 _MARGIN_S = 1.0
 """An answer may take this much longer than the worker's own deadlines before the worker is killed."""
@@ -115,7 +101,7 @@ class Evaluator:
         except OSError as error:
             raise StorageError(f"the log {self._log_path}: {error}", code="AOS701") from error
         limits = self._limits
-        load = Load(
+        load = frames.Load(
             self.emitted.python,
             self.emitted.file_name,
             limits.load_s,
@@ -124,7 +110,7 @@ class Evaluator:
             self.emitted.truths,
         )
         try:
-            await self._ask(load, Done, limits.load_s)
+            await self._ask(load, frames.Done, limits.load_s)
         except MappingFault:
             await self.close()
             raise
@@ -134,25 +120,31 @@ class Evaluator:
     ) -> dict[str, Any]:
         """Starts an activation; the fields of the call."""
         await self.start()
-        return (await self._ask(Begin(parameters, low_level or {}), Begun, self._limits.evaluation_s)).fields
+        return (
+            await self._ask(
+                frames.Begin(parameters, low_level or {}), frames.Begun, self._limits.evaluation_s
+            )
+        ).fields
 
-    async def take(self, messages: Sequence[tuple[str, dict[str, Any]]]) -> Taken:
+    async def take(self, messages: Sequence[tuple[str, dict[str, Any]]]) -> frames.Taken:
         """Hands over topic messages, (topic, fields), in the order in which they came.
 
         Where one of them makes `stop_when` true, those behind it were not evaluated yet.
         """
         evaluations = 1 + len(self.emitted.mapping.local_variables)
         longest_s = self._limits.evaluation_s * len(messages) * evaluations
-        return await self._ask(Take(list(messages)), Taken, longest_s)
+        return await self._ask(frames.Take(list(messages)), frames.Taken, longest_s)
 
-    async def finish(self, result: dict[str, Any], status: str = "succeeded", error: str = "") -> Observed:
+    async def finish(
+        self, result: dict[str, Any], status: str = "succeeded", error: str = ""
+    ) -> frames.Observed:
         """Ends the activation with the call's result: the response, if a rule holds, and local variables.
 
         With another `status` the skill has failed, and there is no result.
         """
         evaluations = 1 + len(self.emitted.mapping.local_variables)
         return await self._ask(
-            Finish(result, status, error), Observed, self._limits.evaluation_s * evaluations
+            frames.Finish(result, status, error), frames.Observed, self._limits.evaluation_s * evaluations
         )
 
     async def close(self) -> None:
@@ -175,12 +167,12 @@ class Evaluator:
             name = f"mapping of {self.emitted.skill}"
             return await Child.start(command, name=name, cwd="/", stdin=PIPE, stdout=PIPE, stderr=log)
 
-    async def _ask(self, question: Question, expected: type[A], timeout_s: float) -> A:
+    async def _ask(self, question: frames.Question, expected: type[A], timeout_s: float) -> A:
         child = self._child
         if child is None:
             raise self._fault("AOS401", "the worker has ended", None)
         try:
-            frame = pack(question)
+            frame = frames.pack(question)
         except (ValueError, TypeError, OverflowError) as error:
             raise self._fault("AOS401", f"this cannot be handed to the mapping: {error}", None) from error
         is_answered = False
@@ -189,9 +181,9 @@ class Evaluator:
                 child.stdin.write(frame)
                 await child.stdin.drain()
                 size = int.from_bytes(await child.stdout.readexactly(4), "big")
-                if size > MAX_FRAME_BYTES:
+                if size > frames.MAX_FRAME_BYTES:
                     raise self._fault("AOS401", "the worker sent no message", None)
-                answer = read_answer(await child.stdout.readexactly(size))
+                answer = frames.read_answer(await child.stdout.readexactly(size))
             is_answered = True
         except TimeoutError:
             if child.is_frozen():
@@ -200,7 +192,7 @@ class Evaluator:
                 ) from None
             raise self._fault("AOS403", "the code did not finish in time and was stopped", None) from None
         except (asyncio.IncompleteReadError, BrokenPipeError, ConnectionResetError):
-            limit_s = self._limits.load_s if isinstance(question, Load) else self._limits.evaluation_s
+            limit_s = self._limits.load_s if isinstance(question, frames.Load) else self._limits.evaluation_s
             raise await self._why_it_ended(child, limit_s) from None
         except UNREADABLE as error:
             raise self._fault("AOS401", f"the worker sent no message: {error}", None) from None
@@ -208,14 +200,14 @@ class Evaluator:
             if not is_answered:
                 # Also when the caller was cancelled: the next answer would be that of this question.
                 await self.close()
-        if isinstance(answer, Raised):
+        if isinstance(answer, frames.Raised):
             raise self._raised(answer)
         if not isinstance(answer, expected):
             await self.close()
             raise self._fault("AOS401", "the worker answered another question", None)
         return answer
 
-    def _raised(self, answer: Raised) -> MappingFault:
+    def _raised(self, answer: frames.Raised) -> MappingFault:
         place = self.emitted.locate(answer.line, answer.column) if answer.line else None
         unset = self._unset(answer)
         hint = f"Send it, or give the variable an initial_value in {self.emitted.skill}.am"
@@ -227,7 +219,7 @@ class Evaluator:
             local_variables=answer.local_variables,
         )
 
-    def _unset(self, answer: Raised) -> str:
+    def _unset(self, answer: frames.Raised) -> str:
         """Most errors in rules that are about None are about a topic that said nothing."""
         if "NoneType" not in answer.error or not answer.error.startswith(("TypeError", "AttributeError")):
             return ""

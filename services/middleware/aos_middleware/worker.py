@@ -17,20 +17,7 @@ from numbers import Number
 from types import CodeType
 from typing import Any
 
-from aos_middleware.frames import (
-    Answer,
-    Begin,
-    Begun,
-    Done,
-    Finish,
-    Load,
-    Observed,
-    Question,
-    Take,
-    Taken,
-    pack,
-    read_question,
-)
+from aos_middleware import frames
 from aos_middleware.raised import NoTruthValue, raised
 from aos_middleware.values import is_truth, message_from, plain_from, put, text_of
 from aos_middleware.worker_pipes import take_over_pipes
@@ -48,7 +35,7 @@ class ImportRefused(Exception):
 class LoadedMapping:
     """A mapping's module, loaded, and the local variables of the activation that runs."""
 
-    def __init__(self, load: Load) -> None:
+    def __init__(self, load: frames.Load) -> None:
         """Runs the module; whatever it raises comes through."""
         self._load = load
         self._lines = load.python.split("\n")
@@ -68,7 +55,7 @@ class LoadedMapping:
             exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
         self._namespace = namespace
 
-    def answer(self, question: Question) -> Answer:
+    def answer(self, question: frames.Question) -> frames.Answer:
         """The answer to a question; Raised if mapping code raised."""
         try:
             return self._answer(question)
@@ -77,19 +64,19 @@ class LoadedMapping:
             unset = tuple(name for name, value in self._last_given.items() if value is None)
             return raised(error, self._load.file_name, self._lines, unset, self._texts())
 
-    def _answer(self, question: Question) -> Answer:
+    def _answer(self, question: frames.Question) -> frames.Answer:
         match question:
-            case Begin(parameters, low_level):
-                return Begun(self._begin(parameters, low_level))
-            case Take(messages):
+            case frames.Begin(parameters, low_level):
+                return frames.Begun(self._begin(parameters, low_level))
+            case frames.Take(messages):
                 for number, (topic, fields) in enumerate(messages, start=1):
                     self._take(topic, fields)
                     if self._stops():
-                        return Taken(number, stops=True)
-                return Taken(len(messages))
-            case Finish(result, status, error):
-                return Observed(self._finish(result, status, error), self._texts(), self._assigned)
-            case Load():
+                        return frames.Taken(number, stops=True)
+                return frames.Taken(len(messages))
+            case frames.Finish(result, status, error):
+                return frames.Observed(self._finish(result, status, error), self._texts(), self._assigned)
+            case frames.Load():
                 raise ValueError("the module is loaded already")
 
     def _begin(self, parameters: dict[str, Any], low_level: dict[str, Any]) -> dict[str, Any]:
@@ -217,21 +204,23 @@ def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
     return names
 
 
-def _answer_of(mapping: LoadedMapping | None, question: Question) -> tuple[LoadedMapping | None, bytes]:
+def _answer_of(
+    mapping: LoadedMapping | None, question: frames.Question
+) -> tuple[LoadedMapping | None, bytes]:
     """The next state of the worker and the frame to send."""
-    if isinstance(question, Load) and mapping is None:
+    if isinstance(question, frames.Load) and mapping is None:
         try:
-            return LoadedMapping(question), pack(Done())
+            return LoadedMapping(question), frames.pack(frames.Done())
         except BaseException as error:
-            return None, pack(raised(error, question.file_name, question.python.split("\n")))
+            return None, frames.pack(raised(error, question.file_name, question.python.split("\n")))
     if mapping is None:
         raise ValueError("a mapping worker is told what to load first")
     answer = mapping.answer(question)
     try:
-        return mapping, pack(answer)
+        return mapping, frames.pack(answer)
     except Exception as error:
         # Whole numbers beyond 64 bits, texts that are not Unicode: plain in Python, not on the bus.
-        return mapping, pack(raised(error, "", []))
+        return mapping, frames.pack(raised(error, "", []))
 
 
 def main() -> None:
@@ -243,7 +232,7 @@ def main() -> None:
     mapping: LoadedMapping | None = None
     while len(head := questions.read(4)) == 4:
         body = questions.read(int.from_bytes(head, "big"))
-        mapping, frame = _answer_of(mapping, read_question(body))
+        mapping, frame = _answer_of(mapping, frames.read_question(body))
         try:
             answers.write(frame)
             answers.flush()
