@@ -1,14 +1,18 @@
 """The helps of commands are whole on a terminal of 80 columns, and each has an example."""
 
 import io
+import re
 from collections.abc import Iterator
 from contextlib import redirect_stdout
+from pathlib import Path
 
 import pytest
 import typer
 from typer.core import TyperGroup
 
 from aos_deploy.cli import aos_app
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def paths_below(group: TyperGroup, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
@@ -45,6 +49,18 @@ def test_each_command_has_an_example_of_itself(helps: dict[str, str]) -> None:
     assert len(helps) > 50
     examples = {name: " ".join(text.split()).replace("aos-up", "aos up") for name, text in helps.items()}
     assert [name for name, text in examples.items() if f"Example: {name}" not in text] == []
+
+
+def test_files_of_examples_are_there_or_made_by_commands(helps: dict[str, str]) -> None:
+    named = set()
+    for text in helps.values():
+        example = re.sub(
+            r"(--out|--junit|--write|>) \S+", "", " ".join(text.partition("Example: ")[2].split())
+        )
+        named |= set(re.findall(r"[\w./-]+/[\w/.-]+|\b[\w-]+\.(?:yaml|txt|policy)\b", example))
+    files = {re.sub(r"\.$", "", word) for word in named if not word.startswith(("runs/", "/"))}
+    assert len(files) > 5
+    assert [name for name in files - {"armadillo/armadillo.yaml"} if not (ROOT / name).exists()] == []
 
 
 def test_no_list_of_commands_cuts_a_sentence_off(helps: dict[str, str]) -> None:

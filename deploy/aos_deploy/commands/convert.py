@@ -15,7 +15,7 @@ from aos_protocol.errors import DocumentError
 
 def register(app: typer.Typer) -> None:
     """Adds `aos convert` to `aos`."""
-    example = "Example: aos convert deploy/bundles/armadillo-finer --to json --out finer-json"
+    example = "Example: aos convert deploy/bundles/armadillo-finer --to json --out converted"
     app.command("convert", epilog=example)(convert_bundle)
 
 

@@ -133,7 +133,7 @@ def example(
     typer.echo(f"Run it:      aos-up {deploy}\nLook at it:  aos plan {deploy} --exact")
 
 
-@new_app.command(epilog="Example: aos new unit armadillo.yaml --user robot")
+@new_app.command(epilog="Example: aos new unit deploy/armadillo.yaml --user robot")
 def unit(
     deploy: Annotated[Path, typer.Argument(help="The deploy file")],
     folder: Annotated[Path, typer.Option("--to", help="Where the file is made")] = Path(),

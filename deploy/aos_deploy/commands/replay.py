@@ -22,7 +22,7 @@ from aos_solver.study.comparing import Comparison, compared
 def register(app: typer.Typer) -> None:
     """Adds the commands to `aos`."""
     app.command(epilog="Example: aos replay runs/latest --until 4")(replay)
-    app.command(epilog="Example: aos diff runs/20260105T101500Z-armadillo runs/latest")(diff)
+    app.command(epilog="Example: aos diff $(ls -d runs/2* | tail -2)")(diff)
 
 
 class Replayed(msgspec.Struct):

@@ -26,7 +26,7 @@ def register(app: typer.Typer) -> None:
     app.command(epilog="Example: aos mission step")(step)
     app.command(epilog="Example: aos mission resume")(resume)
     app.command("do", epilog="Example: aos mission do 'navigate(destination=corridor)'")(act)
-    app.command(epilog="Example: aos mission script actions.txt")(script)
+    app.command(epilog="Example: aos mission script docs/examples/actions.txt")(script)
     app.command("leave-out", epilog="Example: aos mission leave-out pick")(leave_out)
     app.command("take-back", epilog="Example: aos mission take-back pick")(take_back)
 

@@ -29,7 +29,7 @@ def register(app: typer.Typer) -> None:
     """Adds the command to `aos`."""
     app.command(
         name="test",
-        epilog="Example: aos test missions.yaml --junit report.xml. "
+        epilog="Example: aos test docs/examples/missions.yaml --junit report.xml. "
         "Exit codes: 0 all claims hold, 4 one does not, 1 the file or documents have errors.",
     )(run_tests)
 
