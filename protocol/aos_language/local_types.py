@@ -15,7 +15,7 @@ RESERVED_LOCAL_NAMES = frozenset({
 })  # fmt: skip
 """No local variable can have these names: the generated module uses them, or is given them."""
 
-_ELEMENTS = ("bool", "int", "float", "double", "string")
+ELEMENTS = ("bool", "int", "float", "double", "string")
 
 
 class LocalType(msgspec.Struct, frozen=True):
@@ -33,12 +33,12 @@ def local_type(text: str) -> LocalType | None:
         element = text.removesuffix("[]")
     elif text.startswith("vector<") and text.endswith(">"):
         element = text[len("vector<") : -1]
-    return LocalType(element, element != text) if element in _ELEMENTS else None
+    return LocalType(element, element != text) if element in ELEMENTS else None
 
 
 def local_type_text() -> str:
     """Returns the types that can be written, for hints."""
-    return f"{', '.join(_ELEMENTS)}, or an array such as int[]"
+    return f"{', '.join(ELEMENTS)}, or an array such as int[]"
 
 
 def reported_variables(mapping: AbstractionMapping, environment: Environment) -> tuple[str, ...]:

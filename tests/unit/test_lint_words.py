@@ -224,6 +224,10 @@ def test_a_condition_that_sets_what_may_only_be_read_is_one_error() -> None:
             "if state.first.x > 0:\n    __reward = 1\nelse:\n    __reward = 2",
             "9 AOS108 `if ...:` is Python. The model's code is C++: `if (...) { ... } else { ... }`",
         ),
+        (
+            "int x = 3\n__reward = x;",
+            "9 AOS108 unexpected '3' in C++. Is a semicolon missing at the end of this line?",
+        ),
     ],
 )
 def test_what_other_languages_write_is_told_once(code: str, told: str) -> None:
@@ -491,3 +495,37 @@ def test_a_mapping_that_takes_an_enum_for_a_number_is_told(code: str, hint: str 
         environment=environment, skill=skill, mapping=MAPPING.replace("code:\nsteps", f"code:\n{code}")
     )
     assert [finding.hint for finding in told if finding.code == "AOS149"] == ([hint] if hint else [])
+
+
+def test_a_number_that_cannot_be_read_hides_no_other_mistake_and_brings_no_remark() -> None:
+    header = {"Project": "hall", "Name": "environment", "Type": "Environment"}
+    special = {"StateConditionCode": "state.second.y == 3", "Reward": "much", "IsGoalState": True}
+    environment = {
+        "PlpMain": header,
+        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
+        "GlobalVariableTypes": [],
+        "GlobalVariablesDeclaration": [{"Name": "second", "Type": "int", "Default": "1"}],
+        "SpecialStates": [special],
+    }
+    skill = {
+        "PlpMain": {**header, "Name": "walk", "Type": "PLP"},
+        "Preconditions": {
+            "GlobalVariablePreconditionAssignments": [
+                {"AssignmentCode": "__meetPrecondition = state.second > 0;"}
+            ],
+            "ViolatingPreconditionPenalty": "a lot",
+        },
+        "DynamicModel": {"NextStateAssignments": [{"AssignmentCode": "state__.second = 3;"}]},
+    }
+    files = {"environment.json": json.dumps(environment), "walk.json": json.dumps(skill)}
+    told = [finding.code for finding in load_files(encoded(files)).diagnostics]
+    assert sorted(told) == ["AOS106", "AOS106", "AOS110"]
+
+
+def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told() -> None:
+    mapping = MAPPING.replace("parameter: steps\ncode:\nsteps\n", "parameter: steps\ncode:\nsteps\n" * 2)
+    mapping = mapping.replace("local_variable: steps\n", "local_variable: steps\ntype: imt\n")
+    assert finding_texts(mapping=mapping) == [
+        "12 AOS126 a second value for the field `steps` of the call. Take one of the two out",
+        "14 AOS110 unknown type `imt` of the local variable steps. Did you mean `int`?",
+    ]

@@ -10,6 +10,7 @@ from aos_language.check.enum_texts import check_enum_texts
 from aos_language.check.python_names import PythonNames, check_fields_set, check_names
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
+from aos_language.local_types import ELEMENTS, local_type
 from aos_language.python_syntax import tree_of
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
@@ -22,7 +23,7 @@ from aos_protocol.documents import (
     SkillModel,
     Snippet,
 )
-from aos_protocol.spelling import quoted
+from aos_protocol.spelling import nearest, quoted
 
 _CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
@@ -49,7 +50,12 @@ def check_mapping(
     _check_order(mapping.rules, findings)
     # Documents that are only planned with may have a request from elsewhere and nothing that it could name.
     of_request = severity if mapping.local_variables else Severity.WARNING
+    names_of_fields: set[str] = set()
     for field in mapping.activation.fields:
+        if field.name in names_of_fields:
+            message = f"a second value for the field `{field.name}` of the call"
+            findings.error("AOS126", message, field.value.span, "Take one of the two out")
+        names_of_fields.add(field.name)
         _check_expression(field.value, names, findings, of_request)
     for variable in mapping.local_variables:
         _check_variable(variable, names, findings, severity)
@@ -144,6 +150,9 @@ def _check_expression(
 def _check_variable(
     variable: LocalVariable, names: PythonNames, findings: Findings, severity: Severity
 ) -> None:
+    if variable.type and local_type(variable.type) is None and nearest(variable.type, ELEMENTS):
+        message = f"unknown type `{variable.type}` of the local variable {variable.name}"
+        findings.unknown(variable.type, ELEMENTS, message, variable.span, severity=Severity.WARNING)
     if variable.source is LocalSource.TOPIC:
         _check_path(variable.topic, variable.source_span or variable.span, findings)
     if variable.initial_value is not None:

@@ -120,7 +120,7 @@ class _BlockCheck:
     def run(self) -> None:
         for fault in self._cpp.faults:
             if fault.kind is FaultKind.SYNTAX:
-                message, hint = f"{fault.message} in C++", "The compiler will tell more"
+                message, hint = f"{fault.message} in C++", fault.hint or "The compiler will tell more"
                 self._findings.warning("AOS108", message, self._span(fault.extent), hint)
             else:
                 span = self._span(fault.extent)

@@ -31,7 +31,8 @@ def check_precondition(model: SkillModel, findings: Findings) -> None:
     if all(_ALWAYS.fullmatch(snippet.code) for snippet, _ in snippets_of(model.precondition)):
         return
     message = f"nothing keeps the planner from using {model.name} where this does not hold"
-    hint = f"Add `violate_penalty: -10`, or say in the dynamic model what happens where {_MEETS} is false"
+    penalty = '"ViolatingPreconditionPenalty"' if span.file.endswith(".json") else "violate_penalty"
+    hint = f"Add `{penalty}: -10`, or say in the dynamic model what happens where {_MEETS} is false"
     findings.remark("AOS147", message, span, hint)
 
 

@@ -70,8 +70,12 @@ class TreeReader:
             return
         if node.is_error:
             text = text_of(node).strip().splitlines() or [""]
-            message = f"unexpected {text[0][:40]!r}"
-            self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(node)))
+            after = node.next_sibling
+            is_cut = after and after.type != "}" and after.start_point[0] > node.end_point[0]
+            hint = "Is a semicolon missing at the end of this line?" if is_cut else ""
+            self.faults.append(
+                Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
+            )
         handler = _HANDLERS.get(node.type)
         if handler is None:
             self._push(node.children)
@@ -253,6 +257,7 @@ class TreeReader:
             initial = _within_brackets(initial)
         binds = inner.type == "reference_declarator" and not is_constant
         self._push([initial], Access.BIND if binds else Access.READ)
+        self._push(child for child in node.children if child.is_error)
         while inner.type in ("reference_declarator", "pointer_declarator", "array_declarator"):
             if inner.type == "array_declarator":
                 self._push([inner.child_by_field_name("size")])

@@ -237,7 +237,7 @@ def _special_state(record: Record) -> SpecialState | None:
     if reward is None:
         if not record.has("Reward"):
             record.findings.error("AOS105", 'a special state lacks "Reward"', record.span)
-        return None
+        reward = 1.0  # The mistake is told. What the condition names is looked at all the same.
     return SpecialState(record.span, condition, reward, is_goal, is_one_time, is_failure)
 
 

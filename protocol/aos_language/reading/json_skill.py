@@ -46,6 +46,8 @@ def _preconditions(
     precondition = read_block(group, "GlobalVariablePreconditionAssignments")
     rollout_policy = read_block(group, "PlannerAssistancePreconditionsAssignments")
     penalty = group.number("ViolatingPreconditionPenalty")
+    if penalty is None and group.has("ViolatingPreconditionPenalty"):
+        penalty = -1.0  # That it cannot be read is told; it is not taken for none.
     group.finish()
     return precondition, rollout_policy, penalty or 0.0
 

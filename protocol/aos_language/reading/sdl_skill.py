@@ -20,6 +20,7 @@ def read_skill(sections: Sections, project: str, name: str, span: Span, findings
         name_text, kind = declaration.name, declaration.type
         parameters.append(Parameter(name_text.text, kind, name_text.span, declaration.type_text.span))
     penalty = sections.last("violate_penalty")
+    number = read_number(penalty, findings) if penalty is not None else 0.0
     if not sections.all("dynamic_model"):
         findings.error("AOS105", f"the skill {name} lacks `dynamic_model:`", sections.span)
     return SkillModel(
@@ -30,7 +31,7 @@ def read_skill(sections: Sections, project: str, name: str, span: Span, findings
         possible_parameters=sections.block("available_parameters_code"),
         precondition=sections.block("precondition"),
         rollout_policy=sections.block("rollout_policy"),
-        violation_penalty=(read_number(penalty, findings) or 0.0) if penalty is not None else 0.0,
+        violation_penalty=-1.0 if number is None else number,
         execution_time=sections.block("execution_time"),
         dynamic_model=sections.block("dynamic_model"),
         state_given_observation=sections.block("state_given_observation"),
