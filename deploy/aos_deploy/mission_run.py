@@ -163,10 +163,10 @@ class MissionRun:
                 self._write_record(run, endpoint, supervisor)
                 if self._shows_page:
                     self._report(Told(f"page {await asyncio.to_thread(page_address, run.path)}"))
-                self._write_again = write_again = partial(self._write_record, run, endpoint, supervisor)
+                self._write_again = partial(self._write_record, run, endpoint, supervisor)
                 async with asyncio.TaskGroup() as tasks:
                     tasks.create_task(self._follow(supervisor))
-                    await self._start_mission(supervisor, write_again)
+                    await self._start_mission(supervisor)
                 if not self._heard.has_ended:
                     # The solver's process ends in a moment, and the supervision with the reason.
                     await supervisor.until_one_ended(timeout_s=_END_NOTICE_S)
@@ -184,18 +184,18 @@ class MissionRun:
         if isinstance(event, ServiceChanged) and event.state == "starting":
             self._write_again()
 
-    async def _start_mission(self, supervisor: Supervisor, write_record: Callable[[], None]) -> None:
+    async def _start_mission(self, supervisor: Supervisor) -> None:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self._push_bundles(supervisor))
             await supervisor.until_ready()
-            write_record()  # Now all processes have an id.
+            self._write_again()  # Now all processes have an id.
             self._services_ready_s = self._elapsed_s()
         for remark in await until_skills_can_run(supervisor, self._deployment):
             self._report(Told(remark))
-        await self._ask_to_start(supervisor, StartMission())
+        await self._ask_to_start(supervisor)
 
-    async def _ask_to_start(self, supervisor: Supervisor, start: StartMission) -> None:
-        await start_mission(supervisor.bus, supervisor.keys, start)
+    async def _ask_to_start(self, supervisor: Supervisor) -> None:
+        await start_mission(supervisor.bus, supervisor.keys, StartMission())
 
     async def _push_bundles(self, supervisor: Supervisor) -> None:
         if self._taken_up is not None and self._taken_up.has_begun:

@@ -7,8 +7,7 @@ service, the first path that a command serves. They are stopped in the reverse o
 
 A service that ends before it is told to ends the supervision with the fault it left, unless its program says
 that it may be started again. One that is frozen, which a program of the user's own may be by SIGSTOP alone,
-is killed. `_watch` is the only place that sees a service
-end.
+is killed. `_watch` is the only place that sees a service end.
 """
 
 from __future__ import annotations
@@ -147,7 +146,7 @@ class Supervisor:
             credential=self._passes.credential(OPERATOR),
             access=Access(self._base.robot, Party(name=OPERATOR, role=OPERATOR)),
         )
-        self._is_ready(self._running[ROUTER.name])
+        self._set_ready(self._running[ROUTER.name])
         self._beside(self._follow_presence(self.bus))
 
     async def _start_in_order(self, programs: list[Program]) -> None:
@@ -233,14 +232,14 @@ class Supervisor:
                 code="AOS802",
                 hint=f"See `ready` and `start_s` in the deploy file. {self.look_at_log(program.name)}",
             ) from None
-        self._is_ready(running)
+        self._set_ready(running)
 
     async def _follow_presence(self, bus: Bus) -> None:
         keys, router = self.keys, self._running[ROUTER.name]
         async with merged(bus.presence(keys.all_live), bus.presence(keys.all_serve)) as changes:
             async for key, is_alive in changes:
                 if is_alive and not router.is_ready:
-                    self._is_ready(router)  # It was started again, and others are heard through it.
+                    self._set_ready(router)  # It was started again, and others are heard through it.
                 serving = keys.serving_of(key)
                 if serving is not None:
                     (self._serving.add if is_alive else self._serving.discard)(serving.path)
@@ -248,9 +247,9 @@ class Supervisor:
                 else:
                     running = self._running.get(keys.service_of(key))
                 if running is not None and is_alive and not running.is_ready:
-                    self._is_ready(running)
+                    self._set_ready(running)
                 elif running is not None and not is_alive:
-                    self._is_silent(running, serves_less=serving is not None)
+                    self._note_silence(running, serves_less=serving is not None)
 
     def _command_behind(self, serving: Serving) -> RunningProgram | None:
         """The command that serves a path, by its name in the token or by what is bound to it."""
@@ -261,7 +260,7 @@ class Supervisor:
                 return running
         return None
 
-    def _is_silent(self, running: RunningProgram, *, serves_less: bool) -> None:
+    def _note_silence(self, running: RunningProgram, *, serves_less: bool) -> None:
         """A service has left the bus, or a program of the user's own a path: it ends, or it is frozen."""
         running.is_ready = running.is_ready and serves_less
         if running.program.is_restarted and running.silence is None:
@@ -305,7 +304,7 @@ class Supervisor:
         silent_s = self._clock.monotonic_s() - running.silent_since_s
         self._changed(running.program.name, "frozen", f"off the bus for {silent_s:.1f} s; it is killed")
 
-    def _is_ready(self, running: RunningProgram, state: str = "ready") -> None:
+    def _set_ready(self, running: RunningProgram, state: str = "ready") -> None:
         if running.silence is not None:
             running.silence.cancel()
             running.silence = None
@@ -327,7 +326,7 @@ class Supervisor:
             if running.seeking is not None:
                 running.seeking.cancel()
             if program.ready is not None and program.ready.exit == status:
-                self._is_ready(running, "done")
+                self._set_ready(running, "done")
                 return
             running.is_ready = False
             others = [other for other in self._running.values() if other is not running]

@@ -19,6 +19,7 @@ from aos_protocol.messages import MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import DECISION
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import make_folder_of_missions, mission_folder
+from aos_runtime.steering import start_mission
 from aos_solver.mission.logbook import JOURNAL, entries_of, entry_of
 
 
@@ -36,11 +37,12 @@ class SystemRun(MissionRun):
         make_folder_of_missions(run.path)
         return run
 
-    async def _ask_to_start(self, supervisor: Supervisor, start: StartMission) -> None:
+    async def _ask_to_start(self, supervisor: Supervisor) -> None:
         if self._taken_up is None or not self._taken_up.has_begun:
             # Somebody else may have been quicker, as soon as the services could be asked.
             with suppress(MissionRunsError):
-                await super()._ask_to_start(supervisor, StartMission(request=self._run.path.name))
+                start = StartMission(request=self._run.path.name)
+                await start_mission(supervisor.bus, supervisor.keys, start)
 
     def _take(self, event: Event) -> None:
         if isinstance(event, MissionState) and event.mission != self._mission:

@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 from collections.abc import Iterable
+from typing import TypeVar
 
 import tree_sitter
 
@@ -51,11 +52,9 @@ class TreeReader:
             self._visit(*self._stack.pop())
         return Cpp(
             code=self._code,
-            mentions=tuple(m for m in sorted(self.mentions, key=_by_start) if self._is_inside(m.extent)),
+            mentions=_of_code(self.mentions),
             calls=tuple(sorted(self.calls, key=_by_start)),
-            declarations=tuple(
-                d for d in sorted(self.declarations, key=_by_start) if self._is_inside(d.extent)
-            ),
+            declarations=_of_code(self.declarations),
             types=tuple(sorted(self.types, key=lambda item: item[1].start)),
             literals=self._tokens.literals,
             missing_semicolons=self._tokens.missing_semicolons,
@@ -325,9 +324,6 @@ class TreeReader:
             offset = self._offsets[min(offset, len(self._offsets) - 1)]
         return min(offset - bisect_left(self._inserted, offset), len(self._code))
 
-    def _is_inside(self, extent: Extent) -> bool:
-        return extent.start < extent.end
-
 
 _HANDLERS = {
     "assignment_expression": TreeReader._assignment,
@@ -399,6 +395,14 @@ def _child(node: tree_sitter.Node, field: str) -> tree_sitter.Node:
 
 def _by_start(item: Mention | Call | Declaration | Fault) -> int:
     return item.extent.start
+
+
+_Placed = TypeVar("_Placed", Mention, Declaration)
+
+
+def _of_code(found: list[_Placed]) -> tuple[_Placed, ...]:
+    """The finds of the code itself, in the order of the text: those around it have places without length."""
+    return tuple(item for item in sorted(found, key=_by_start) if item.extent.start < item.extent.end)
 
 
 def _character_offsets(code: str) -> list[int] | None:

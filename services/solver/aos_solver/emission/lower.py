@@ -175,9 +175,9 @@ class _Lowering:
             return None
         if late:
             self._pieces.check(snippet, self._shared.cpp)
-        for misuse in self._shared.misuses if late else ():
-            span = snippet.locate(misuse.extent.line, misuse.extent.column)
-            self._findings.error("AOS145", misuse.message, span, misuse.hint)
+            for misuse in self._shared.misuses:
+                span = snippet.locate(misuse.extent.line, misuse.extent.column)
+                self._findings.error("AOS145", misuse.message, span, misuse.hint)
         return self._pieces.declarations(snippet, self._shared, self._code.outside, late=late)
 
     def _constraint(self, constraint: DocumentedConstraint) -> Constraint:
@@ -271,7 +271,7 @@ class _Lowering:
             dynamic_model=code.section(DYNAMIC, model.dynamic_model),
             rollout_policy=code.section(LOOKING, model.rollout_policy),
             given_observation=code.section(GIVEN, model.state_given_observation),
-            reported=reported_variables(mapping, self._project.environment),
+            reported=reported_variables(mapping, environment),
             observed=tuple(Observed(number.name, number.is_array) for number in reported_numbers(model)),
             keeps_state=copies.keeps_state,
             keeps_state_=copies.keeps_state_,

@@ -231,9 +231,8 @@ class SectionLowering:
         if assignment.temporary is not None:
             yield self._temporary(assignment.temporary)
         if assignment.over_previous:
-            copy = phase.previous_copy
-            is_reference = copy in phase.changes
-            yield self._loop(assignment.over_previous, copy, is_reference, rewriting, of_loops)
+            is_reference = phase.previous_copy in phase.changes
+            yield self._loop(assignment.over_previous, phase.previous_copy, is_reference, rewriting, of_loops)
         if assignment.over_next:
             if phase.next_copy:
                 yield self._loop(assignment.over_next, phase.next_copy, True, rewriting, of_loops)
@@ -250,7 +249,7 @@ class SectionLowering:
     def _loop(
         self,
         loops: tuple[Iteration, ...],
-        copy: str,
+        state_copy: str,
         is_reference: bool,
         rewriting: Rewriting,
         of_loops: _LoopsByCode,
@@ -261,8 +260,8 @@ class SectionLowering:
             condition = self._pieces.expression(first.condition, rewriting)
         if first.body is not None and not read_cpp(first.body.code).is_empty:
             body = self._pieces.code(first.body, rewriting, of_loops.get(id(first.body), NO_LOOPS))
-        inner = self._loop(rest, copy, is_reference, rewriting, of_loops) if rest else None
-        return Loop(first.type, first.item, copy, is_reference, condition, body, inner)
+        inner = self._loop(rest, state_copy, is_reference, rewriting, of_loops) if rest else None
+        return Loop(first.type, first.item, state_copy, is_reference, condition, body, inner)
 
     def _no_next_state(self, phase: Phase, span: Span) -> None:
         hint = "Use IteratePreviousStateVars"

@@ -295,8 +295,8 @@ class Chooser:
         )
 
 
-def _nothing_left(set_aside: Mapping[str, str]) -> str:
-    return f"nothing is left that is worth doing: {'; '.join(set_aside.values())}"
+def _nothing_left(reasons: Mapping[str, str]) -> str:
+    return f"nothing is left that is worth doing: {'; '.join(reasons.values())}"
 
 
 def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
@@ -305,7 +305,7 @@ def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
     return {action: barred[action] for action in better}
 
 
-def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:
-    """The plan, which says what it does without, and what else was `told`."""
-    reasons = [plan.why, *set_aside.values(), *([_CAUTIOUSLY] if is_cautious else []), *told]
-    return msgspec.structs.replace(plan, why="; ".join(reason for reason in reasons if reason))
+def _explained(plan: Plan, reasons: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:
+    """The plan, which says why it does without skills and actions, and what else was `told`."""
+    texts = [plan.why, *reasons.values(), *([_CAUTIOUSLY] if is_cautious else []), *told]
+    return msgspec.structs.replace(plan, why="; ".join(text for text in texts if text))
