@@ -10,10 +10,10 @@ from pathlib import Path
 import msgspec
 
 from aos_language.archive import is_archive_name, read_archive
-from aos_language.assembly import assemble
+from aos_language.assembly import Assembly, assemble
 from aos_language.check import check
 from aos_language.findings import Findings
-from aos_language.reading.document import DocumentKind
+from aos_language.reading.document import Document, DocumentKind
 from aos_language.reading.files import (
     MAX_BUNDLE_BYTES,
     MAX_BUNDLE_FILES,
@@ -28,12 +28,14 @@ from aos_protocol.documents import Project
 
 _IN_CODE = frozenset({"AOS110", "AOS116", "AOS122", "AOS123", "AOS128", "AOS138", "AOS143"})
 """Errors in a model's code that leave its declarations whole, so that the compiler can tell of the rest."""
+_READ_ALL_THE_SAME = frozenset({"AOS102", "AOS104"})
+"""Errors that leave all whole where they have a mend: what was meant is read."""
 
 
 class LoadedBundle(msgspec.Struct, frozen=True):
     """`project` is there when no diagnostic is an error. `files` gives the digest of each document's file,
     `versions` the version of each that declares one. `draft` is a project with errors of mappings and of
-    single lines of model code alone, of which a compiler tells more."""
+    single lines of model code alone, of which a compiler tells more; skills with others are not in it."""
 
     project: Project | None
     diagnostics: tuple[Diagnostic, ...]
@@ -77,11 +79,9 @@ def load_files(
     )
     assembly = assemble(documents, findings, bundle=name, has_unread_files=has_unread_files)
     check(assembly, findings)
-    mappings = {name for name, document in documents.items() if document.kind is DocumentKind.MAPPING}
     errors = [found for found in findings.sorted() if found.is_error]
-    is_draft = all(found.span.file in mappings or found.code in _IN_CODE for found in errors)
-    whole = assembly.project() if is_draft else None
-    project, draft = (None, whole) if errors else (whole, None)
+    project = None if errors else assembly.project()
+    draft = _draft(documents, assembly, errors) if errors else None
     kept = [*documents, *([PICTURE] if PICTURE in files else [])]
     digests = {file: hashlib.sha256(files[file]).hexdigest() for file in kept}
     versions = {
@@ -89,6 +89,26 @@ def load_files(
     }
     digest = bundle_digest(files, kept)
     return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions, draft)
+
+
+def _draft(
+    documents: Mapping[str, Document], assembly: Assembly, errors: Iterable[Diagnostic]
+) -> Project | None:
+    """The project without the skills whose declarations are wrong; None where others are."""
+    wrong = set()
+    for file in {found.span.file for found in errors if not _leaves_declarations(found)}:
+        document = documents.get(file)
+        if document is None or document.kind in (DocumentKind.ENVIRONMENT, DocumentKind.LOW_LEVEL):
+            return None
+        if document.kind is DocumentKind.SKILL:
+            wrong.add(document.name)
+    models = {name: model for name, model in assembly.models.items() if name not in wrong}
+    mappings = {name: mapping for name, mapping in assembly.mappings.items() if name in models}
+    return msgspec.structs.replace(assembly, models=models, mappings=mappings).project()
+
+
+def _leaves_declarations(found: Diagnostic) -> bool:
+    return found.code in _IN_CODE or (found.code in _READ_ALL_THE_SAME and found.mend is not None)
 
 
 def bundle_digest(files: Mapping[str, bytes], documents: Iterable[str]) -> str:

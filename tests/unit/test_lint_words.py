@@ -99,6 +99,25 @@ def test_a_missing_colon_is_one_error(text: tuple[str, str, str], line: int, wor
     assert only == f"{line} AOS104 a colon is missing after `{word}`. Write `{word}:`"
 
 
+@pytest.mark.parametrize(
+    ("file", "before", "after", "skills"),
+    [
+        ("hall.ef", "reward_code:", "reward_code", ["run", "walk"]),
+        ("hall.ef", "reward_code:", "rewrad_code:", ["run", "walk"]),
+        ("walk.sd", "project: hall\n", "a line\nproject: hall\n", ["run"]),
+        ("hall.ef", "project: hall\n", "a line\nproject: hall\n", []),
+    ],
+)
+def test_the_compiler_may_tell_of_all_but_declarations_that_are_wrong(
+    file: str, before: str, after: str, skills: list[str]
+) -> None:
+    files = {"hall.ef": ENVIRONMENT, "walk.sd": SKILL, "run.sd": SKILL, "walk.am": MAPPING}
+    files[file] = files[file].replace(before, after)
+    loaded = load_files(encoded(files))
+    assert loaded.has_errors
+    assert [skill.name for skill in loaded.draft.skills] == skills if loaded.draft else not skills
+
+
 def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code() -> None:
     mapping = MAPPING.replace("local_variable: steps", "local_variable: path").replace(
         "code:\nsteps", "code:\npath"

@@ -65,9 +65,9 @@ def lint(
 
     Of a deploy file all bundles are checked together.
 
-    The model is generated and compiled too, unless its declarations have mistakes, and mistakes in its C++
-    are told at their place in the documents; the built model is kept for later. Exit code 0: clean, or
-    warnings only. 1: errors.
+    The model is generated and compiled too, without skills whose declarations have mistakes and unless those
+    of the environment do, and mistakes in its C++ are told at their place in the documents; the built model
+    is kept for later. Exit code 0: clean, or warnings only. 1: errors.
     """
     files, remarks = _files_of([*(also or ()), path])
     loaded = load_files(files, name=path.name or str(path), remarks=remarks)

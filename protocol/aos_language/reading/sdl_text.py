@@ -267,7 +267,9 @@ class _Scanner:
         close = nearest(name, (*inner, *self._grammar))
         if not close or (self._is_in_code() and "_" not in close and len(close) < 8):
             return "", False
-        self._findings.error("AOS102", f"unknown section `{name}:`", at.span, f"Did you mean `{close}:`?")
+        mend = Mend(at.span, len(name), close)
+        hint = f"Did you mean `{close}:`?"
+        self._findings.error("AOS102", f"unknown section `{name}:`", at.span, hint, mend)
         return close, close in inner
 
     def _is_in_code(self) -> bool:
