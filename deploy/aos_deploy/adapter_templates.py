@@ -19,7 +19,7 @@ ROS_KINDS = {
 }
 """The value of each kind of ROS in a deploy file, and what that value is."""
 
-_FIELD = re.compile(r"\b__input(?:\.|, \")([A-Za-z_]\w*)")
+_FIELD = re.compile(r"(\bin\s+)?\b__input(?:, \"|\.(?!\w+\())([A-Za-z_]\w*(?:\.\w+\b(?!\())*)")
 _EXAMPLES: dict[str, Any] = {
     "bool": True, "int": 0, "float": 0.0, "double": 0.0, "string": "", "str": "", "float[]": [],
 }  # fmt: skip
@@ -144,6 +144,12 @@ def _result(mapping: AbstractionMapping) -> dict[str, Any]:
         result["response"] = mapping.rules[0].response if mapping.rules else ""
     for variable in mapping.local_variables:
         if variable.source is LocalSource.SERVICE_RESPONSE and variable.code is not None:
-            for field in _FIELD.findall(variable.code.code):
-                result.setdefault(field, _EXAMPLES.get(variable.type, True))
+            for loop, path in _FIELD.findall(variable.code.code):
+                *outer, last = path.split(".")
+                fields = result
+                for name in outer:
+                    if not isinstance(fields.get(name), dict):
+                        fields[name] = {}
+                    fields = fields[name]
+                fields.setdefault(last, [] if loop else _EXAMPLES.get(variable.type, True))
     return result

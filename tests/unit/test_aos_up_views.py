@@ -82,6 +82,12 @@ def test_a_decision_for_less_than_the_best_value_says_why() -> None:
     assert why not in decision_line(msgspec.structs.replace(DECISION, why=why))
 
 
+def test_an_action_that_was_not_tried_stands_last_with_no_value() -> None:
+    untried = ActionValue("serve", 9.0, 0, 1.36)
+    record = msgspec.structs.replace(DECISION, actions=(untried, *DECISION.actions[1:]))
+    assert "[pick +2.71 ± 0.04, serve -]" in decision_line(record)
+
+
 def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others() -> None:
     actions = tuple(
         msgspec.structs.replace(DECISION.actions[0], action=f"a{i}", q=float(i)) for i in range(9)

@@ -177,6 +177,15 @@ def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path)
     made = adapter_files("python", project, "barn")
     assert "async def look(call: Call, side: Any)" in made["barn_robot.py"]
     assert "return {'response': 'seen'}" in made["barn_robot.py"]
+    at = "__input.pose.at"
+    code = f"sum(e.m for e in __input.echoes) + {at}.find(1) + {at}.x"
+    written = (
+        mapping_text("seen", "unseen", project="barn", skill="look").replace("__input.answer", code).encode()
+    )
+    own = load_files({**files, "look.am": written}).project
+    assert own is not None
+    made = adapter_files("python", own, "barn")
+    assert "return {'echoes': [], 'pose': {'at': {'x': ''}}}" in made["barn_robot.py"]
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)
     bundle = read_bundle(tmp_path, {})

@@ -548,3 +548,15 @@ def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told() 
         "12 AOS126 a second value for the field `steps` of the call. Take one of the two out",
         "14 AOS110 unknown type `imt` of the local variable steps. Did you mean `int`?",
     ]
+
+
+def test_names_to_import_that_are_no_list_are_one_error() -> None:
+    mapping = {
+        "PlpMain": {"Project": "hall", "Name": "walk", "Type": "Glue"},
+        "ModuleActivation": {"Skill": {"ServicePath": "/walk", "ImportCode": [{"From": "m", "Import": "N"}]}},
+    }
+    files = {"hall.ef": ENVIRONMENT, "walk.sd": SKILL, "walk.json": json.dumps(mapping)}
+    errors = [each for each in load_files(encoded(files)).diagnostics if each.severity is Severity.ERROR]
+    assert [each.message for each in errors if each.span.file == "walk.json"] == [
+        '"Import" must be a list, not a string'
+    ]

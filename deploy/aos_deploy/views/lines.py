@@ -6,7 +6,7 @@ import time
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
-from aos_deploy.views.observations import observation_text, value_text
+from aos_deploy.views.observations import by_worth, observation_text, value_text
 from aos_protocol.diagnostics import render
 from aos_protocol.messages import (
     ActionValue,
@@ -121,7 +121,7 @@ def decision_line(record: DecisionRecord) -> str:
     """A decision with what the best actions are worth, or what came of it."""
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
-        others = sorted(record.actions, key=lambda action: -action.q)
+        others = by_worth(record.actions, record.simulations)
         shown = [_value(action) for action in others[:_SHOWN_ACTIONS]]
         if len(others) > len(shown):
             shown.append(f"{len(others) - len(shown)} more")

@@ -1,8 +1,10 @@
 """Observations and values for people."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
+
+import msgspec
 
 from aos_protocol.messages import ActionValue
 
@@ -21,8 +23,17 @@ def _numbers(value: Any) -> str:
 
 
 def value_text(value: float, digits: int) -> str:
-    """An action's value; a dash where a policy never chooses the action and knows nothing of it."""
+    """An action's value; a dash where nothing is known of it."""
     return f"{value:+.{digits}f}" if math.isfinite(value) else "-"
+
+
+def by_worth(values: Iterable[ActionValue], simulations: int) -> list[ActionValue]:
+    """The values, the best first; last those of actions that the search has not tried, as no numbers."""
+    known = [
+        msgspec.structs.replace(value, q=-math.inf, stderr=0.0) if simulations and not value.n else value
+        for value in values
+    ]
+    return sorted(known, key=lambda value: -value.q)
 
 
 def at_least_text(value: ActionValue, digits: int) -> str:

@@ -6,8 +6,14 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
-from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, Marginal, SkillProgress
+from aos_deploy.views.observations import (
+    at_least_text,
+    at_most_text,
+    by_worth,
+    observation_text,
+    value_text,
+)
+from aos_protocol.messages import BeliefSummary, DecisionRecord, Marginal, SkillProgress
 
 _BAR_CELLS = 20
 _PROGRESS_CELLS = 10
@@ -74,7 +80,7 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
     bounds = ["at least", "at most"] if has_bounds else []
     for column in ("value", "±", *bounds, "visits", *(["risk"] if risks else [])):
         table.add_column(column, justify="right", no_wrap=True)
-    best: list[ActionValue] = sorted(record.actions, key=lambda action: -action.q)
+    best = by_worth(record.actions, record.simulations)
     shown = best if len(best) <= rows else best[: max(rows - 1, 1)]
     names = _fitting([value.action for value in shown], width - 30 - (_BOUNDS_CELLS if has_bounds else 0))
     for value, name in zip(shown, names, strict=True):

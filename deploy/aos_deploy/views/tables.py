@@ -9,7 +9,13 @@ from rich.text import Text
 
 from aos_deploy.printing import count
 from aos_deploy.terminal import console
-from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
+from aos_deploy.views.observations import (
+    at_least_text,
+    at_most_text,
+    by_worth,
+    observation_text,
+    value_text,
+)
 from aos_protocol.messages import ActionValue
 from aos_solver.mission.simulation import SimulatedRun
 
@@ -39,7 +45,8 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
 
     Errors and visits stand beside values where there is room, and what is proven of them, rounded outwards.
     """
-    tried = [value.q for value in values if (value.n or not simulations) and math.isfinite(value.q)]
+    values = by_worth(values, simulations)
+    tried = [value.q for value in values if math.isfinite(value.q)]
     lowest, highest = min(tried, default=0.0), max(tried, default=0.0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
     out = console(is_wide=True)
