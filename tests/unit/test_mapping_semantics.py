@@ -47,6 +47,19 @@ success = __input.success
     assert observed(mapping, {}, [], {"success": False}).response == "not_done"
 
 
+def test_what_the_code_of_a_result_does_not_assign_has_no_value() -> None:
+    mapping = running("""\
+response: done
+response_rule: far is None
+local_variable: far
+from_ros_service_response: true
+code:
+if __input.m > 5:
+    far = True
+""")
+    assert observed(mapping, {}, [], {"m": 2}).response == "done"
+
+
 def test_topic_messages_are_evaluated_in_the_order_in_which_they_came() -> None:
     mapping = running("""\
 response: three

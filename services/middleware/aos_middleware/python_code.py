@@ -58,9 +58,9 @@ class CodeLine(msgspec.Struct, frozen=True):
 class PythonCode(msgspec.Struct, frozen=True):
     """A snippet that is valid Python by itself.
 
-    `reads`, `assigns` and `calls` are bare names. `returns` says whether control always, sometimes or never
-    leaves by `return`; `is_plain` that an expression can stand anywhere without parentheses of its own,
-    `is_true` that it is the word True.
+    `reads`, `assigns` and `calls` are bare names; `surely_assigns` are those set on every way to the end.
+    `returns` says whether control always, sometimes or never leaves by `return`; `is_plain` that an
+    expression can stand anywhere without parentheses of its own, `is_true` that it is the word True.
     """
 
     lines: tuple[CodeLine, ...]
@@ -70,6 +70,7 @@ class PythonCode(msgspec.Struct, frozen=True):
     returns: Literal["always", "sometimes", "never"] = "never"
     is_plain: bool = False
     is_true: bool = False
+    surely_assigns: frozenset[str] = frozenset()
 
 
 def read_body(snippet: Snippet) -> PythonCode | Diagnostic:
@@ -85,7 +86,8 @@ def read_body(snippet: Snippet) -> PythonCode | Diagnostic:
         returns: Literal["always", "sometimes", "never"] = "always"
     else:
         returns = "sometimes" if names.returns else "never"
-    return PythonCode(lines, names.reads, names.assigns, names.calls, returns)
+    sure = frozenset(_surely_assigned(tree.body))
+    return PythonCode(lines, names.reads, names.assigns, names.calls, returns, surely_assigns=sure)
 
 
 def read_expression(snippet: Snippet) -> PythonCode | Diagnostic:
@@ -226,6 +228,24 @@ def _always_returns(statements: list[ast.stmt]) -> bool:
             )
         case _:
             return False
+
+
+def _surely_assigned(statements: list[ast.stmt]) -> set[str]:
+    """The names that are set on every way to the end of the statements."""
+    names: set[str] = set()
+    for statement in statements:
+        match statement:
+            case ast.If(body=body, orelse=orelse):
+                names |= _surely_assigned(body) & _surely_assigned(orelse)
+            case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
+                ways = [handler.body for handler in handlers if not _always_returns(handler.body)]
+                tried = _surely_assigned([*body, *orelse])
+                names |= tried.intersection(*map(_surely_assigned, ways)) | _surely_assigned(final)
+            case ast.For() | ast.While() | ast.Match():
+                pass
+            case _:
+                names |= _Names(statement).assigns
+    return names
 
 
 class _Names:

@@ -104,7 +104,8 @@ class Sections:
         if needs_end:
             origin = LineOrigin.of_span(variable.span)
             lines.append(self._snippets.marks.line(f"    return {variable.name}", origin))
-        own = {variable.name} if is_topic and needs_end else set()
+        is_kept = is_topic or variable.name in code.assigns - code.surely_assigns
+        own = {variable.name} if is_kept and needs_end else set()
         if is_topic:
             source = f"a message ({word(variable.message_type)}) on {word(variable.topic)}"
         else:
