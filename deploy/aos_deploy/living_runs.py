@@ -33,16 +33,19 @@ def noted(run: RunDirectory) -> Iterator[None]:
 
 
 def living_runs() -> list[RunDirectory]:
-    """The runs that go on, the oldest first; notes of others are removed."""
-    found = []
+    """The runs that go on, each once, the oldest first; notes of others are removed.
+
+    A run whose aos-up was killed and that was taken up has two notes.
+    """
+    found: dict[Path, RunDirectory] = {}
     notes = sorted(_folder().iterdir()) if _folder().is_dir() else []
     for link in (note for note in notes if note.is_symlink()):
         run = RunDirectory(link.resolve())
         if run.is_running:
-            found.append(run)
+            found[run.path] = run
         elif not (link.exists() and run.is_held):
             link.unlink(missing_ok=True)
-    return found
+    return list(found.values())
 
 
 def runs_here() -> Path:

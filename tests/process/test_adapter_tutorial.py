@@ -1,4 +1,7 @@
-"""The tutorial of docs/adapters, followed line by line; and each template of an adapter, run as it is."""
+"""The tutorial of docs/adapters, followed line by line; and templates of adapters, run as they are.
+
+The template of a command runs in test_own_programs.py.
+"""
 
 import os
 import re
@@ -50,7 +53,7 @@ def test_the_tutorial_can_be_followed(root: Path) -> None:
     assert '"response":"taken"' in Path("runs/latest/journal.db").read_bytes().decode(errors="replace")
 
 
-@pytest.mark.parametrize("kind", ["command", "class", "external"])
+@pytest.mark.parametrize("kind", ["class", "external"])
 def test_a_new_adapter_runs_as_it_is(kind: str, root: Path) -> None:
     run("aos new project fetch")
     run(f"aos new adapter {kind} --in fetch")

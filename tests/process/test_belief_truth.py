@@ -249,17 +249,9 @@ SHAKEN = DEPLETING | {
 """The same with noise that differs in all states, so that particles stay many and their ancestors do not."""
 
 
-async def test_what_all_particles_have_by_chance_is_given_up_when_it_is_observed_otherwise(
+async def test_what_particles_have_by_chance_is_given_up_also_after_a_crash_and_a_change_of_engines(
     cache_dir: Path,
 ) -> None:
-    dice = random.Random(2)
-    hand = [dice.random() < 0.5 for _ in range(CARDS)]
-    async with engine_of_text(SHAKEN, cache_dir) as engine:
-        for card in range(CARDS):
-            await turn_and_look(engine, card, hand)
-
-
-async def test_what_has_not_been_observed_outlives_a_crash_and_a_change_of_engines(cache_dir: Path) -> None:
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
 

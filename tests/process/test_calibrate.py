@@ -89,18 +89,14 @@ def covered(result: Calibration) -> list[bool]:
     ]
 
 
-def test_intervals_cover_the_numbers_that_missions_were_drawn_with(
-    missions_of_finer: Path, tmp_path: Path
-) -> None:
-    held: list[bool] = []
-    for missions in (read_missions(missions_of_finer), recorded(tmp_path, "armadillo.yaml", 1001, 40)):
-        result = calibrate(missions, [FINER, RETRACT])
-        assert not result.remarks
-        assert all(estimate.is_counted for estimate in result.estimates)
-        held += covered(result)
-    # Of intervals that hold 95 % of the time, some of 16 may well miss.
-    assert len(held) == 16
-    assert held.count(False) <= 2
+def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_finer: Path) -> None:
+    result = calibrate(read_missions(missions_of_finer), [FINER, RETRACT])
+    assert not result.remarks
+    assert all(estimate.is_counted for estimate in result.estimates)
+    held = covered(result)
+    # Of intervals that hold 95 % of the time, one of eight may well miss.
+    assert len(held) == 8
+    assert held.count(False) <= 1
 
 
 def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path) -> None:

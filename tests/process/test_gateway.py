@@ -327,39 +327,43 @@ def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(
     assert ":3:" in answer.json["place"]
 
 
-def test_whoever_views_a_living_mission_is_told_what_happens_and_can_stop_it(
-    living: tuple[Gateway, Path],
+def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_stop_it(
+    living: tuple[Gateway, Path], cache_dir: Path
 ) -> None:
     served, run = living
-    with served.events(f"/v1/events?mission={run.name}") as events:
+    path, stream = f"/v1/missions/{run.name}", f"/v1/events?mission={run.name}"
+    turns = run.parents[1] / "turns"
+    with served.events(stream) as events:
         seen = [next(events)]
         while {"state", "service"} - {kind for _, kind, _ in seen}:
             seen.append(next(events))
-        assert next(data for _, kind, data in seen if kind == "decision")["row"]["action"] == "listen"
-        (run.parents[1] / "turns").write_bytes(b".")
+        last, _, first = next(each for each in seen if each[1] == "decision")
+        assert (first["row"]["action"], first["record"]["sequence"]) == ("listen", 0)
+        turns.write_bytes(b".")
         outcome = next(data for _, kind, data in events if kind == "decision" and "outcome" in data["record"])
         assert outcome["record"]["outcome"]["response"] == "tiger_left"
-        stopped = served.post(f"/v1/missions/{run.name}/stop")
-        assert (stopped.status, stopped.json["ending"]) == (200, "cancelled")
-        end = next(data for _, kind, data in events if kind == "state" and data["phase"] == "ended")
-    assert end["ending"] == "cancelled"
 
+    # A stream that comes back gets each record once, also from a gateway that was started again.
+    with gateway(served.folder, cache_dir) as again, again.events(stream, last=last) as events:
+        decisions = (data["record"]["sequence"] for _, kind, data in events if kind == "decision")
+        assert [next(decisions) for _ in range(2)] == [1, 2]
 
-def test_a_mission_is_held_and_does_what_a_person_asks_for(living: tuple[Gateway, Path]) -> None:
-    served, run = living
-    path = f"/v1/missions/{run.name}"
     held = served.post(f"{path}/steering", {"verb": "hold", "by": "ada"})
     assert (held.status, held.json["held_by"]) == (200, "ada")
-    with served.events(f"/v1/events?mission={run.name}") as events:
-        (run.parents[1] / "turns").write_bytes(b".")
+    with served.events(stream) as events:
+        turns.write_bytes(b".")
         next(data for _, kind, data in events if kind == "state" and data["phase"] == "holding")
         asked = served.post(f"{path}/steering", {"verb": "act", "actions": ["listen"]})
         assert asked.status == 200
-        row = next(data["row"] for _, kind, data in events if kind == "decision" and data["row"]["step"] == 2)
-    assert row["chosen_by"] == "operator"
-    refused = served.post(f"{path}/steering", {"verb": "act", "actions": ["fly"]})
-    assert (refused.status, refused.json["code"]) == (409, "AOS517")
-    assert served.post(f"{path}/steering", {"verb": "dance"}).status == 400
+        row = next(data["row"] for _, kind, data in events if kind == "decision" and data["row"]["step"] == 3)
+        assert row["chosen_by"] == "operator"
+        refused = served.post(f"{path}/steering", {"verb": "act", "actions": ["fly"]})
+        assert (refused.status, refused.json["code"]) == (409, "AOS517")
+        assert served.post(f"{path}/steering", {"verb": "dance"}).status == 400
+        stopped = served.post(f"{path}/stop")
+        assert (stopped.status, stopped.json["ending"]) == (200, "cancelled")
+        end = next(data for _, kind, data in events if kind == "state" and data["phase"] == "ended")
+    assert end["ending"] == "cancelled"
 
 
 def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(
@@ -382,19 +386,3 @@ def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(
         view = served.ask(f"/v1/missions/{run.name}-2").json
         assert {name: view["mission"][name] for name in wish} == wish
         assert view["parameters"] == {"room": "lab"}
-
-
-def test_a_stream_that_comes_back_gets_each_record_once_from_a_gateway_that_was_started_again(
-    living: tuple[Gateway, Path], tmp_path: Path, cache_dir: Path
-) -> None:
-    served, run = living
-    with served.events(f"/v1/events?mission={run.name}") as events:
-        last, _, first = next(each for each in events if each[1] == "decision")
-    (tmp_path / "turns").write_bytes(b".")
-    with (
-        gateway(tmp_path, cache_dir) as again,
-        again.events(f"/v1/events?mission={run.name}", last=last) as events,
-    ):
-        decisions = (data["record"]["sequence"] for _, kind, data in events if kind == "decision")
-        following = [next(decisions) for _ in range(2)]
-    assert (first["record"]["sequence"], following) == (0, [1, 2])

@@ -5,6 +5,7 @@ import json
 import os
 import pty
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -71,23 +72,25 @@ async def test_each_program_waits_for_the_one_before_it(system: System) -> None:
     assert changes.index(("first", "ready")) < changes.index(("second", "starting"))
 
 
-@pytest.mark.parametrize("kind", ["port", "line", "file", "command", "seconds", "nothing"])
-async def test_a_program_is_seen_to_be_ready(system: System, kind: str) -> None:
+async def test_programs_are_seen_to_be_ready_each_by_its_sign(system: System) -> None:
     port = free_port()
-    program, part = {
-        "port": ([sys.executable, "-c", SERVES_A_PORT, str(port)], {"port": port}),
-        "line": (["sh", "-c", "echo is it; echo it is up; sleep 1000"], {"line": "^it is [a-z]+$"}),
-        "file": (["sh", "-c", "echo $$ >pid; sleep 1000"], {"file": "pid"}),
-        "command": (["sh", "-c", "touch there; sleep 1000"], {"command": ("test", "-e", "there")}),
-        "seconds": (["sleep", "1000"], {"seconds": 0.2}),
-        "nothing": (["sleep", "1000"], {}),
-    }[kind]
-    ready = ReadyPart(**part) if part else None
+    kinds: dict[str, tuple[list[str], ReadyPart | None]] = {
+        "port": ([sys.executable, "-c", SERVES_A_PORT, str(port)], ReadyPart(port=port)),
+        "line": (["sh", "-c", "echo is it; echo it is up; sleep 1000"], ReadyPart(line="^it is [a-z]+$")),
+        "file": (["sh", "-c", "echo $$ >pid; sleep 1000"], ReadyPart(file="pid")),
+        "command": (["sh", "-c", "touch there; sleep 1000"], ReadyPart(command=("test", "-e", "there"))),
+        "seconds": (["sleep", "1000"], ReadyPart(seconds=0.2)),
+        "nothing": (["sleep", "1000"], None),
+    }
     old = system.folder / "pid"  # of an earlier run
     old.touch()
     os.utime(old, (0, 0))
-    async with asyncio.timeout(HANG_S), system.up(own(*program, ready=ready, folder=system.folder)):
-        await system.until("nav", "ready")
+    programs = [
+        own(*words, name=kind, ready=ready, folder=system.folder) for kind, (words, ready) in kinds.items()
+    ]
+    async with asyncio.timeout(HANG_S), system.up(*programs):
+        for kind in kinds:
+            await system.until(kind, "ready")
 
 
 async def test_a_set_up_program_ends_before_the_adapters_start(system: System) -> None:
@@ -210,20 +213,28 @@ PROGRAMS = """programs:
 """
 
 
-@pytest.fixture
-def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+@pytest.fixture(scope="module")
+def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A robot that is a command, with a simulator that it can only be started after."""
-    monkeypatch.chdir(tmp_path)
+    folder = tmp_path_factory.mktemp("template")
     for words in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
-        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=COMMAND_S)
-    (tmp_path / "sim.py").write_text(SIMULATOR)
-    robot = tmp_path / "fetch_robot.py"
+        subprocess.run([BIN / "aos", *words], cwd=folder, check=True, capture_output=True, timeout=COMMAND_S)
+    (folder / "sim.py").write_text(SIMULATOR)
+    robot = folder / "fetch_robot.py"
     robot.write_text(
         'import socket\nsim = socket.create_connection(("127.0.0.1", int(open("port").read())))\n'
         + robot.read_text()
     )
-    deploy = tmp_path / "fetch.yaml"
+    deploy = folder / "fetch.yaml"
     deploy.write_text(deploy.read_text() + PROGRAMS)
+    return folder
+
+
+@pytest.fixture
+def project(template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of that robot's project, for one test."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(template, tmp_path, dirs_exist_ok=True)
     return tmp_path
 
 
@@ -243,14 +254,6 @@ def up(*options: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
 
 
-def test_a_robot_finds_its_simulator(project: Path) -> None:
-    done = up()
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.index("sim ready") < done.stdout.index("robot starting")
-    assert "listening" in Path("runs/latest/logs/sim.log").read_text()
-    assert set(json.loads(Path("runs/latest/run.json").read_text())["pids"]) >= {"sim", "robot", "solver"}
-
-
 KILLS_THE_MIDDLEWARE = """    CAME.acquire()
     if not os.path.exists("killed"):
         open("killed", "x").close()
@@ -259,13 +262,18 @@ KILLS_THE_MIDDLEWARE = """    CAME.acquire()
     for share"""
 
 
-def test_a_call_that_comes_again_from_a_new_middleware_is_joined(project: Path) -> None:
+def test_a_robot_finds_its_simulator_and_joins_a_call_that_comes_again_from_a_new_middleware(
+    project: Path,
+) -> None:
     robot = project / "fetch_robot.py"
     text = robot.read_text().replace("    for share", KILLS_THE_MIDDLEWARE)
     text = text.replace("def run(", "CAME = threading.Semaphore(0)\ndef run(")
     robot.write_text(text.replace("first = Future()", "first = Future(); CAME.release()"))
     done = up()
     assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.index("sim ready") < done.stdout.index("robot starting")
+    assert "listening" in Path("runs/latest/logs/sim.log").read_text()
+    assert set(json.loads(Path("runs/latest/run.json").read_text())["pids"]) >= {"sim", "robot", "solver"}
     assert "middleware ended: killed by SIGKILL" in done.stdout
     assert "refused" not in done.stdout
 
@@ -281,10 +289,16 @@ def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path) 
     assert "/look may still be moving: it does not say that it has stopped (the robot still" in done.stdout
 
 
-def test_a_mission_whose_output_is_closed_runs_all_the_same(project: Path) -> None:
+def test_without_an_output_a_mission_runs_and_nothing_beside_a_robot_that_documents_play(
+    project: Path,
+) -> None:
     words = ["sh", "-c", 'exec "$@" >&-', "sh", BIN / "aos-up", "fetch.yaml", "--model"]
     done = subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
     assert done.returncode == 0, done.stderr
+    pids = json.loads(Path("runs/latest/run.json").read_text())["pids"]
+    assert "solver" in pids
+    assert "sim" not in pids
+    assert not (project / "port").exists()
 
 
 def test_a_closed_terminal_ends_the_mission_in_order(project: Path) -> None:
@@ -301,13 +315,6 @@ def test_a_closed_terminal_ends_the_mission_in_order(project: Path) -> None:
         _, said = running.communicate(timeout=COMMAND_S)
     assert (running.returncode, said) == (130, b"")
     assert json.loads(Path("runs/latest/summary.json").read_text())["ending"] == "cancelled"
-
-
-def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Path) -> None:
-    done = up("--model")
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert " sim " not in done.stdout
-    assert not (project / "port").exists()
 
 
 def test_on_a_full_disk_not_everything_is_said_to_be_kept(

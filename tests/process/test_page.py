@@ -70,10 +70,11 @@ def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
     return [(each["id"], [node["target"] for node in each["nodes"]]) for each in found]
 
 
-@pytest.fixture
-def worn(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+@pytest.fixture(scope="module")
+def worn(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
     """A gateway, and a mission of a system that stays, which has ended with an alarm."""
-    with worn_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+    folder = tmp_path_factory.mktemp("worn")
+    with worn_system(folder, cache_dir) as run, gateway(folder, cache_dir) as served:
         yield served, f"{run.name}-1"
 
 
@@ -149,7 +150,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     expect(page.get_by_role("button", name="Stop")).to_have_count(0)
 
 
-def test_a_lost_connection_is_told_and_what_was_missed_comes_when_it_is_back(
+def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_killed_run_is_told(
     browser: Browser, living: tuple[Gateway, Path], tmp_path: Path, cache_dir: Path
 ) -> None:
     served, run = living
@@ -163,6 +164,12 @@ def test_a_lost_connection_is_told_and_what_was_missed_comes_when_it_is_back(
     with gateway(tmp_path, cache_dir, "--port", str(served.port)):
         expect(page.locator(".connection")).to_have_text("Live")
         expect(page.locator(".stepper-place")).to_have_text("2 of 2")
+        expect(page.get_by_role("button", name="Hold", exact=True)).to_be_visible()
+        os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
+        expect(page.locator(".phase[role=status]")).to_contain_text("Killed")
+        expect(page.locator(".remark").first).to_contain_text("aos-up --resume")
+        expect(page.get_by_role("button", name="Hold", exact=True)).to_have_count(0)
+        expect(page.locator(".connection")).to_contain_text("Recorded")
 
 
 def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gateway, str], root: Path) -> None:
@@ -195,18 +202,6 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
         page.keyboard.press("ArrowLeft")
         expect(page.locator(".alarm")).to_have_count(0)
         page.close()
-
-
-def test_a_run_that_is_killed_is_told_as_such(browser: Browser, living: tuple[Gateway, Path]) -> None:
-    served, run = living
-    page = opened(browser, served)
-    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}")
-    expect(page.get_by_role("button", name="Hold", exact=True)).to_be_visible()
-    os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
-    expect(page.locator(".phase[role=status]")).to_contain_text("Killed")
-    expect(page.locator(".remark").first).to_contain_text("aos-up --resume")
-    expect(page.get_by_role("button", name="Hold", exact=True)).to_have_count(0)
-    expect(page.locator(".connection")).to_contain_text("Recorded")
 
 
 def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_shown(
@@ -280,25 +275,25 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
     page.close()
 
 
-@pytest.mark.parametrize("width", [390, 1440])
 def test_a_number_of_many_values_is_shown_by_its_median_and_range(
-    browser: Browser, tmp_path: Path, width: int, cache_dir: Path
+    browser: Browser, tmp_path: Path, cache_dir: Path
 ) -> None:
     depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
     name = write_long_run(tmp_path / "runs", 5, depth)
     with gateway(tmp_path, cache_dir) as served:
-        page = opened(browser, served, width)
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
-        expect(
-            page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
-        ).to_be_visible()
-        kept(page, f"numbers-{width}")
-        assert violations(page, cache_dir) == []
+        for width in (390, 1440):
+            page = opened(browser, served, width)
+            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+            expect(
+                page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
+            ).to_be_visible()
+            kept(page, f"numbers-{width}")
+            assert violations(page, cache_dir) == []
+            page.close()
 
 
-@pytest.mark.parametrize("width", [390, 1440])
 def test_long_names_are_told_whole_and_widen_no_screen(
-    browser: Browser, tmp_path: Path, width: int, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    browser: Browser, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     long = "where_the_robot_that_carries_the_longest_of_all_names_stands_at_the_moment"
     actions = tuple(
@@ -308,17 +303,19 @@ def test_long_names_are_told_whole_and_widen_no_screen(
     certain = (Marginal(f"{long}_{number}", {f"value_of_{long}": 1.0}) for number in range(30))
     name = write_long_run(tmp_path / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
     with gateway(tmp_path, cache_dir) as served:
-        page = opened(browser, served, width)
-        for view in ("", "/why", "/steps", "/model"):
-            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
-            expect(page.locator(".stepper-place")).to_have_text("110 of 120")
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
-            kept(page, f"long-{width}{view.replace('/', '-')}")
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step=110")
-        expect(page.locator(".value-name")).to_have_count(9)
-        is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
-        assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
-        assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
+        for width in (390, 1440):
+            page = opened(browser, served, width)
+            for view in ("", "/why", "/steps", "/model"):
+                page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
+                expect(page.locator(".stepper-place")).to_have_text("110 of 120")
+                assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
+                kept(page, f"long-{width}{view.replace('/', '-')}")
+            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step=110")
+            expect(page.locator(".value-name")).to_have_count(9)
+            is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
+            assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
+            assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
+            page.close()
 
 
 def test_a_thousand_steps_are_loaded_with_little(browser: Browser, tmp_path: Path, cache_dir: Path) -> None:

@@ -136,25 +136,10 @@ def assert_whole_mission(events: list[dict[str, Any]], run: Path) -> None:
     assert summary["ending"] in ("goal", "failure", "nothing_worthwhile", "step_limit")
 
 
-def test_the_shipped_robot_serves_a_ros_2_program_of_others(root: Path, tmp_path: Path) -> None:
+def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a_program_of_others(
+    root: Path, tmp_path: Path
+) -> None:
     pytest.importorskip("zenoh_ros2_sdk", reason="needs the package zenoh-ros2-sdk")
-    arguments = [str(root / "deploy" / "armadillo-robot.yaml"), "--serve", "ros2", "--runs", str(tmp_path)]
-    with up([*arguments, "--listen", "tcp/127.0.0.1:0"]) as robot:
-        list(events_of_until(robot, "Ctrl-C stops it"))
-        run = json.loads((tmp_path / "latest" / "run.json").read_text())
-        program = subprocess.run(
-            [sys.executable, "-m", "tests.ros2_sdk_client", run["ros2"].rpartition(":")[2]],
-            cwd=root,
-            env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
-            capture_output=True,
-            text=True,
-            timeout=COMMAND_S,
-        )
-        assert program.stdout.splitlines()[-1:] == ["True 7"], program.stderr
-    assert robot.returncode == 0
-
-
-def test_the_page_about_ros_can_be_followed_to_the_first_activation(root: Path, tmp_path: Path) -> None:
     page = (root / "docs" / "ros.md").read_text(encoding="utf-8")
     serve, drive = re.findall(r"^\.venv/bin/aos-up (.*)$", page, re.MULTILINE)
     block = page.partition("The first one prints what it serves:")[2].split("```")[1]
@@ -164,6 +149,15 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation(root: Path, 
         for line in block.strip().splitlines():
             assert line == "..." or line in texts
         served = json.loads((tmp_path / "robot" / "latest" / "run.json").read_text())["ros2"]
+        program = subprocess.run(
+            [sys.executable, "-m", "tests.ros2_sdk_client", served.rpartition(":")[2]],
+            cwd=root,
+            env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
+            capture_output=True,
+            text=True,
+            timeout=COMMAND_S,
+        )
+        assert program.stdout.splitlines()[-1:] == ["True 7"], program.stderr
         (file,) = in_the_checkout(drive, root)
         # Where the page has the ports of a whole machine, a test has those that are free.
         text = Path(file).read_text().replace("tcp/127.0.0.1:7447", served)
@@ -173,6 +167,7 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation(root: Path, 
         with up([str(tmp_path / "mission.yaml")]) as mission:
             first = next(event for event in events_of(mission) if event.get("outcome"))
             assert first["outcome"]["status"] == "observed"
+    assert robot.returncode == 0
 
 
 def in_the_checkout(arguments: str, root: Path) -> list[str]:

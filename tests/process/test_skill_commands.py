@@ -1,4 +1,4 @@
-"""`aos skill` and `aos resume` beside a mission that holds, and adapters that die in the middle of one."""
+"""`aos skill` and `aos resume` beside a mission that holds."""
 
 import json
 import re
@@ -15,15 +15,11 @@ from processes import COMMAND_S, HANG_S
 BIN = Path(sys.executable).parent
 
 ROBOT = """
-import asyncio, os
 from pathlib import Path
 
 async def look(call):
     if Path(FOLDER, "dirty").exists():
         raise RuntimeError("the lens is dirty")
-    if Path(FOLDER, "doomed").exists():
-        Path(FOLDER, "doomed").unlink()
-        os._exit(1)
     return {"bearing_rad": -1.0}
 
 async def take(call, side):
@@ -82,23 +78,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def mission(folder: Path) -> Iterator[Running]:
     """It holds, for the lens is dirty."""
     (folder / "dirty").touch()
-    with started() as running:
-        yield running
-
-
-def started() -> Any:
-    return _Started()
-
-
-class _Started:
-    def __enter__(self) -> Running:
-        command = [BIN / "aos-up", "fetch.yaml", "--json"]
-        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        return Running(self._process)
-
-    def __exit__(self, *_: object) -> None:
-        self._process.send_signal(signal.SIGINT)
-        self._process.communicate(timeout=HANG_S)
+    process = subprocess.Popen([BIN / "aos-up", "fetch.yaml", "--json"], stdout=subprocess.PIPE, text=True)
+    try:
+        yield Running(process)
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=HANG_S)
 
 
 def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running, folder: Path) -> None:
@@ -122,17 +107,3 @@ def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running
     assert mission.aos("resume") == "the mission goes on\n"
     mission.until(event="mission", phase="ended", ending="goal")
     assert mission.process.wait() == 0
-
-
-def test_an_adapter_that_dies_is_started_again_and_the_mission_goes_on(folder: Path) -> None:
-    (folder / "fetch.yaml").write_text(DEPLOY.replace("skills: {look: {on_failure: hold}}\n", ""))
-    (folder / "doomed").touch()
-    with started() as mission:
-        mission.until(event="service", service="python", state="ended")
-        mission.until(event="service", service="python", state="ready")
-        mission.until(event="mission", phase="ended", ending="goal")
-        assert mission.process.wait() == 0
-    outcomes = [event["outcome"]["status"] for event in mission.events if event.get("outcome")]
-    assert outcomes[0] == "unknown"
-    # Until the adapter is back, a call that finds nobody is refused.
-    assert set(outcomes[1:]) - {"refused"} == {"observed"}

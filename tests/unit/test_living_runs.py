@@ -1,10 +1,11 @@
 """The run that a command means."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-from aos_deploy.living_runs import RUNS, chosen_run, runs_here
+from aos_deploy.living_runs import RUNS, chosen_run, living_runs, noted, runs_here
 from aos_deploy.run_directory import RunDirectory, RunRecord
 from aos_protocol.errors import BusError
 
@@ -30,3 +31,14 @@ def test_the_runs_of_a_deploy_file_in_a_folder_are_found_from_above(
     assert runs_here() == RUNS
     here = run_in(tmp_path / "runs")
     assert chosen_run(None, None).path == here
+
+
+def test_a_run_that_was_killed_and_taken_up_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
+    run = RunDirectory.create(tmp_path / "runs", "r", 0)
+    record = RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=os.getpid())
+    run.write_record(record)
+    with noted(run):
+        (tmp_path / "running" / f"{run.path.name}-1").symlink_to(run.path)  # by the aos-up that was killed
+        assert [each.path for each in living_runs()] == [run.path]
+    run.close()
