@@ -329,3 +329,25 @@ def test_a_thousand_steps_are_loaded_with_little(browser: Browser, tmp_path: Pat
         sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
         assert page.evaluate(sizes) <= MOST_BYTES
         kept(page, "thousand")
+
+
+def test_a_mission_whose_model_is_compiled_says_so_in_the_answer_the_stream_and_the_page(
+    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiler = tmp_path / "c++"
+    compiler.write_text('#!/bin/sh\ncase "$*" in *version*) exec c++ "$@";; esac\nexec sleep 1000\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CXX", str(compiler))
+    with gateway(tmp_path, tmp_path / "cache") as served:
+        started = served.post("/v1/runs", {"deploy_file": str(ROOT / "deploy/errand.yaml"), "model": True})
+        page = opened(browser, served)
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/latest")
+        expect(page.locator(".phase")).to_have_text("Compiling the model")
+        expect(page.get_by_role("button", name="Hold")).to_have_count(0)
+        state = served.ask("/v1/missions/latest").json["state"]
+        assert (state["mission"], state["phase"]) == (started.json["mission"], "compiling")
+        with served.events("/v1/events?mission=latest") as events:
+            assert next(data for _, kind, data in events if kind == "state") == state
+        record = json.loads((tmp_path / "runs/latest/run.json").read_text())
+        os.kill(record["pid"], signal.SIGINT)
+        expect(page.locator(".phase")).to_have_text("Cancelled")

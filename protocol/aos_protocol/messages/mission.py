@@ -191,7 +191,7 @@ class MissionQuery(Message, frozen=True):
 
 
 class MissionState(Message, frozen=True):
-    """The mission: its `phase` of waiting, building, planning, acting, holding, ended; how it ended.
+    """The mission: its `phase` of waiting, compiling, planning, acting, holding, ended; how it ended.
 
     `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `too_risky`, `step_limit`,
     `skills_failed`, `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds

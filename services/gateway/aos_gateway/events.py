@@ -61,6 +61,8 @@ async def stream(
                         async for missed in _past(run, mission, since):
                             since = missed.sequence + 1
                             yield _encoded(missed, mission, since)
+                    if end is not None and frame.kind == "state" and frame.mission == mission:
+                        continue  # The watch of a system that has just ended may have an older one.
                     if frame.sequence == -1 or (frame.mission == mission and frame.sequence >= since):
                         since = max(since, frame.sequence + 1)
                         yield _encoded(frame, mission, since)

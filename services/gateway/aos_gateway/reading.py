@@ -163,6 +163,8 @@ async def mission(gateway: Gateway, mission: str) -> MissionView:
         parameters = await found.parameters(mission)
     except AosError:
         entries, state, parameters = (), None, {}  # A run that has not come so far, or a system that is away.
+    if state is None and found.is_running:
+        state = await found.beginning(mission)
     entry = next((each for each in entries if each.mission == mission), None)
     is_over = state is not None and state.phase == "ended"
     return MissionView(

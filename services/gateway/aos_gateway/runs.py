@@ -24,6 +24,7 @@ from aos_solver.mission.history import history_page
 from aos_solver.mission.logbook import JOURNAL, entries_of
 
 _ANSWER_S = 5.0
+_BEGINNING_S = 1.0
 _LOOK_S = 0.5
 """Somebody who waits for an answer hears so soon that the system has ended."""
 
@@ -79,6 +80,19 @@ class Run(ABC):
         """The last that is known of a mission; None before its first word, and of one that is not the
         newest of a system elsewhere.
         """
+
+    async def beginning(self, mission: str) -> MissionState:
+        """The state of a mission of a system that runs, which has no record of it yet."""
+        try:
+            async with asyncio.timeout(_BEGINNING_S), self.client() as client:
+                state = await client.mission_state()
+        except (AosError, TimeoutError):
+            state = None  # Its services start.
+        return (
+            state
+            if state is not None and state.mission == mission
+            else MissionState(mission, "waiting", 0, 0.0)
+        )
 
     async def parameters(self, mission: str) -> dict[str, str]:
         """The values of a mission's parameters; none where they are not known."""
@@ -187,7 +201,11 @@ class KeptRun(Run):
         return await asyncio.to_thread(history_page, journal, mission, HistoryQuery(since, limit))
 
     async def last_state(self, mission: str) -> MissionState | None:
-        return await asyncio.to_thread(self._last_state, self.folder(mission) / JOURNAL)
+        state = await asyncio.to_thread(self._last_state, self.folder(mission) / JOURNAL)
+        if state is not None or (end := self.summary(mission)) is None:
+            return state
+        # It ended before it began.
+        return MissionState(mission, "ended", end.steps, 0.0, ending=end.ending, remark=end.remark)
 
     @staticmethod
     def _last_state(journal: Path) -> MissionState | None:

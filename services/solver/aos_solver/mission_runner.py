@@ -49,6 +49,8 @@ class MissionRunner:
     ) -> None:
         self.mission: Mission | None = None
         self.ended = asyncio.Event()
+        self.compiling = ""
+        """The compiler's work for the first mission, for people; empty where there is none."""
         self._settings = settings
         self._books = books
         self._shelf = shelf
@@ -76,7 +78,8 @@ class MissionRunner:
         book = self._books.newest
         if book is not None and book.memory.has_ended and book.memory.state is not None:
             return book.memory.state
-        return MissionState(self._books.name, "waiting", 0, 0.0)
+        phase = "compiling" if self.compiling else "waiting"
+        return MissionState(self._books.name, phase, 0, 0.0, remark=self.compiling)
 
     async def start(self, start: StartMission) -> None:
         """Starts a mission once its model runs; AosError that says why if it cannot."""

@@ -76,7 +76,7 @@ class _Solver:
             settings.constraints,
             settings.mission_values,
         )
-        self._shelf.on_ready = self._changed.set
+        self._shelf.on_ready = self._note_ready
         if self._books.newest is not None and not self._books.newest.memory.has_ended:
             self._shelf.values.kept = self._books.newest.memory.mission_parameters
         self._registry = RegistryWatch(service.bus, service.keys, settings.project, self._shelf.make)
@@ -174,8 +174,18 @@ class _Solver:
 
     def _report_progress(self, remark: str) -> None:
         log.info("%s", remark)
-        if self._missions.mission is None:
-            self._ports.publish_state(MissionState(self._books.name, "building", 0, 0.0, remark=remark))
+        self._tell_compiling(remark)
+
+    def _note_ready(self) -> None:
+        self._changed.set()
+        self._tell_compiling("")
+
+    def _tell_compiling(self, remark: str) -> None:
+        """Tells people that the first mission waits for the compiler, or does so no more."""
+        if self._missions.mission is None and self._missions.compiling != remark:
+            self._missions.compiling = remark
+            if (state := self._missions.state).phase != "ended":
+                self._ports.publish_state(state)
 
     def _report_planning(self, progress: Progress) -> None:
         """Tells people how far a decision is that takes long. The journal has only the decision."""

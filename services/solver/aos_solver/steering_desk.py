@@ -28,7 +28,7 @@ class SteeringDesk:
         """Steers the mission that runs; the answer is as in Steer. SteeringError where it cannot be done."""
         mission = await self._missions.running()
         if mission is None:
-            is_first_to_come = self._missions.state.phase == "waiting"
+            is_first_to_come = self._missions.state.phase in ("waiting", "compiling")
             text = "no mission has begun" if is_first_to_come else "no mission runs"
             raise SteeringError(text, hint="See `aos mission list`")
         if steer.mission not in ("", mission.state.mission):

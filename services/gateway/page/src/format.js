@@ -69,7 +69,7 @@ export const ending = (name) => ENDINGS[name] ?? name;
 
 const PHASES = {
   waiting: "Waiting",
-  building: "Building the model",
+  compiling: "Compiling the model",
   planning: "Deciding",
   acting: "Acting",
   holding: "Holding",

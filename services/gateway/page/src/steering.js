@@ -8,7 +8,9 @@ import { mission, state, successor } from "./store.js";
 const failed = signal(null);
 const busy = signal("");
 
-export const canSteer = () => hasToken() && mission.value?.is_running && state.value && state.value.phase !== "ended";
+const MAY_NOT = ["waiting", "compiling", "ended"]; // No mission has begun, or none runs any more.
+const isUnderWay = () => mission.value?.is_running && state.value && !MAY_NOT.includes(state.value.phase);
+export const canSteer = () => hasToken() && isUnderWay();
 const isHeld = () => Boolean(state.value?.held_by) || state.value?.phase === "holding";
 
 export async function steer(verb, more = {}) {
@@ -26,7 +28,7 @@ export async function steer(verb, more = {}) {
 
 export function Controls() {
   if (successor.value) return html`<a class="button primary" href=${addressOf(successor.value)}>To the next mission</a>`;
-  if (!mission.value?.is_running || !state.value || state.value.phase === "ended") return null;
+  if (!isUnderWay()) return null;
   if (!hasToken()) return html`<p class="controls note">Read only</p>`;
   const is = Boolean(busy.value);
   return html`<div class="controls" role="group" aria-label="Steering">

@@ -109,7 +109,8 @@ export async function open(name, { again = false } = {}) {
     const [view, trace] = await Promise.all([read(path), read(`${path}/trace`)]);
     if (route.value.name !== name) return;
     // `latest` is a name of the newest mission: its events have its own one.
-    if (view.mission.mission !== name) return go(addressOf(view.mission.mission, route.value.view, route.value.step), { replace: true });
+    const own = (view.mission ?? view.state)?.mission ?? name;
+    if (own !== name) return go(addressOf(own, route.value.view, route.value.step), { replace: true });
     batch(() => {
       records.clear();
       mission.value = view;
