@@ -4,7 +4,7 @@ import asyncio
 import importlib.util
 import os
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ INTERFACES = ROOT / "tests" / "data" / "interfaces"
 ADD = "example_interfaces/srv/AddTwoInts"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 STRING = "std_msgs/msg/String"
+Handler = Callable[[dict[str, Any]], Awaitable[dict[str, Any]]]
 
 
 @asynccontextmanager
@@ -192,16 +193,19 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
     assert ended.is_set()
 
 
-async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: Node, node: Node) -> None:
-    async def accept(_: dict[str, Any]) -> dict[str, Any]:
-        return {"accepted": True}
-
-    async def forget(_: dict[str, Any]) -> dict[str, Any]:
-        return {"status": 0}
-
+def serve_goals(robot: Node, send_goal: Handler, get_result: Handler) -> None:
+    """Serves an action whose server is broken."""
     robot.publisher("/lab/fibonacci/_action/feedback", f"{FIBONACCI}_FeedbackMessage")
-    robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", accept)
-    robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", forget)
+    robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", send_goal)
+    robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", get_result)
+
+
+async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: Node, node: Node) -> None:
+    async def answer(_: dict[str, Any]) -> dict[str, Any]:
+        return next(answers)
+
+    answers = iter([{"accepted": True}, {"status": 0}])
+    serve_goals(robot, answer, answer)
     with pytest.raises(SkillError, match="does not know the goal") as raised:
         await node.run_action(ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S))
     assert raised.value.code == "AOS504"
@@ -210,15 +214,12 @@ async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: N
 async def test_a_goal_that_was_given_up_before_it_was_accepted_may_move_the_robot(
     robot: Node, node: Node
 ) -> None:
-    was_asked = asyncio.Event()
-
     async def never(_: dict[str, Any]) -> dict[str, Any]:
         was_asked.set()
         return await asyncio.Future()
 
-    robot.publisher("/lab/fibonacci/_action/feedback", f"{FIBONACCI}_FeedbackMessage")
-    robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", never)
-    robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", never)
+    was_asked = asyncio.Event()
+    serve_goals(robot, never, never)
     goal = ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S)
     running = asyncio.create_task(node.run_action(goal))
     async with asyncio.timeout(HANG_S):
