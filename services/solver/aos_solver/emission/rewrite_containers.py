@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 
 from aos_language.cpp.flow import STATES
-from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind
+from aos_language.cpp.snippets import Access, Call, Cpp, Declaration, DeclarationKind
 
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|pair)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
@@ -22,7 +22,8 @@ _OF_VECTORS = frozenset({"erase", "erase_if", "swap"})
 _ITERATOR = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|set|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
 )
-_VECTOR = re.compile(r"(?:^|[;{}])\s*((?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
+_VECTOR = re.compile(r"(?:^|[;{}])\s*((const\s+)?(?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
+_WEIGHTS = re.compile(r"\s*(?:std\s*::\s*)?vector\s*<\s*double\s*>\s*(?=\{)")
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -38,9 +39,14 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
     - `mine.swap(state__.row)` becomes `swap(mine, state__.row)`
     - `std::swap`, `std::erase` and `std::erase_if` lose their `std::`: those of state variables are not there
     - a vector of constants that is only read becomes `static const`
+    - `AOS.SampleDiscrete(vector<double>{0.5, 0.5})` becomes `AOS.SampleDiscrete({0.5, 0.5})`
     """
     own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:
+        if _is_draw(call):
+            weights = _WEIGHTS.match(cpp.code, call.arguments[-1].start)
+            if weights is not None and _is_constant(cpp.code[weights.end() : call.arguments[-1].end], values):
+                yield weights.start(), weights.end(), ""
         prefix = _STD.match(cpp.code, call.extent.start)
         if prefix is not None and call.name[-1] in _OF_VECTORS - own:
             yield prefix.start(), prefix.end(), ""
@@ -65,8 +71,8 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
             function = _FUNCTION_OF_REFERENCE.search(before)
             if function is not None and _is_plain_lambda(cpp, declaration):
                 yield function.start(1), function.end(1), "auto"
-            if vector is not None and _is_constant_table(cpp, declaration, values):
-                yield vector.start(1), vector.start(1), "static const "
+            if vector is not None and _is_constant_table(cpp, declaration, values, is_const=bool(vector[2])):
+                yield vector.start(1), vector.start(1), "static " if vector[2] else "static const "
 
 
 def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
@@ -96,17 +102,33 @@ def _places_of_state(cpp: Cpp) -> set[int]:
     return {mention.extent.start for mention in cpp.mentions if mention.path[0] in STATES}
 
 
-def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str]) -> bool:
+def _is_draw(call: Call) -> bool:
+    return (
+        call.name[-1:] == ("SampleDiscrete",) and call.name[0] in ("AOS", "AOSUtils") and bool(call.arguments)
+    )
+
+
+def _is_constant(text: str, values: frozenset[str]) -> bool:
+    """Returns whether a text in braces has nothing but literals and `values`."""
+    rest = _WORD.sub(lambda word: "" if word[0] in values else word[0], _LITERAL.sub("", text))
+    return text.startswith("{") and not rest
+
+
+def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str], *, is_const: bool) -> bool:
     initial = declaration.initial
     assert initial is not None
-    text = cpp.code[initial.start : initial.end]
-    rest = _WORD.sub(lambda word: "" if word[0] in values else word[0], _LITERAL.sub("", text))
-    if not text.startswith("{") or rest:
+    if not _is_constant(cpp.code[initial.start : initial.end], values):
         return False
-    same_names = [other for other in cpp.declarations if other.name == declaration.name]
-    uses = [mention for mention in cpp.mentions if mention.path[0] == declaration.name]
-    reads = (
-        mention.access is Access.READ and (len(mention.path) > 1 or mention.method in _READING_METHODS)
-        for mention in uses
+    name = declaration.name
+    if sum(other.name == name for other in cpp.declarations) != 1:
+        return False
+    if re.search(rf"\[[^][]*\b{name}\b[^][]*\]\s*[({{]", cpp.code):
+        return False  # A lambda captures it, which it cannot once it is static.
+    drawn_from = [call.arguments[-1] for call in cpp.calls if _is_draw(call)]
+    weights = {weights.start for weights in drawn_from if cpp.code[weights.start : weights.end] == name}
+    return is_const or all(
+        mention.access is Access.READ
+        and (len(mention.path) > 1 or mention.method in _READING_METHODS or mention.extent.start in weights)
+        for mention in cpp.mentions
+        if mention.path[0] == name
     )
-    return len(same_names) == 1 and all(reads)
