@@ -3,6 +3,7 @@
 import asyncio
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -124,10 +125,12 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Pa
     wrong = pick.read_text().replace("{0.727, 0.181, 0.09, 0.0}", "{0.2, 0.181, 0.619, 0.0}")
     pick.write_text(wrong)
 
+    (tmp_path / "beside").mkdir()
+
     def run(*options: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [AOS, "calibrate", missions_of_finer, "bundle", "--also", RETRACT, *options],
-            cwd=tmp_path,
+            [AOS, "calibrate", missions_of_finer, "../bundle", "--also", RETRACT, *options],
+            cwd=tmp_path / "beside",
             capture_output=True,
             text=True,
             timeout=COMMAND_S,
@@ -140,9 +143,8 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Pa
     assert "OUTSIDE" in done.stdout
     assert "no record" in done.stdout  # of the hard table, where the robot never picks
     assert pick.read_text() == wrong
-    patched = subprocess.run(
-        ["git", "apply", "changes.patch"], cwd=tmp_path, capture_output=True, check=False
-    )
+    by = re.findall("`(git .*)`", done.stdout)[-1].split()
+    patched = subprocess.run(by, cwd=tmp_path / "beside", capture_output=True, check=False)
     assert patched.returncode == 0, patched.stderr
     result = json.loads(run("--json").stdout)
     assert result["patch"] == ""

@@ -7,7 +7,6 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.printing import from_here
 from aos_deploy.program import cache_dir
 from aos_lab.calibration.draws import Draws, Skipped, draws_of
 from aos_lab.calibration.estimation import DrawEstimate, estimate
@@ -69,14 +68,16 @@ def calibrate(
 ) -> Calibration:
     """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors.
 
+    The patch is one of this folder, or of the root where a bundle is elsewhere.
+
     It has an event loop of its own for the engine, and none while it estimates: Ctrl-C ends that at once.
     """
     files: dict[str, bytes] = {}
-    paths: dict[str, str] = {}
+    paths: dict[str, Path] = {}
     for bundle in bundles:
         found = files_of_bundle(bundle, ())
         files |= found
-        paths |= {name: from_here(bundle.absolute() / name).as_posix().lstrip("/") for name in found}
+        paths |= {name: (bundle / name).resolve() for name in found}
     loaded = load_files(files, name=", ".join(map(str, bundles)))
     if loaded.project is None:
         raise DocumentError(
@@ -85,7 +86,10 @@ def calibrate(
     draws = draws_of(loaded.project)
     lattices = asyncio.run(_lattices(missions, draws, on_mission))
     estimates = estimate(draws.draws, lattices, on_sweep)
-    patch, by_hand = patch_of((estimate for estimate in estimates if estimate.is_contradicted), files, paths)
+    here = Path.cwd()
+    base = here if all(path.is_relative_to(here) for path in paths.values()) else Path("/")
+    names = {name: path.relative_to(base).as_posix() for name, path in paths.items()}
+    patch, by_hand = patch_of((estimate for estimate in estimates if estimate.is_contradicted), files, names)
     return Calibration(
         missions=len(missions),
         steps=sum(lattice.steps for lattice in lattices),

@@ -74,7 +74,9 @@ def calibrate(
         return
     print_calibration(result)
     if write is not None and result.patch:
-        typer.echo(f"the patch is in {write}; apply it with `git apply {write}`")
+        is_here = Path(result.patch.split("\n", 1)[0].removeprefix("--- a/")).exists()
+        by = f"git apply {write}" if is_here else f"git -C / apply {write.absolute()}"
+        typer.echo(f"the patch is in {write}; apply it with `{by}`")
 
 
 def print_calibration(result: Calibration) -> None:
