@@ -99,6 +99,7 @@ async def test_an_exception_names_the_documents_line_and_the_worker_goes_on(eval
     pid = mapping.pid
     assert fault.code == "AOS401"
     assert "did you mean 'success'" in str(fault)
+    assert fault.hint == "Mend the abstraction mapping of look, or what its adapter gives"
     assert (fault.diagnostics[0].span.file, fault.diagnostics[0].span.line) == ("look.am", RESULT_LINE + 1)
     assert await works(mapping)
     assert mapping.pid == pid

@@ -277,6 +277,6 @@ class Evaluator:
             message,
             place or self.emitted.mapping.span,
             code=code,
-            hint=hint or f"Mend the abstraction mapping of {self.emitted.skill}",
+            hint=hint or f"Mend the abstraction mapping of {self.emitted.skill}, or what its adapter gives",
             local_variables=local_variables,
         )
