@@ -16,7 +16,7 @@ WARD = """project: ward
 horizon: 4
 
 define_type: tFault
-enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared
+enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn
 
 shared_code:
 int bed_of(const auto& state__, int i) {
@@ -37,7 +37,7 @@ SLIP = """project: ward
 parameter: tFault fault
 
 available_parameters_code:
-for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared})
+for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn})
     __possibleParameters.push_back(make_tuple(fault));
 
 dynamic_model:
@@ -59,6 +59,11 @@ switch (fault) {
     case eLambda:
         state__.rooms = bed(3);
         break;
+    case eOwn: {
+        vector<int> own{1, 2, state__.rooms};
+        state__.rooms = own[own.size()];  // eOwn
+        break;
+    }
     case eShared:
         state__.rooms = bed_of(state__, twice(2));
         break;
@@ -83,6 +88,7 @@ FAULTS = {
     "eResponse": ("AOS215", "__moduleResponse is 9"),
     "eLambda": ("AOS215", "element 6 of a vector of 3"),
     "eShared": ("AOS215", "element 6 of a vector of 3"),
+    "eOwn": ("AOS215", "element 3 of a vector of 3"),
 }
 
 

@@ -15,6 +15,7 @@ from aos_language.observed import reports_in
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_captures import capture_edits
 from aos_solver.emission.rewrite_containers import container_edits
+from aos_solver.emission.rewrite_indexes import index_edits
 from aos_solver.emission.rewrite_objects import object_edits
 from aos_solver.emission.rewrite_references import reference_edits
 
@@ -78,8 +79,7 @@ def rewrite(
     - a call of a shared function that draws, `slips(0.1)`, becomes `slips(AOS, 0.1)`, and its definition, one
       of `functions`, `bool slips(auto& AOS, double p) {`
     - a loop that draws tells of its rounds: see `drawing_loop.hpp`; variables that it may read are set first
-    - objects, containers and lambdas: see `rewrite_objects`, `rewrite_containers`, `rewrite_references` and
-      `rewrite_captures`
+    - objects, containers, indexes, references and lambdas: see `rewrite_objects` and its neighbours
     """
     reported = [report.draw for report in reports_in(cpp)]
     edits: list[tuple[Extent | int, str]] = list(_before_loops(of_loops))
@@ -87,7 +87,7 @@ def rewrite(
     for draw in reported:
         edits += _of_reported(draw)
     unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
-    unnamed += [*reference_edits(cpp), *capture_edits(cpp, rewriting.drawing)]
+    unnamed += [*reference_edits(cpp), *capture_edits(cpp, rewriting.drawing), *index_edits(cpp)]
     edits += [(place.start, "model::") for place in values_meant(cpp, rewriting.responses)]
     for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))

@@ -231,4 +231,16 @@ void swap(std::vector<T>& left, Vector<T, Capacity>& right) {
   right.swap(left);
 }
 
+// `values[index]` of document code: a ModelFault where a vector, an array or a string has no such element.
+template <class Values, class Index>
+constexpr decltype(auto) at(Values&& values, const Index& index) {
+  if constexpr (std::is_convertible_v<Index, std::ptrdiff_t> && !requires { typename std::remove_cvref_t<Values>::key_type; }) {
+    if constexpr (requires { std::size(values); }) {
+      const auto number = static_cast<std::ptrdiff_t>(index);
+      if (static_cast<std::size_t>(number) >= std::size(values)) out_of_range(number, std::size(values));
+    }
+  }
+  return values[index];
+}
+
 }  // namespace aos
