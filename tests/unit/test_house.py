@@ -124,3 +124,11 @@ def test_every_command_of_contributing_can_be_imported() -> None:
     modules = [f"{name}.__main__" if (ROOT / name.replace(".", "/")).is_dir() else name for name in named]
     assert len(modules) > 10
     subprocess.run([sys.executable, "-c", f"import {', '.join(modules)}"], cwd=ROOT, check=True)
+
+
+def test_the_walks_of_contributing_lead_to_files() -> None:
+    table = (ROOT / "CONTRIBUTING.md").read_text().partition("| Question | Walk |\n| --- | --- |\n")[2]
+    rows = table.partition("\n\n")[0].splitlines()
+    walks = ["/".join(re.findall("`([^`]+)`", row.split("|")[2])) for row in rows]
+    assert len(walks) == 6
+    assert [walk for walk in walks if not (ROOT / walk).is_file()] == []
