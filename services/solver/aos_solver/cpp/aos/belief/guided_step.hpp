@@ -120,6 +120,7 @@ class GuidedStep {
       alternatives_->clear();
       const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
       if (weights == nullptr || positive > max_alternatives) return;
+      alternatives_->reserve(static_cast<std::size_t>(positive));
       double below = 0;
       for (int i = 0; i < count; ++i) {
         if (weights[i] <= 0) continue;
@@ -232,6 +233,7 @@ class GuidedStep {
     const bool is_discrete = !alternatives.empty();
     if (!is_discrete) alternatives = explored();
     std::vector<double> promises;
+    promises.reserve(alternatives.size());
     for (const Alternative& alternative : alternatives) promises.push_back(tried_at(alternative.value).promise());
     const auto promising = std::count_if(promises.begin(), promises.end(), [](double p) { return p >= doubtful; });
     if (is_discrete && promising > 0 && promising <= branches) {
@@ -252,6 +254,7 @@ class GuidedStep {
                     int branches, Visit visit) {
     double sum = 0;
     std::vector<double> others;
+    others.reserve(alternatives.size());
     for (std::size_t i = 0; i < alternatives.size(); ++i) {
       const bool is_promising = promises[i] >= doubtful;
       others.push_back(is_promising ? 0 : promises[i]);
@@ -280,6 +283,7 @@ class GuidedStep {
   double follow_drawn(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
                       Visit visit, int branches = 1) {
     std::vector<double> shares;
+    shares.reserve(alternatives.size());
     double total = 0;
     for (std::size_t i = 0; i < alternatives.size(); ++i) {
       shares.push_back(alternatives[i].probability * promises[i]);

@@ -109,7 +109,8 @@ class Moves {
 
   // Makes one proposal, at one of all draws of the trace. A change that leads to the same state is no move.
   bool move(Copy& copy) {
-    const std::vector<const Block*> blocks = blocks_of(copy.trace);
+    list_blocks(copy.trace, blocks_);
+    const std::vector<const Block*>& blocks = blocks_;
     const auto [place, first] = random_draw(blocks);
     ++steps_;
     if (place == blocks.size()) return false;
@@ -117,25 +118,32 @@ class Moves {
     for (std::size_t i = 0; i < place; ++i) repeat(i, *blocks[i], state);
     State before = state;
     std::vector<Block> proposed;
+    proposed.reserve(blocks.size() - place);
     double ratio = is_guided(place) ? guided(place, *blocks[place], state, proposed)
-                                    : changed(place, first, *blocks[place], state, proposed);
+                                    : changed(place, first, *blocks[place], state, before, proposed);
     if (ratio <= 0) return false;
-    repeat(place, *blocks[place], before);
+    if (is_guided(place)) {
+      repeat(place, *blocks[place], before);
+    } else {
+      ++steps_;  // `changed` has made it.
+    }
     if (state == before) return false;
     for (std::size_t i = place + 1; i < blocks.size(); ++i) {
       if (is_guided(i)) {
         ratio *= guided(i, *blocks[i], state, proposed);
       } else {
-        proposed.push_back(*blocks[i]);
-        proposed.back().likelihood = repeat(i, *blocks[i], state);
-        proposed.back().draws = static_cast<std::uint32_t>(replay_.draws());
-        ratio *= proposed.back().likelihood / blocks[i]->likelihood;
+        const double likelihood = repeat(i, *blocks[i], state);
+        proposed.push_back({{}, blocks[i]->seed, likelihood, static_cast<std::uint32_t>(replay_.draws())});
+        ratio *= likelihood / blocks[i]->likelihood;
       }
       if (ratio <= 0) return false;
     }
     ratio *= way_back(blocks, proposed, place);
     if (ratio < 1 && !random_.flag(ratio)) return false;
     copy.state = state;
+    for (std::size_t i = place + 1; i < blocks.size(); ++i) {
+      if (!is_guided(i)) proposed[i - place].values = blocks[i]->values;
+    }
     copy.trace = replaced(copy.trace, blocks.size() - place, proposed);
     copy.is_moved = true;
     return true;
@@ -143,10 +151,12 @@ class Moves {
 
   // Makes one proposal, of many draws of the origin made anew at once.
   bool refresh(Copy& copy) {
-    const std::vector<const Block*> blocks = blocks_of(copy.trace);
+    list_blocks(copy.trace, blocks_);
+    const std::vector<const Block*>& blocks = blocks_;
     if (blocks[0]->draws == 0) return false;
     const std::vector<std::size_t>& anew = free_draws_.choose(blocks[0]->draws, random_);
-    std::vector<double> values;
+    std::vector<double>& values = values_;
+    values.clear();
     State before{};
     Sampler later{blocks[0]->seed};
     run(0, blocks[0]->values, later, before, &values);
@@ -175,9 +185,10 @@ class Moves {
   bool still_brings(const std::vector<const Block*>& blocks, State& before, State& after) {
     double ratio = 1;
     for (std::size_t i = 1; i < blocks.size(); ++i) {
-      const double likelihood_before = repeat(i, *blocks[i], before);
+      DrawWatcher* const watcher = is_guided(i) ? &weights_drawn_from_ : nullptr;
+      const double likelihood_before = repeat(i, *blocks[i], before, watcher);
       const std::uint64_t weights_before = weights_drawn_from_.digest();
-      const double likelihood_after = repeat(i, *blocks[i], after);
+      const double likelihood_after = repeat(i, *blocks[i], after, watcher);
       if (is_guided(i) && weights_drawn_from_.digest() != weights_before) return false;
       if (likelihood_after <= 0) return false;
       ratio *= likelihood_after / likelihood_before;
@@ -215,12 +226,12 @@ class Moves {
   bool is_guided(std::size_t place) const { return place > 0 && history_.steps()[place - 1].is_guided; }
 
   // Runs a block's draws. Returns the density of the numbers, or 0 if the step does not give what was observed.
-  double repeat(std::size_t place, const Block& block, State& state) {
+  double repeat(std::size_t place, const Block& block, State& state, DrawWatcher* watcher = nullptr) {
     Sampler later{block.seed};
-    return run(place, block.values, later, state, nullptr);
+    return run(place, block.values, later, state, nullptr, watcher);
   }
   double run(std::size_t place, const std::vector<double>& values, Sampler& later, State& state,
-           std::vector<double>* record) {
+           std::vector<double>* record, DrawWatcher* watcher = nullptr) {
     ++steps_;
     if (place == 0) {
       replay_.start(values, later, record);
@@ -230,19 +241,21 @@ class Moves {
     const HistoryStep& step = history_.steps()[place - 1];
     const NumbersOf numbers{step, replay_};
     weights_drawn_from_.start();
-    replay_.start(values, later, record, &weights_drawn_from_);
+    replay_.start(values, later, record, watcher);
     return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
   }
 
-  // Proposes a block with some draws changed from `first` on. Returns the factor of the acceptance ratio,
-  // which is 0 if the block does not give what was observed.
-  double changed(std::size_t place, std::size_t first, const Block& block, State& state, std::vector<Block>& proposed) {
-    std::vector<double> values;
-    State old = state;
+  // Proposes a block with some draws changed from `first` on, and makes `old` the state that the block gives. Returns the
+  // factor of the acceptance ratio, which is 0 if the proposal does not give what was observed.
+  double changed(std::size_t place, std::size_t first, const Block& block, State& state, State& old,
+                 std::vector<Block>& proposed) {
+    std::vector<double>& values = values_;
+    values.clear();
     Sampler later{block.seed};
     run(place, block.values, later, old, &values);
     perturb(values, first);
     std::vector<double> used;
+    used.reserve(values.size());
     const double likelihood = run(place, values, random_, state, &used);
     const auto draws = static_cast<std::uint32_t>(used.size());
     proposed.push_back({std::move(used), 0, likelihood, draws});
@@ -317,6 +330,8 @@ class Moves {
   Weights weights_drawn_from_;
   FreeDraws free_draws_;
   std::vector<Copy> copies_;
+  std::vector<const Block*> blocks_;  // of the trace that is moved
+  std::vector<double> values_;
   std::size_t steps_ = 0;
 };
 
