@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import faults, latency, load, missions, modelled, monitored, presence, stopping, takeovers
+from . import faults, load, missions, modelled, monitored, presence, stopping, takeovers
 
 
 class Part(NamedTuple):
@@ -23,7 +23,6 @@ class Part(NamedTuple):
 
 
 PARTS: Mapping[str, Part] = {
-    "latency": Part("activations on the way to a skill and back", latency.add_options, latency.measure),
     "faults": Part("adapters that do everything wrong", faults.add_options, faults.measure),
     "load": Part("many skills, topics at a high rate", load.add_options, load.measure),
     "presence": Part("adapters that leave and come back", presence.add_options, presence.measure),

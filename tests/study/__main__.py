@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
 
-from . import asked, clock, replays
+from . import asked, replays
 
 Measure = Callable[[int, Path], Awaitable[bool]]
 
@@ -22,7 +22,6 @@ PARTS: Mapping[str, tuple[str, Measure, int]] = {
     "undisturbed": ("missions with and without somebody who asks", asked.measure_undisturbed, 100),
     "flips": ("beliefs at which exact choices change", asked.measure_flips, 40),
     "intervals": ("the same for choices by POMCP, and their margins", asked.measure_intervals, 40),
-    "clock": ("how long `why` takes with each planner", clock.measure, 3),
 }
 
 
