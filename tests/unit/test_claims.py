@@ -7,6 +7,7 @@ import msgspec
 import pytest
 
 from aos_deploy.shipped import shipped
+from aos_lab.commands.experiment import verdict_line
 from aos_lab.experiments.physics import simulated_speed
 from aos_lab.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
 from aos_lab.trials.files import read_experiment, read_script_file, read_test_file
@@ -166,6 +167,7 @@ def test_surely_asks_the_lower_end_of_the_interval() -> None:
 def test_a_claim_that_fails_though_it_held_is_told_with_its_reason() -> None:
     unsure = judge(Claim(says="", goal=True, share=0.9, surely=True), [DELIVERED])
     assert verdict_text(unsure).endswith("; wanted 0.90 at the lower end; more missions may tell)")
+    assert verdict_line("part", unsure).endswith("more missions may tell)")
     about_none = judge(Claim(says="", goal=True, when=When(some="fly")), [DELIVERED])
     assert (about_none.is_seen, verdict_text(about_none)) == (False, "no mission was one that it is about")
 

@@ -22,6 +22,7 @@ from aos_runtime.distribution import pip_install
 
 if TYPE_CHECKING:
     from aos_lab.experiments.results import Results
+    from aos_lab.trials.claims import Verdict
     from aos_lab.trials.setting import Player
 
 
@@ -120,11 +121,17 @@ def _report(whole: Results, folder: Path, as_json: bool) -> None:
         return
     for result in whole.parts:
         for verdict in result.verdicts:
-            word = verdict.word if verdict.is_seen else verdict.word.upper()
-            print(
-                f"{word:8} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}"
-            )
+            print(verdict_line(f"{result.name} ({result.by})", verdict))
     print(f"the report is in {from_here(pages[0])} and {from_here(pages[1])}")
+
+
+def verdict_line(part: str, verdict: Verdict) -> str:
+    """A claim's line below an experiment: of one that was not seen also why."""
+    from aos_lab.trials.junit import verdict_text
+
+    if verdict.is_seen:
+        return f"seen     {part}: {verdict.says}: {verdict.held} of {verdict.missions}"
+    return f"{verdict.word.upper():8} {part}: {verdict.says}: {verdict_text(verdict)}"
 
 
 def statistics(
