@@ -560,3 +560,8 @@ def test_names_to_import_that_are_no_list_are_one_error() -> None:
     assert [each.message for each in errors if each.span.file == "walk.json"] == [
         '"Import" must be a list, not a string'
     ]
+
+
+def test_a_misspelt_truth_of_a_source_is_one_error() -> None:
+    mapping = MAPPING + "\nlocal_variable: ok\nfrom_ros_service_response: ture\ncode:\nok = __input.ok\n"
+    assert [told.split(" ", 2)[1] for told in finding_texts(mapping=mapping)] == ["AOS106"]

@@ -160,7 +160,9 @@ def _local_variable(record: Record) -> documents.LocalVariable | None:
         span=record.span,
         type=_type(record),
         parameter_path=record.text("FromGlobalVariable"),
-        is_from_service=record.boolean("FromROSServiceResponse"),
+        is_from_service=record.boolean(
+            "FromROSServiceResponse", default=record.has("FromROSServiceResponse")
+        ),
         topic=record.text("RosTopicPath"),
         message_type=record.text("TopicMessageType"),
         initial_value=record.python_expression("InitialValue"),

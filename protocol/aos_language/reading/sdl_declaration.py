@@ -58,12 +58,12 @@ def read_number(part: Part, findings: Findings) -> float | None:
     return number
 
 
-def read_truth(part: Part | None, findings: Findings) -> bool:
-    """true or false in a part's value; false where there is no part."""
+def read_truth(part: Part | None, findings: Findings, *, otherwise: bool = False) -> bool:
+    """true or false in a part's value, `otherwise` where it is neither; false where there is no part."""
     if part is None:
         return False
     truth = _TRUTHS.get(part.value.text.lower())
     if truth is None:
         message = f"`{part.word}:` is true or false, not {part.value.text!r}"
         findings.error("AOS106", message, part.value.span)
-    return bool(truth)
+    return otherwise if truth is None else truth

@@ -194,7 +194,9 @@ def _local_variable(section: Section, findings: Findings) -> documents.LocalVari
         span=section.span,
         type=normal_type(kind, findings) if kind else "",
         parameter_path=value("action_parameter"),
-        is_from_service=read_truth(section.last("from_ros_service_response", findings), findings),
+        is_from_service=read_truth(
+            section.last("from_ros_service_response", findings), findings, otherwise=True
+        ),
         topic=value("topic"),
         message_type=value("message_type"),
         initial_value=initial.expression() if initial is not None else None,
