@@ -228,21 +228,20 @@ def write_slow_tiger(folder: Path) -> None:
         (folder / "tiger" / path.name).write_text(text)
 
 
-def slow_deploy_file(folder: Path, step_limit: int = 1_000_000, simulations: int = 100) -> Path:
+def slow_deploy_file(folder: Path, step_limit: int = 1_000_000) -> Path:
     """The deploy file of a robot that listens once for each byte written to the pipe `turns` beside it."""
     os.mkfifo(folder / "turns")
     write_slow_tiger(folder)
     (folder / "robot.py").write_text(SLOW_ROBOT)
     deploy_file = folder / "tiger.yaml"
-    text = SLOW.replace("1_000_000", str(step_limit))
-    deploy_file.write_text(text.replace("simulations: 100", f"simulations: {simulations}"))
+    deploy_file.write_text(SLOW.replace("1_000_000", str(step_limit)))
     return deploy_file
 
 
 @contextmanager
-def slow_system(folder: Path, cache: Path, *options: str, simulations: int = 100) -> Iterator[Path]:
+def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
     """The directory of a mission that goes on: its robot listens once for each write to the pipe `turns`."""
-    with _up(folder, cache, slow_deploy_file(folder, simulations=simulations).name, *options) as lines:
+    with _up(folder, cache, slow_deploy_file(folder).name, *options) as lines:
         next(line for line in lines if line["event"] == "decision")
         yield (folder / "runs/latest").resolve()
 
