@@ -60,8 +60,9 @@ def test_a_choice_that_bounds_tell_apart_is_proven_whatever_the_errors_are() -> 
 
 
 def test_an_action_whose_value_nobody_knows_is_no_second() -> None:
-    values = (ActionValue("look", 2.5, 9, 0.1), ActionValue("go", float("-inf"), 0, 0.0))
-    assert row_of(decided(1, actions=values)).margin is None
+    for unknown in (ActionValue("go", float("-inf"), 0, 0.0), ActionValue("go", 9.0, 0, 1.0)):
+        values = (ActionValue("look", 2.5, 9, 0.1), unknown)
+        assert row_of(decided(1, actions=values, simulations=9)).margin is None
 
 
 def test_a_row_has_what_was_expected_and_what_was_seen() -> None:

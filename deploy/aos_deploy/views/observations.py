@@ -30,7 +30,7 @@ def value_text(value: float, digits: int) -> str:
 def by_worth(values: Iterable[ActionValue], simulations: int) -> list[ActionValue]:
     """The values, the best first; last those of actions that the search has not tried, as no numbers."""
     known = [
-        msgspec.structs.replace(value, q=-math.inf, stderr=0.0) if simulations and not value.n else value
+        value if value.is_known(simulations) else msgspec.structs.replace(value, q=-math.inf, stderr=0.0)
         for value in values
     ]
     return sorted(known, key=lambda value: -value.q)

@@ -1,6 +1,5 @@
 """Tables for people: the value of each action, and simulated missions."""
 
-import math
 from collections.abc import Iterable, Mapping
 
 from rich.bar import Bar
@@ -46,8 +45,9 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
     Errors and visits stand beside values where there is room, and what is proven of them, rounded outwards.
     """
     values = by_worth(values, simulations)
-    tried = [value.q for value in values if math.isfinite(value.q)]
-    lowest, highest = min(tried, default=0.0), max(tried, default=0.0)
+    known = [value for value in values if value.is_known(simulations)]
+    lowest = min((value.q for value in known), default=0.0)
+    highest = max((value.q for value in known), default=0.0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
     out = console(is_wide=True)
     # Bars give way first: actions often differ in their last letters only.
@@ -76,7 +76,7 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
         size = max(highest - lowest, 1e-9)
         table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
     out.print(table)
-    if any(value.at_least is not None and value.q + 2 * value.stderr < value.at_least for value in values):
+    if any(value.at_least is not None and value.q + 2 * value.stderr < value.at_least for value in known):
         out.print(_LESS_THAN_THE_PLAN, style="dim")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -236,6 +237,10 @@ class ActionValue(Message, frozen=True):
     stderr: float
     at_least: float | None = None
     at_most: float | None = None
+
+    def is_known(self, simulations: int) -> bool:
+        """Says whether `q` tells anything: a search of so many simulations, if any, has tried the action."""
+        return math.isfinite(self.q) and (self.n > 0 or simulations == 0)
 
 
 class PredictedObservation(Message, frozen=True):

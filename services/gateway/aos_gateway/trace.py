@@ -194,7 +194,8 @@ def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:
 
 
 def _second(record: DecisionRecord) -> ActionValue | None:
-    others = [value for value in record.actions if value.action != record.action and math.isfinite(value.q)]
+    known = (value for value in record.actions if value.is_known(record.simulations))
+    others = (value for value in known if value.action != record.action)
     return max(others, key=lambda value: value.q, default=None)
 
 

@@ -4,6 +4,9 @@ import { briefAction, isNumber, signed } from "./format.js";
 import { at, index, loadRecord, record, records, recordsChanged, steps } from "./store.js";
 import { canSteer, OfAction } from "./steering.js";
 
+// Of an action that the search has not tried nothing is known.
+const isKnown = (each, found) => isNumber(each.q) && (each.n > 0 || !found.simulations);
+
 const SHOWN = 8;
 const ROW = 30;
 
@@ -12,7 +15,7 @@ export function Values() {
   const [showsAll, setShowsAll] = useState(false);
   const found = record.value?.decided ?? record.value?.observed;
   if (!at.value || !found || found.step !== at.value.step) return html`<div ref=${ref} class="values" aria-busy="true"></div>`;
-  const sorted = found.actions.filter((each) => isNumber(each.q)).sort((a, b) => b.q - a.q);
+  const sorted = found.actions.filter((each) => isKnown(each, found)).sort((a, b) => b.q - a.q);
   let shown = showsAll ? sorted : sorted.slice(0, SHOWN);
   const chosen = sorted.find((each) => each.action === found.action);
   if (chosen && !shown.includes(chosen)) shown = [...shown, chosen];

@@ -301,8 +301,12 @@ def _nothing_left(reasons: Mapping[str, str]) -> str:
 
 def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
     """The actions that are worth more than the choice and cannot be carried out now, with the reasons."""
-    better = [value.action for value in plan.actions if value.q > plan.best.q and value.action in barred]
-    return {action: barred[action] for action in better}
+    known = [value for value in plan.actions if value.is_known(plan.simulations)]
+    return {
+        value.action: barred[value.action]
+        for value in known
+        if value.q > plan.best.q and value.action in barred
+    }
 
 
 def _explained(plan: Plan, reasons: Mapping[str, str], is_cautious: bool, told: list[str]) -> Plan:
