@@ -16,7 +16,7 @@ from aos_deploy.living_runs import noted
 from aos_deploy.page_address import page_address
 from aos_deploy.printing import count, from_here, time_text
 from aos_deploy.program import outsiders_of, programs_of_deployment
-from aos_deploy.readiness import until_skills_can_run
+from aos_deploy.readiness import tell_lost_skills, until_skills_can_run
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_end import account_of, beginning_of, settled
 from aos_deploy.run_record import record_of
@@ -230,9 +230,11 @@ class MissionRun:
 
     async def _follow(self, supervisor: Supervisor) -> None:
         async with asyncio.TaskGroup() as tasks:
-            progress = tasks.create_task(self._follow_progress(supervisor))
+            beside = (self._follow_progress(supervisor), tell_lost_skills(supervisor, self._report))
+            following = [tasks.create_task(each) for each in beside]
             await self._follow_mission(supervisor)
-            progress.cancel()
+            for each in following:
+                each.cancel()
 
     async def _follow_progress(self, supervisor: Supervisor) -> None:
         async with supervisor.bus.listen(supervisor.keys.all_progress, SkillProgress) as reports:

@@ -1,17 +1,22 @@
-"""The wait before the first decision: every path that a skill calls has somebody who answers it."""
+"""The skills that can be run: the wait for all before the first decision, and those that leave after it."""
 
+import asyncio
 from collections.abc import Collection
 
 from aos_deploy.deploy_file import Deployment
+from aos_deploy.events import Report, Told
 from aos_deploy.supervisor import Supervisor
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
 from aos_protocol.spelling import nearest
 from aos_runtime.reported_state import state_when
+from aos_runtime.subscription import merged
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0
 MAPPINGS_S = 60.0
+_SETTLED_S = 2.0
+"""An absence this short is not told."""
 
 
 async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> tuple[str, ...]:
@@ -44,13 +49,47 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
     except BusError as error:
         if newest is None or not newest.unavailable:
             raise
-        missing = "; ".join(f"{skill}: {why}" for skill, why in sorted(newest.unavailable.items()))
         raise DeployError(
-            f"not every skill can be run within {longest_s:g} s: {missing}",
+            f"not every skill can be run within {longest_s:g} s: {_reasons(newest, newest.unavailable)}",
             code="AOS807",
             hint=_hint(supervisor, deployment),
         ) from error
     return misspelt_paths(deployment, {skill.mapping.activation.path for skill in project.project.skills})
+
+
+async def tell_lost_skills(supervisor: Supervisor, report: Report) -> None:
+    """Reports skills that could be run and cannot any more, and those that can again, until it is cancelled.
+
+    Nothing is told of them while a program starts again, which is told itself.
+    """
+    bus, keys = supervisor.bus, supervisor.keys
+    runnable: set[str] = set()
+    lost: set[str] = set()
+    told = bus.listen(keys.mapping_state, MappingState)
+    async with merged(told, bus.presence(keys.live("middleware"))) as changes:
+        async for _ in changes:
+            while True:
+                await asyncio.sleep(_SETTLED_S)
+                if not supervisor.is_changing:
+                    break
+            while changes.has_items:  # The answer has them.
+                await anext(changes)
+            try:
+                state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
+            except BusError:
+                continue  # It is told when the middleware is back.
+            if left := runnable & state.unavailable.keys():
+                more = "`aos skill list` and the adapters' logs tell more"
+                report(Told(f"cannot be run any more: {_reasons(state, left)} ({more})"))
+            now = set(state.skills) - state.unavailable.keys()
+            if back := lost & now:
+                report(Told(f"can be run again: {', '.join(sorted(back))}"))
+            lost = (lost | left) - now
+            runnable = (runnable | now) - left
+
+
+def _reasons(state: MappingState, skills: Collection[str]) -> str:
+    return "; ".join(f"{skill}: {state.unavailable[skill]}" for skill in sorted(skills))
 
 
 def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str, ...]:

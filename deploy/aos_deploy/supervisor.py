@@ -123,6 +123,13 @@ class Supervisor:
         """Process ids by service."""
         return {name: running.child.pid for name, running in self._running.items()}
 
+    @property
+    def is_changing(self) -> bool:
+        """True while a program starts, also again, or is silent and may be frozen: each is told."""
+        gone = {end.name for end in self.ends if end.then != STARTED_AGAIN}
+        staying = (running for name, running in self._running.items() if name not in gone)
+        return any(not running.is_ready or running.silence is not None for running in staying)
+
     # --- starting ---
 
     async def start(self) -> None:

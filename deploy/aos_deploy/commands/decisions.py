@@ -97,7 +97,9 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
         return []
     if not event.planner:
         return []  # The line of the decision says who has asked for it.
-    return [on_one_line(f"         {event.planner}: {event.why}")]
+    barred = [why for made in event.searches if not made.is_dropped for why in made.barred.values()]
+    told = [event.why, *(f"barred: {why}" for why in dict.fromkeys(barred) if why not in event.why)]
+    return [on_one_line(f"         {event.planner}: {'; '.join(told)}")]
 
 
 def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord | MissionState]:

@@ -177,7 +177,9 @@ class LiveView:
         if isinstance(event, SkillProgress):
             return  # It can come many times a second.
         is_end = isinstance(event, ServiceChanged) and event.state == "ended" and event.detail
-        if isinstance(event, BundleReport) or is_end:
+        state = self.screen.state
+        is_news = isinstance(event, Told) and state is not None and state.phase != "ended"
+        if isinstance(event, BundleReport) or is_end or is_news:
             self._live.console.print("\n".join(lines_of(event)), markup=False, highlight=False)
         self._live.refresh()
 

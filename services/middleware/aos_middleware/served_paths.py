@@ -82,9 +82,10 @@ class ServedPaths:
 
     def why_unavailable(self, path: str) -> str:
         """Returns why nobody should decide for a skill of this path now; empty where somebody may."""
+        servers = self.servers(path)
         if fault := self.fault(path):
-            return fault.message
-        (server,) = self.servers(path)
+            return f"{fault.message}. {fault.hint}" if servers else fault.message
+        (server,) = servers
         is_ready = self._is_ready.get(server.adapter, True)
         return "" if is_ready else f"{path} is served by {server.adapter}, which is still starting"
 

@@ -89,19 +89,24 @@ class Reasons:
         return {value.action: Value(value.q, value.stderr, value.n) for value in self._decision.actions}
 
     def _other(self, instead: str, values: dict[str, Value]) -> str:
+        made = deciding_search(self._decision)
+        barred = made.barred if made else {}
+        reasons = "; ".join(dict.fromkeys(barred.values()))
         if instead:
             if instead not in values:
                 names = ", ".join(name for name in values if name != self._decision.action)
                 raise SkillError(f"there is no action {instead}", code="AOS501", hint=f"Name one of {names}")
             if instead == self._decision.action:
                 raise StudyError(f"{instead} is the action that was chosen", hint="Name another action")
-            if instead in self._valuing.barred:
-                made = deciding_search(self._decision)
-                self._remarks.append(f"{instead} was barred: {made.barred[instead] if made else ''}")
+            if instead in barred:
+                self._remarks.append(f"{instead} was barred: {barred[instead]}")
             return instead
         left = {name: value for name, value in values.items() if name not in self._valuing.barred}
         if len(left) < 2:
-            raise StudyError("no other action was left to choose", hint="Name one with --instead")
+            why = f": {reasons}" if reasons else ""
+            raise StudyError(f"no other action was left to choose{why}", hint="Name one with --instead")
+        if barred:
+            self._remarks.append(f"barred were {', '.join(barred)}: {reasons}")
         return best_of(left, but=self._decision.action)
 
     def _simulations_to_tell(self, margin: Margin) -> int:
