@@ -67,13 +67,14 @@ async def tell_lost_skills(supervisor: Supervisor, report: Report) -> None:
     lost: set[str] = set()
     told = bus.listen(keys.mapping_state, MappingState)
     async with merged(told, bus.presence(keys.live("middleware"))) as changes:
-        async for _ in changes:
+        async for _, change in changes:
+            runnable |= _runnable(change)
             while True:
                 await asyncio.sleep(_SETTLED_S)
                 if not supervisor.is_changing:
                     break
-            while changes.has_items:  # The answer has them.
-                await anext(changes)
+            while changes.has_items:  # The answer is newer, and a skill of theirs may have left since.
+                runnable |= _runnable((await anext(changes))[1])
             try:
                 state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
             except BusError:
@@ -81,11 +82,16 @@ async def tell_lost_skills(supervisor: Supervisor, report: Report) -> None:
             if left := runnable & state.unavailable.keys():
                 more = "`aos skill list` and the adapters' logs tell more"
                 report(Told(f"cannot be run any more: {_reasons(state, left)} ({more})"))
-            now = set(state.skills) - state.unavailable.keys()
+            now = _runnable(state)
             if back := lost & now:
                 report(Told(f"can be run again: {', '.join(sorted(back))}"))
             lost = (lost | left) - now
             runnable = (runnable | now) - left
+
+
+def _runnable(state: MappingState | bool) -> set[str]:
+    """The skills that the middleware tells can be run; none where it tells of its presence."""
+    return set(state.skills) - state.unavailable.keys() if isinstance(state, MappingState) else set()
 
 
 def _reasons(state: MappingState, skills: Collection[str]) -> str:
