@@ -279,6 +279,9 @@ class DeployError(AosError):
     code = "AOS801"
 
 
+ANOTHER_MAY_MOVE = "AOS512"
+"""A skill is refused for an earlier one, whose failure it is."""
+
 _STATUS = {
     "AOS503": "timed_out",
     "AOS504": "unknown",

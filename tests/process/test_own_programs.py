@@ -10,6 +10,7 @@ import signal
 import socket
 import subprocess
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -278,40 +279,45 @@ def test_a_robot_finds_its_simulator_and_joins_a_call_that_comes_again_from_a_ne
     assert "refused" not in done.stdout
 
 
-LEAVES_AND_COMES = """    def until(sign):
-        while not os.path.exists(sign):
-            time.sleep(0.05)
-    if not os.path.exists("told"):
+LEAVES_AND_COMES = """    LOOKS.append(path)
+    if len(LOOKS) == 1:
         declared[-1].undeclare()
-        until("told")
-    elif not os.path.exists("on"):
-        until("back")
+        open("told").close()
+    elif len(LOOKS) == 2:
+        open("back").close()
         declared[-1] = session.liveliness().declare_token(token)
-        until("on")
+        open("on").close()
     for share"""
 
 
 def test_a_skill_that_leaves_in_mid_mission_and_comes_again_is_told_once_each(project: Path) -> None:
     for name, old, new in (
         ("fetch_robot.py", "    for share", LEAVES_AND_COMES),
+        ("fetch_robot.py", "def run(", "LOOKS = []\ndef run("),
         ("fetch/look.am", "max_duration: 10", "max_duration: 1000"),
     ):
         (project / name).write_text((project / name).read_text().replace(old, new))
+    for sign in ("told", "back", "on"):
+        os.mkfifo(sign)
     up = ["timeout", str(COMMAND_S), BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]
     away = "no adapter answers calls of /take"
     said = ""
-    with subprocess.Popen(up, stdout=subprocess.PIPE, text=True) as running:
+    with ExitStack() as given, subprocess.Popen(up, stdout=subprocess.PIPE, text=True) as running:
+
+        def give(sign: str) -> None:
+            given.callback(os.close, os.open(sign, os.O_RDWR))  # The robot opens it now, or later.
+
         assert running.stdout is not None
         for line in running.stdout:
             said += line
             if line.startswith(f"cannot be run any more: take: {away} ("):
-                (project / "told").touch()
+                give("told")
             elif line.startswith("step  2: look  ["):
                 os.kill(json.loads(Path("runs/latest/run.json").read_text())["pids"]["middleware"], 9)
             elif "middleware ready" in line and said.count("middleware ready") == 2:
-                (project / "back").touch()
+                give("back")
             elif line == "can be run again: take\n":
-                (project / "on").touch()
+                give("on")
     assert running.returncode == 0, said
     assert (said.count("cannot be run"), said.count("can be run again")) == (1, 1), said
     for words, told in ((["decisions"], f"barred: {away}"), (["why", "2"], f"left to choose: {away}")):

@@ -1,7 +1,7 @@
 """Variables of C++ that are read before they have a value: which are told, and which code is left alone."""
 
 import pytest
-from test_lint_words import SKILL, finding_texts
+from lint_texts import SKILL, finding_texts
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.cpp.unset import unset_reads

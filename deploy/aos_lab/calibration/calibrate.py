@@ -48,7 +48,7 @@ def _by_values(
 
 class Calibration(msgspec.Struct, frozen=True):
     """The result of a calibration. `remarks` say which steps were not used, and `by_hand` what the patch
-    leaves out."""
+    leaves out. The patch's names of files are those from `patch_folder`, this folder (`.`) or the root."""
 
     missions: int
     steps: int
@@ -56,6 +56,7 @@ class Calibration(msgspec.Struct, frozen=True):
     estimates: tuple[DrawEstimate, ...]
     skipped: tuple[Skipped, ...]
     patch: str
+    patch_folder: str
     by_hand: tuple[str, ...]
 
 
@@ -67,8 +68,6 @@ def calibrate(
     on_sweep: Callable[[int, int], None] = lambda done, of: None,
 ) -> Calibration:
     """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors.
-
-    The patch is one of this folder, or of the root where a bundle is elsewhere.
 
     It has an event loop of its own for the engine, and none while it estimates: Ctrl-C ends that at once.
     """
@@ -86,8 +85,8 @@ def calibrate(
     draws = draws_of(loaded.project)
     lattices = asyncio.run(_lattices(missions, draws, on_mission))
     estimates = estimate(draws.draws, lattices, on_sweep)
-    here = Path.cwd()
-    base = here if all(path.is_relative_to(here) for path in paths.values()) else Path("/")
+    is_here = all(path.is_relative_to(Path.cwd()) for path in paths.values())
+    base = Path.cwd() if is_here else Path("/")
     names = {name: path.relative_to(base).as_posix() for name, path in paths.items()}
     patch, by_hand = patch_of((estimate for estimate in estimates if estimate.is_contradicted), files, names)
     return Calibration(
@@ -97,6 +96,7 @@ def calibrate(
         estimates=estimates,
         skipped=draws.skipped,
         patch=patch,
+        patch_folder="." if is_here else "/",
         by_hand=(*by_hand, *_not_proposed(estimates)),
     )
 

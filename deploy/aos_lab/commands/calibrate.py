@@ -74,8 +74,7 @@ def calibrate(
         return
     print_calibration(result)
     if write is not None and result.patch:
-        is_here = Path(result.patch.split("\n", 1)[0].removeprefix("--- a/")).exists()
-        by = f"git apply {write}" if is_here else f"git -C / apply {write.absolute()}"
+        by = f"git apply {write}" if result.patch_folder == "." else f"git -C / apply {write.absolute()}"
         typer.echo(f"the patch is in {write}; apply it with `{by}`")
 
 

@@ -1,6 +1,7 @@
 """The metrics of missions by name, and what a decision record adds to them."""
 
 from aos_gateway.exposition import Counter, Family, Gauge, Histogram
+from aos_protocol.errors import ANOTHER_MAY_MOVE
 from aos_protocol.messages import DecisionRecord
 
 _SECONDS = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
@@ -63,7 +64,7 @@ class Families:
         self.activations.add(robot=robot, skill=record.skill)
         code = "" if record.outcome.fault is None else record.outcome.fault.code
         has_failed = record.outcome.status != "observed" or code != ""
-        if has_failed and code != "AOS512":  # The failure is that of an earlier skill, and was counted.
+        if has_failed and code != ANOTHER_MAY_MOVE:
             self.failures.add(robot=robot, skill=record.skill, status=record.outcome.status)
         if record.is_impossible:
             self.impossible.add(robot=robot, skill=record.skill)

@@ -3,7 +3,7 @@
 import asyncio
 from abc import ABC, abstractmethod
 from collections.abc import AsyncIterator
-from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
 from pathlib import Path
 
 import msgspec
@@ -83,16 +83,12 @@ class Run(ABC):
 
     async def beginning(self, mission: str) -> MissionState:
         """The state of a mission of a system that runs, which has no record of it yet."""
-        try:
+        with suppress(AosError, TimeoutError):  # Its services may start only now.
             async with asyncio.timeout(_BEGINNING_S), self.client() as client:
                 state = await client.mission_state()
-        except (AosError, TimeoutError):
-            state = None  # Its services start.
-        return (
-            state
-            if state is not None and state.mission == mission
-            else MissionState(mission, "waiting", 0, 0.0)
-        )
+                if state.mission == mission:
+                    return state
+        return MissionState(mission, "waiting", 0, 0.0)
 
     async def parameters(self, mission: str) -> dict[str, str]:
         """The values of a mission's parameters; none where they are not known."""

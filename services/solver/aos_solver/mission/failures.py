@@ -8,6 +8,7 @@ from typing import Literal
 
 import msgspec
 
+from aos_protocol.errors import ANOTHER_MAY_MOVE
 from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.mission.setting_aside import SettingAside
 
@@ -48,7 +49,6 @@ class FailureRules(msgspec.Struct, frozen=True, kw_only=True):
 
 
 _USUAL = SkillRule()
-_ANOTHER_MAY_MOVE = "AOS512"
 
 
 class Failures:
@@ -147,7 +147,7 @@ class Failures:
         Where an activation is refused because another skill may still be moving, that is the last one that
         was called, since nothing is called after it until it stands still.
         """
-        if outcome.fault is None or outcome.fault.code != _ANOTHER_MAY_MOVE:
+        if outcome.fault is None or outcome.fault.code != ANOTHER_MAY_MOVE:
             if outcome.status not in ("refused", "failed"):
                 self._may_move = outcome.skill, outcome.status
             return outcome.skill, outcome.status

@@ -1,0 +1,148 @@
+"""Each mistake is told once, brings no other finding, and hides none."""
+
+import json
+
+import pytest
+from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
+from texts import encoded
+
+from aos_language.load import load_files
+from aos_protocol.diagnostics import Severity
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "word"),
+    [
+        (("environment", "horizon: 4", "horizon 4"), 2, "horizon"),
+        (("environment", "state_variable: Cell second", "state_variable Cell second"), 11, "state_variable"),
+        (("environment", "initial_belief:", "initial_belief"), 19, "initial_belief"),
+        (("environment", "reward_code:", "reward_code  "), 22, "reward_code"),
+        (("skill", "parameter: int", "parameter int"), 2, "parameter"),
+        (("skill", "dynamic_model:", "dynamic_model"), 8, "dynamic_model"),
+        (("skill", "violate_penalty: -1", "violate_penalty -1"), 6, "violate_penalty"),
+        (("mapping", "module_activation: skill", "module_activation skill"), 5, "module_activation"),
+        (("mapping", "local_variable: steps", "local_variable steps"), 11, "local_variable"),
+        (("mapping", "response_rule: True", "response_rule True"), 3, "response_rule"),
+    ],
+)
+def test_a_missing_colon_is_one_error(text: tuple[str, str, str], line: int, word: str) -> None:
+    document, before, after = text
+    whole = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}[document]
+    (only,) = finding_texts(**{document: whole.replace(before, after)})
+    assert only == f"{line} AOS104 a colon is missing after `{word}`. Write `{word}:`"
+
+
+@pytest.mark.parametrize(
+    ("file", "before", "after", "skills"),
+    [
+        ("hall.ef", "reward_code:", "reward_code", ["run", "walk"]),
+        ("hall.ef", "reward_code:", "rewrad_code:", ["run", "walk"]),
+        ("walk.sd", "project: hall\n", "a line\nproject: hall\n", ["run"]),
+        ("hall.ef", "project: hall\n", "a line\nproject: hall\n", []),
+    ],
+)
+def test_the_compiler_may_tell_of_all_but_declarations_that_are_wrong(
+    file: str, before: str, after: str, skills: list[str]
+) -> None:
+    files = {"hall.ef": ENVIRONMENT, "walk.sd": SKILL, "run.sd": SKILL, "walk.am": MAPPING}
+    files[file] = files[file].replace(before, after)
+    loaded = load_files(encoded(files))
+    assert loaded.has_errors
+    assert [skill.name for skill in loaded.draft.skills] == skills if loaded.draft else not skills
+
+
+def test_a_condition_that_sets_what_may_only_be_read_is_one_error() -> None:
+    (only,) = found(environment=ENVIRONMENT.replace("state.second.x == 3", "state.second.x = 3"))
+    assert (only.code, only.hint) == ("AOS123", "It may only be read. To compare, write `==`")
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (
+            "__reward = -1,5;",
+            "9 AOS149 the number behind this comma does nothing. A decimal is written with a point",
+        ),
+        (
+            "if (AOS.Bernoulli(0,3)) __reward = 1;",
+            "9 AOS110 `AOS.Bernoulli` takes a probability, not 2 values. A decimal is written with a point",
+        ),
+        (
+            "__reward = AOS.SampleNormal(1);",
+            "9 AOS110 `AOS.SampleNormal` takes a mean and a deviation, not 1 value. ",
+        ),
+        (
+            "if state.first.x > 0:\n    __reward = 1\nelse:\n    __reward = 2",
+            "9 AOS108 `if ...:` is Python. The model's code is C++: `if (...) { ... } else { ... }`",
+        ),
+        (
+            "int x = 3\n__reward = x;",
+            "9 AOS108 unexpected '3' in C++. Is a semicolon missing at the end of this line?",
+        ),
+    ],
+)
+def test_what_other_languages_write_is_told_once(code: str, told: str) -> None:
+    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == [told]
+
+
+@pytest.mark.parametrize("name", ["__reward", "2fast", "__LINE__"])
+def test_a_refused_name_is_told_once(name: str) -> None:
+    block = f"assignment:\ntemporary_variable: int {name}\ncode:\nint n = {name};\nassignment:\ncode:\n"
+    (only,) = found(environment=ENVIRONMENT.replace("initial_belief:\n", f"initial_belief:\n{block}"))
+    assert only.code == "AOS126"
+
+
+def test_code_that_uses_a_variable_with_a_refused_name_is_not_wrong_as_well() -> None:
+    codes = {finding.code for finding in found(environment=ENVIRONMENT.replace("near", "__reward"))}
+    assert codes == {"AOS126"}
+
+
+def test_a_number_that_cannot_be_read_hides_no_other_mistake_and_brings_no_remark() -> None:
+    header = {"Project": "hall", "Name": "environment", "Type": "Environment"}
+    special = {"StateConditionCode": "state.second.y == 3", "Reward": "much", "IsGoalState": True}
+    environment = {
+        "PlpMain": header,
+        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
+        "GlobalVariableTypes": [],
+        "GlobalVariablesDeclaration": [{"Name": "second", "Type": "int", "Default": "1"}],
+        "SpecialStates": [special],
+    }
+    skill = {
+        "PlpMain": {**header, "Name": "walk", "Type": "PLP"},
+        "Preconditions": {
+            "GlobalVariablePreconditionAssignments": [
+                {"AssignmentCode": "__meetPrecondition = state.second > 0;"}
+            ],
+            "ViolatingPreconditionPenalty": "a lot",
+        },
+        "DynamicModel": {"NextStateAssignments": [{"AssignmentCode": "state__.second = 3;"}]},
+    }
+    files = {"environment.json": json.dumps(environment), "walk.json": json.dumps(skill)}
+    told = [finding.code for finding in load_files(encoded(files)).diagnostics]
+    assert sorted(told) == ["AOS106", "AOS106", "AOS110"]
+
+
+def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told() -> None:
+    mapping = MAPPING.replace("parameter: steps\ncode:\nsteps\n", "parameter: steps\ncode:\nsteps\n" * 2)
+    mapping = mapping.replace("local_variable: steps\n", "local_variable: steps\ntype: imt\n")
+    assert finding_texts(mapping=mapping) == [
+        "12 AOS126 a second value for the field `steps` of the call. Take one of the two out",
+        "14 AOS110 unknown type `imt` of the local variable steps. Did you mean `int`?",
+    ]
+
+
+def test_names_to_import_that_are_no_list_are_one_error() -> None:
+    mapping = {
+        "PlpMain": {"Project": "hall", "Name": "walk", "Type": "Glue"},
+        "ModuleActivation": {"Skill": {"ServicePath": "/walk", "ImportCode": [{"From": "m", "Import": "N"}]}},
+    }
+    files = {"hall.ef": ENVIRONMENT, "walk.sd": SKILL, "walk.json": json.dumps(mapping)}
+    errors = [each for each in load_files(encoded(files)).diagnostics if each.severity is Severity.ERROR]
+    assert [each.message for each in errors if each.span.file == "walk.json"] == [
+        '"Import" must be a list, not a string'
+    ]
+
+
+def test_a_misspelt_truth_of_a_source_is_one_error() -> None:
+    mapping = MAPPING + "\nlocal_variable: ok\nfrom_ros_service_response: ture\ncode:\nok = __input.ok\n"
+    assert [told.split(" ", 2)[1] for told in finding_texts(mapping=mapping)] == ["AOS106"]
