@@ -28,7 +28,6 @@ from .photo import Photo, photo, photo_rule
 from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
-from .screws import Screws, screws, screws_rule
 from .sorting import Sorting, sorting, sorting_rule
 from .tabletop import Tabletop, tabletop, tabletop_rule
 from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
@@ -39,7 +38,6 @@ _STEPS = 120  # at most, in a mission
 
 _SINGLE = {
     "inspection": inspection,
-    "screws": screws,
     "rescue": rescue,
     "tabletop": tabletop,
     "lock": lock,
@@ -56,7 +54,6 @@ _SIZES = (
     | LEAVING_SIZES
     | {
         "inspection": 16,
-        "screws": 10,
         "rescue": 3,
         "tabletop": 5,
         "lock": 5,
@@ -73,7 +70,6 @@ _RULES = (
     | LEAVING_RULES
     | {
         "inspection": inspection_rule,
-        "screws": screws_rule,
         "rescue": rescue_rule,
         "tabletop": tabletop_rule,
         "lock": lock_rule,
@@ -86,7 +82,6 @@ _WORLDS = (
     TOGETHER_WORLDS
     | LEAVING_WORLDS
     | {
-        "screws": Screws,
         "rescue": Rescue,
         "tabletop": Tabletop,
         "lock": Lock,

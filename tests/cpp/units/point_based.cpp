@@ -110,6 +110,33 @@ TEST("The best of the simple policies listens to the tiger, and returns less tha
   EXPECT(work > 0);
 }
 
+TEST("A simple policy decides with a standard error above the bound, and with less if it decided last") {
+  // A look for 4 tells whether to take 10, or to end. To take without it loses 100.
+  Problem problem = units::world(3, 3, 0.9);
+  problem.starts = {{0, 0.5}, {1, 0.5}};
+  problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
+  problem.endings[2] = 1;
+  for (std::uint32_t state = 0; state < 2; ++state) {
+    units::row(problem, state, 0) = {{1.0, state, state, -4.0}};
+    units::row(problem, state, 1) = {{1.0, 2, 0, state == 0 ? 10.0 : -100.0}};
+    units::row(problem, state, 2) = {{1.0, 2, 0, 0.0}};
+  }
+  int decided[] = {0, 0};
+  for (int odds = 44; odds < 70; ++odds) {
+    for (const bool has_decided : {false, true}) {
+      point_based::OnlineSarsop search{flat_model(problem)};
+      std::uint64_t work = 0;
+      search.move_to({{0, 0.9}, {1, 0.1}});
+      if (has_decided) EXPECT(search.best_policy(10, 0, never, work).has_value());
+      search.move_to({{0, 0.01 * odds}, {1, 1 - 0.01 * odds}});
+      const auto policy = search.best_policy(10, 0, never, work);
+      decided[has_decided] += policy.has_value();
+      EXPECT(!policy || policy->value - (has_decided ? 0 : policy->standard_error) > search.bounds().first);
+    }
+  }
+  EXPECT(0 < decided[0] && decided[0] < decided[1] && decided[1] < 26);
+}
+
 TEST("A belief of states that no start leads to is refused") {
   Problem problem = units::world(4, 1, 0.9);
   problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};

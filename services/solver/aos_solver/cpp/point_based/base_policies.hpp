@@ -7,7 +7,8 @@
 //   the reward, a share of what follows if more is known from then on (QMDP: Littman, Cassandra and Kaelbling, 1995), and
 //   a weight times the mutual information between the state and the next observation.
 //
-// Missions are played by each policy from the belief. The better half goes on, until one is left.
+// Missions are played by each policy from the belief, in turns. The better half goes on, until one is left. So does the policy
+// that decided last.
 #pragma once
 
 #include <algorithm>
@@ -35,29 +36,42 @@ class BasePolicies {
   }
 
   // The policy that returns most from a node's belief over `steps` decisions, and what it returns; none if too few missions
-  // were played when `is_over()` came. `is_late()` also breaks off the last one. Where it `decides_anew`, each decision has the
-  // whole horizon to go. `uniform()` draws.
+  // were played when `is_over()` came. `is_late()` also breaks off the last one. `uniform()` draws. Where it `decides_anew`, each
+  // decision has the whole horizon to go. Else it must return more than the lower bound by a standard error, or by anything if
+  // it was found last.
   template <class IsOver, class IsLate, class Uniform>
   std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, IsOver&& is_over, IsLate&& is_late,
                                   Uniform&& uniform) {
     decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     std::vector<Candidate> candidates;
-    for (const Policy& policy : policies_) candidates.push_back({{policy.share, policy.weight * worth}});
-    std::size_t missions = fewest_missions;
+    for (const Policy& policy : policies_) candidates.push_back({&policy, policy.weight * worth});
+    std::size_t missions = first_missions;
     while (true) {
-      for (Candidate& candidate : candidates) {
-        for (std::size_t i = 0; i < missions && !is_over(); ++i) play(node, candidate, steps, is_late, uniform);
+      for (std::size_t i = 0; i < missions; ++i) {
+        for (Candidate& candidate : candidates) {
+          if (!is_over()) play(node, candidate, steps, is_late, uniform);
+        }
       }
       std::stable_sort(candidates.begin(), candidates.end(),
                        [](const Candidate& one, const Candidate& other) { return one.returns.mean() > other.returns.mean(); });
-      if (is_over() || candidates.size() == 1) return value_of(candidates.front());
-      candidates.resize(candidates.size() / 2);
-      // The mean of the best of several is too high. What the last one returns is found anew.
-      if (candidates.size() == 1) candidates.front().returns = {};
-      missions = candidates.size() == 1 ? most_missions : 2 * missions;
+      if (is_over() || missions == most_missions) {
+        return decides_anew ? value_of(candidates.front()) : decider(candidates.front(), node.lower);
+      }
+      const std::size_t half = candidates.size() / 2;
+      std::size_t place = 0;
+      std::erase_if(candidates, [&](const Candidate& candidate) {
+        return place++ >= half && (decides_anew || candidate.policy != last_);
+      });
+      missions = half > 1 ? 2 * missions : most_missions;
+      if (half > 1) continue;
+      // The mean of the best of several is too high. What the last ones return is found anew.
+      for (Candidate& candidate : candidates) candidate.returns = {};
     }
   }
+
+  // Forgets which policy was found last.
+  void start_over() { last_ = nullptr; }
 
  private:
   struct Policy {
@@ -70,7 +84,8 @@ class BasePolicies {
     double error() const { return std::sqrt(std::max(squares / count - mean() * mean(), 0.0) / (count - 1)); }
   };
   struct Candidate {
-    Policy policy;
+    const Policy* policy;
+    double weight;  // of a nat
     Returns returns{};
     std::uint32_t first = 0;  // its action at the belief where missions begin
   };
@@ -81,6 +96,14 @@ class BasePolicies {
     const Returns& returns = candidate.returns;
     if (returns.count < static_cast<double>(fewest_missions)) return std::nullopt;
     return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count, returns.error()};
+  }
+
+  // As `value_of`, where it decides.
+  std::optional<PolicyValue> decider(const Candidate& candidate, double least) {
+    std::optional<PolicyValue> found = value_of(candidate);
+    if (found && found->value - (candidate.policy == last_ ? 0 : found->standard_error) <= least) found.reset();
+    last_ = found ? candidate.policy : nullptr;
+    return found;
   }
 
   // Plays a mission, which counts if it ends before `is_late()`. What comes after its steps counts as the lower bound there, where
@@ -94,7 +117,7 @@ class BasePolicies {
     for (std::size_t step = 0; step < steps; ++step) {
       const std::uint32_t passed = graph_.is_endless() || decides_anew_ ? 0 : static_cast<std::uint32_t>(step);
       const std::uint32_t left = start.left - passed;
-      if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate.policy, is_late);
+      if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate, is_late);
       if (is_late()) return;
       if (step == 0) candidate.first = action;
       const Move& move = regions_.all[region].moves[action];
@@ -128,7 +151,7 @@ class BasePolicies {
 
   // The action that a policy takes; any one if `is_late()` comes first.
   template <class IsLate>
-  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Policy& policy, IsLate&& is_late) {
+  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, IsLate&& is_late) {
     const std::vector<double> informed = graph_.informed_values(region, left, belief);
     graph_.count_work(model_.actions * belief.size());
     std::uint32_t best = 0;
@@ -136,8 +159,8 @@ class BasePolicies {
     for (std::uint32_t action = 0; action < model_.actions && !is_late(); ++action) {
       const Move& move = regions_.all[region].moves[action];
       const double reward = expected(move.rewards, belief);
-      double merit = reward + policy.share * (informed[action] - reward);
-      if (policy.weight > 0) merit += policy.weight * information(belief, region, action);
+      double merit = reward + candidate.policy->share * (informed[action] - reward);
+      if (candidate.weight > 0) merit += candidate.weight * information(belief, region, action);
       if (merit <= highest) continue;
       highest = merit;
       best = action;
@@ -182,6 +205,7 @@ class BasePolicies {
   BeliefGraph& graph_;
   Posterior posterior_;
   bool decides_anew_ = false;
+  const Policy* last_ = nullptr;  // that decided, if one did at the last search
   std::vector<std::vector<double>> doubts_;  // [region * actions + action]
 };
 

@@ -39,9 +39,10 @@ inline constexpr double nearly_closed_share = 0.05;
 
 // --- simple policies ---------------------------------------------------------------------------------
 
-// Missions by each policy, and by the last one that is left.
+// Missions that tell a mean, those by each policy at first, and those by the last one that is left.
 inline constexpr std::size_t fewest_missions = 4;
-inline constexpr std::size_t most_missions = 32;
+inline constexpr std::size_t first_missions = 8;
+inline constexpr std::size_t most_missions = 64;
 
 // --- limits ------------------------------------------------------------------------------------------
 

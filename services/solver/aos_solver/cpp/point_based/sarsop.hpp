@@ -60,6 +60,7 @@ class Sarsop {
     graph_.start_over();
     backups_.vectors_added = 0;
     patience_ = 1;
+    policies_.start_over();
     trial_.start_over();
   }
 

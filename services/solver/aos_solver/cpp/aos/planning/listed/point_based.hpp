@@ -194,7 +194,6 @@ class PointBased {
   void try_policies(Operations most, const point_based::OnlineSarsop::IsOver& is_over, Operations& work) {
     const Operations before = work;
     policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most, is_over, work);
-    if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
     if (policy_) policy_tries_.succeed();
     else if (work > before) policy_tries_.fail();
   }
