@@ -36,15 +36,14 @@ def main() -> int:
 
 def pins(requirements: str) -> list[str]:
     """The packages with their versions and conditions, as the lines of a lock file have them."""
-    return [line.removesuffix(" \\") for line in requirements.splitlines() if "==" in line]
+    return [line.partition(" --hash=")[0] for line in requirements.splitlines()]
 
 
 def requirement(package: dict[str, Any]) -> str:
-    """The lines of a lock file for a package of a pylock file."""
+    """The line of a lock file for a package of a pylock file."""
     condition = f" ; {package['marker']}" if "marker" in package else ""
-    lines = [f"{package['name']}=={package['version']}{condition}"]
-    lines += sorted(f"--hash=sha256:{digest}" for digest in digests(package))
-    return " \\\n    ".join(lines) + "\n"
+    hashes = (f" --hash=sha256:{digest}" for digest in sorted(digests(package)))
+    return f"{package['name']}=={package['version']}{condition}{''.join(hashes)}\n"
 
 
 def digests(package: dict[str, Any]) -> Iterator[str]:

@@ -74,11 +74,7 @@ def speed() -> str:
     return "\n".join([f"`{' '.join(SPEED)}`, commit {_commit()}.", *lines])
 
 
-FIGURES = {
-    "checking": partial(measured, CHECKING),
-    "speed": speed,
-    "histories": partial(measured, HISTORIES),
-}
+FIGURES = {"checking": partial(measured, CHECKING), "speed": speed, "histories": partial(measured, HISTORIES)}
 
 
 def _printed(command: tuple[str, ...]) -> str:

@@ -55,11 +55,7 @@ _KINDS = {
         value="note",
         ready_s=600.0,  # It compiles the model.
     ),
-    PYTHON: Kind(
-        adapter="aos_skills.python_functions:PythonAdapter",
-        value="file",
-        ready_s=1.0,
-    ),
+    PYTHON: Kind(adapter="aos_skills.python_functions:PythonAdapter", value="file", ready_s=1.0),
     "ros2": Kind(
         adapter="aos_skills.ros.adapter:Ros2Adapter",
         value="router",

@@ -63,11 +63,7 @@ def read_deploy_file(path: Path) -> Deployment:
         if file is not None:
             deployment = _resolve(absolute(path), file, node, findings)
     if deployment is None or findings.has_errors:
-        raise DeployError(
-            f"the deploy file {named} has errors",
-            code="AOS801",
-            diagnostics=findings.sorted(),
-        )
+        raise DeployError(f"the deploy file {named} has errors", code="AOS801", diagnostics=findings.sorted())
     return deployment
 
 

@@ -16,10 +16,7 @@ def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool)
     fault = run.fault(name)
     if fault is not None:
         return error_from_code(
-            fault.code,
-            f"{name}: {fault.message}",
-            hint=fault.hint,
-            diagnostics=fault.diagnostics,
+            fault.code, f"{name}: {fault.message}", hint=fault.hint, diagnostics=fault.diagnostics
         )
     if program.host and (failed := why_it_failed(name, program.host, status, run.last_log_lines(name))):
         return failed

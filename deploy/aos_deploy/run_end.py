@@ -37,12 +37,7 @@ def beginning_of(run: Path) -> MissionBegun | None:
 
 
 def settled(
-    run: Path,
-    heard: Account,
-    *,
-    stopped_by: AosError | None,
-    was_interrupted: bool,
-    mission: str = "",
+    run: Path, heard: Account, *, stopped_by: AosError | None, was_interrupted: bool, mission: str = ""
 ) -> tuple[Verdict, StorageError | None]:
     """The verdict on a run whose processes are gone, and why the journal has not all of it, if it has not.
 

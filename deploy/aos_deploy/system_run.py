@@ -71,11 +71,7 @@ class SystemRun(MissionRun):
         folder = mission_folder(self._run.path, entry.number)
         stopped_by = self.error if not entry.ended_ns or entry.ending == "fault" else None
         verdict, lacking = settled(
-            folder,
-            self._heard,
-            stopped_by=stopped_by,
-            was_interrupted=was_interrupted,
-            mission=entry.mission,
+            folder, self._heard, stopped_by=stopped_by, was_interrupted=was_interrupted, mission=entry.mission
         )
         self.error = self.error or lacking
         summary = msgspec.structs.replace(

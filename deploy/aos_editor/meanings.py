@@ -34,10 +34,7 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
         "project": (_PROJECT, {}),
         "version": (_VERSION, {}),
         "horizon": ("How many decisions the search looks ahead, from each new step.", {}),
-        "discount": (
-            "What a reward one step later is worth, at most 1; 0.9999 if not given.",
-            {},
-        ),
+        "discount": ("What a reward one step later is worth, at most 1; 0.9999 if not given.", {}),
         "define_type": (
             "A type: an enum if it has `enum_members:`, else a compound.",
             {
@@ -65,10 +62,7 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             _PARAMETER_PARTS,
         ),
         "one_state_model": ("`true`: `state`, `state_` and `state__` are one and the same.", {}),
-        "initial_belief": (
-            "Draws one state of the belief at the start; the last one counts.",
-            _BLOCK_PARTS,
-        ),
+        "initial_belief": ("Draws one state of the belief at the start; the last one counts.", _BLOCK_PARTS),
         "reward_code": (
             "A special state: looks at the state after the step; may set `__reward`, `__isGoalState`, "
             "`__isFailureState` and `__stopEvaluatingState`.",
@@ -114,14 +108,8 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             "When the skill may be used: sets `__meetPrecondition`, which starts as true.",
             _BLOCK_PARTS,
         ),
-        "violate_penalty": (
-            "Added to the reward where the precondition is not met.",
-            {},
-        ),
-        "rollout_policy": (
-            "The skill's weight in random play-outs: sets `__heuristicValue`.",
-            _BLOCK_PARTS,
-        ),
+        "violate_penalty": ("Added to the reward where the precondition is not met.", {}),
+        "rollout_policy": ("The skill's weight in random play-outs: sets `__heuristicValue`.", _BLOCK_PARTS),
         "execution_time": ("How long the skill takes: sets `__moduleExecutionTime`.", _BLOCK_PARTS),
         "dynamic_model": (
             "What the skill does: writes `state__`, `__reward` and `__moduleResponse`.",
@@ -143,10 +131,7 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
                 "value": "The new low-level value: a Python expression over local variables.",
             },
         ),
-        "response_local_variable": (
-            "The local variable whose text is the response.",
-            {},
-        ),
+        "response_local_variable": ("The local variable whose text is the response.", {}),
         "monitor": (
             "In place of `module_activation:`: the monitor of the environment document that this mapping is.",
             {},

@@ -73,10 +73,7 @@ def _shared(project: Project) -> tuple[object, ...]:
 
 
 def _has_name(document: Document) -> bool:
-    return bool(document.identity[1]) or document.kind in (
-        DocumentKind.ENVIRONMENT,
-        DocumentKind.LOW_LEVEL,
-    )
+    return bool(document.identity[1]) or document.kind in (DocumentKind.ENVIRONMENT, DocumentKind.LOW_LEVEL)
 
 
 def _not_higher(new: Document, old: Document) -> list[Diagnostic]:

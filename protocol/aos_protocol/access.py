@@ -56,11 +56,7 @@ TABLE: tuple[Row, ...] = (
     Row("bundle/push", asks=(OPERATOR,), answers=(REGISTRY,)),
     Row("bundle/remove", asks=(OPERATOR,), answers=(REGISTRY,)),
     Row("bundle/history", asks=(OPERATOR, WATCHER), answers=(REGISTRY,)),
-    Row(
-        "bundle/project",
-        asks=(MIDDLEWARE, SOLVER, ADAPTER, OPERATOR, WATCHER),
-        answers=(REGISTRY,),
-    ),
+    Row("bundle/project", asks=(MIDDLEWARE, SOLVER, ADAPTER, OPERATOR, WATCHER), answers=(REGISTRY,)),
     Row("bundle/list", asks=(OPERATOR, WATCHER), answers=(REGISTRY,)),
     Row("bundle/announced", tells=(REGISTRY,), hears=(MIDDLEWARE, SOLVER, ADAPTER, OPERATOR, WATCHER)),
     Row("bundle/report", tells=(REGISTRY,), hears=(OPERATOR, WATCHER)),

@@ -200,9 +200,5 @@ def _path(path: str) -> str:
 
 def _checked(pattern: re.Pattern[str], text: str, what: str) -> str:
     if not pattern.fullmatch(text):
-        raise BusError(
-            f"{text!r} is not a {what}",
-            code="AOS602",
-            hint=f"A {what} matches {pattern.pattern}",
-        )
+        raise BusError(f"{text!r} is not a {what}", code="AOS602", hint=f"A {what} matches {pattern.pattern}")
     return text

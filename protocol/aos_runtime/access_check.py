@@ -37,9 +37,7 @@ class Access:
         """Raises BusError AOS608 where the router would say nothing and deny it."""
         if not self.allows(act, key):
             raise BusError(
-                f"{self._party.name} may not {_WORDS[act]} {key}",
-                code="AOS608",
-                hint=_hint(self._party, act),
+                f"{self._party.name} may not {_WORDS[act]} {key}", code="AOS608", hint=_hint(self._party, act)
             )
 
 

@@ -37,11 +37,7 @@ _COMMON: dict[str, Any] = {
 
 
 def client_config(
-    endpoint: str,
-    *,
-    credential: Credential | None = None,
-    lease_s: float = LEASE_S,
-    stamps: bool = False,
+    endpoint: str, *, credential: Credential | None = None, lease_s: float = LEASE_S, stamps: bool = False
 ) -> zenoh.Config:
     """A client of the router at `endpoint`, such as `tcp/127.0.0.1:7447`. Opening it tries once.
 
@@ -99,8 +95,6 @@ def _config(
 def _checked(endpoint: str) -> str:
     if not _ENDPOINT.fullmatch(endpoint):
         raise BusError(
-            f"{endpoint!r} is not a bus endpoint",
-            code="AOS605",
-            hint="Write it as tcp/127.0.0.1:7447",
+            f"{endpoint!r} is not a bus endpoint", code="AOS605", hint="Write it as tcp/127.0.0.1:7447"
         )
     return endpoint

@@ -268,11 +268,7 @@ class AosClient(SteeringQuestions):
                 yield event
 
     async def follow(
-        self,
-        *,
-        away_s: float | None = SOLVER_AWAY_S,
-        begins_s: float | None = None,
-        stays: bool = False,
+        self, *, away_s: float | None = SOLVER_AWAY_S, begins_s: float | None = None, stays: bool = False
     ) -> AsyncGenerator[DecisionRecord | MissionState | BundleReport, None]:
         """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
         bundles.

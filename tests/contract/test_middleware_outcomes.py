@@ -181,9 +181,7 @@ async def test_the_activations_deadline_counts_where_it_is_shorter(system: Syste
     assert system.adapter.calls[0].deadline_s <= 0.4
 
 
-async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(
-    system: System,
-) -> None:
+async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(system: System) -> None:
     project = system.registry.current.project
     text = SENSE.replace("level <= 3", "level < 0")
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
@@ -228,9 +226,7 @@ async def test_mapping_code_that_fails_during_the_call_does_not_end_the_call(sys
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS401")
 
 
-async def test_parameters_that_the_mapping_does_not_find_are_a_failure_without_a_call(
-    system: System,
-) -> None:
+async def test_parameters_that_the_mapping_does_not_find_are_a_failure_without_a_call(system: System) -> None:
     await system.adapter.serve("/navigate", succeed)
     outcome = await system.activate("navigate", parameters={"destination": {"x": 1.0}})
     assert outcome.fault is not None

@@ -245,10 +245,7 @@ async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: st
         running = asyncio.create_task(
             node.run_action(
                 ActionRequest(
-                    "/lab/fibonacci",
-                    {"order": 1000},
-                    timeout_s=HANG_S,
-                    on_feedback=lambda _: started.set(),
+                    "/lab/fibonacci", {"order": 1000}, timeout_s=HANG_S, on_feedback=lambda _: started.set()
                 )
             )
         )

@@ -89,9 +89,7 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path)
         await robot.stop()
 
 
-async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(
-    robot: Robot,
-) -> None:
+async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(robot: Robot) -> None:
     await robot.start()
     async with robot.bus.listen(robot.keys.topic("/gripper"), TopicMessage) as gripper:
         result = await robot.call("/sense")

@@ -94,9 +94,7 @@ def _add_models(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
             command.add_argument("--time", type=float, default=0.5, metavar="SECONDS", help="of solving")
         if name in ("regret", "values"):
             command.add_argument(
-                "--planner",
-                action="append",
-                help="auto, pomcp, despot, sarsop, options, look-ahead",
+                "--planner", action="append", help="auto, pomcp, despot, sarsop, options, look-ahead"
             )
             command.add_argument("--seconds", type=float, help="of processor time for a decision; 0.1")
             missions = 4 if name == "regret" else 30

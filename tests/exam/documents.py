@@ -44,10 +44,7 @@ def documents(seed: int) -> Documents:
     share = source.choice((0.3, 0.4, 0.8))
     moves: dict[str, list[str]] = {"state_": [], "state__": []}
     used = []
-    for before, after in [
-        *pairwise(registers),
-        *((source.choice(registers), d) for d in dead),
-    ]:
+    for before, after in [*pairwise(registers), *((source.choice(registers), d) for d in dead)]:
         state = "state_" if source.random() < 0.25 else "state__"
         name, code = _some_idiom(source, before, after, state)
         used.append(name)

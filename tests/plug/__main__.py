@@ -40,9 +40,7 @@ PARTS: Mapping[str, Part] = {
 
 def main() -> int:
     parser = argparse.ArgumentParser(
-        prog="python -m tests.plug",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog="python -m tests.plug", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     commands = parser.add_subparsers(dest="part")
     for name, part in PARTS.items():

@@ -80,10 +80,7 @@ def test_every_module_of_it_can_be_imported(which: str, request: pytest.FixtureR
 
 @pytest.mark.parametrize("which", ["python", "humble_python"])
 def test_an_adapter_of_it_runs_a_mission(
-    which: str,
-    request: pytest.FixtureRequest,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    which: str, request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     python = request.getfixturevalue(which)
     monkeypatch.chdir(tmp_path)

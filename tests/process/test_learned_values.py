@@ -164,9 +164,7 @@ async def _why(documents: dict[str, str], cache_dir: Path) -> str:
         return (await engine.plan(simulations=500, seed=3, planner="pomcp")).why
 
 
-async def test_values_of_a_million_states_are_computed(
-    cache_dir: Path,
-) -> None:
+async def test_values_of_a_million_states_are_computed(cache_dir: Path) -> None:
     why = await _why(SHELVES, cache_dir)
     assert f"without observations all {16 * 2**16} can be" in why
 

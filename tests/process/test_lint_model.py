@@ -103,11 +103,7 @@ A compiler that does not check divisions derives that `left` is 1.
 
 @pytest.mark.parametrize(("code", "error_code", "text"), FAULTS, ids=["segfault", "division"])
 def test_a_fault_of_model_code_names_its_document_line(
-    hall: Callable[..., Path],
-    monkeypatch: pytest.MonkeyPatch,
-    code: str,
-    error_code: str,
-    text: str,
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, code: str, error_code: str, text: str
 ) -> None:
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     result = aos("plan", hall(code), "--time", "0.1")
@@ -129,15 +125,10 @@ REACHED = [
 
 
 @pytest.mark.parametrize(
-    ("code", "error_code"),
-    REACHED,
-    ids=["exception", "loop", "behind the goal", "draws", "drawn"],
+    ("code", "error_code"), REACHED, ids=["exception", "loop", "behind the goal", "draws", "drawn"]
 )
 def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
-    hall: Callable[..., Path],
-    monkeypatch: pytest.MonkeyPatch,
-    code: str,
-    error_code: str,
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, code: str, error_code: str
 ) -> None:
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     severity, place, _ = linted(hall(code), exit_code=1)[error_code]
@@ -235,10 +226,7 @@ def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_exten
 ) -> None:
     found = linted(hall("state__.place = (state.place + 1) % 5;", goal="7", door="6"))
     extent = "Looked at all that can be reached, 5 states, up to 4 actions from the start"
-    assert found == {
-        "AOS132": ("warning", "hall.ef:10", extent),
-        "AOS131": ("warning", "open.sd:4", extent),
-    }
+    assert found == {"AOS132": ("warning", "hall.ef:10", extent), "AOS131": ("warning", "open.sd:4", extent)}
 
 
 def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(hall: Callable[..., Path]) -> None:

@@ -70,9 +70,7 @@ def master(tmp_path: Path) -> Iterator[str]:
 def up(arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
     """An aos-up that prints JSON events; it is stopped as by Ctrl-C."""
     with subprocess.Popen(
-        [str(BIN / "aos-up"), "--json", *arguments],
-        stdout=subprocess.PIPE,
-        text=True,
+        [str(BIN / "aos-up"), "--json", *arguments], stdout=subprocess.PIPE, text=True
     ) as process:
         try:
             yield process

@@ -117,9 +117,7 @@ async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tige
     assert violations(around) == []
 
 
-async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(
-    tiger: BuiltModel,
-) -> None:
+async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(tiger: BuiltModel) -> None:
     around = Steered()
     wishes = in_turn(lambda: None, lambda: around.steer("hold"), lambda: None, *[lambda: None] * 9)
     told: list[MissionState] = []

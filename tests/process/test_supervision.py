@@ -188,10 +188,7 @@ async def test_a_killed_system_leaves_no_grandchildren(system: System) -> None:
 
 
 async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_serves(system: System) -> None:
-    async with (
-        asyncio.timeout(HANG_S),
-        system.up(small("registry"), command("python", "small_command.py")),
-    ):
+    async with asyncio.timeout(HANG_S), system.up(small("registry"), command("python", "small_command.py")):
         await system.until("robot", "ready")
     changes = [(event.service, event.state) for event in system.events]
     assert changes.index(("router", "ready")) < changes.index(("robot", "starting"))

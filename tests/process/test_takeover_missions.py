@@ -78,10 +78,7 @@ class Prepared(Search, frozen=True, kw_only=True):
 async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_more(cache_dir: Path) -> None:
     around = Plugged(hears_below)
     terms = Terms(name="m", search=Prepared(simulations=1, seed=1), limits=MissionLimits(step_limit=1))
-    async with (
-        engine_of_text(HALL, cache_dir) as before,
-        engine_of_text(with_peek(HALL), cache_dir) as after,
-    ):
+    async with engine_of_text(HALL, cache_dir) as before, engine_of_text(with_peek(HALL), cache_dir) as after:
         around.successor = Successor(RunningModel(2, after), SystemClock())
         state = await Mission(terms, RunningModel(1, before), around).run()
     assert (state.ending, state.remark) == ("step_limit", "the step limit of 1 is reached")

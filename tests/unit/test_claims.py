@@ -95,10 +95,7 @@ WORLD = trial(
     "pick > ok",
     "go > there",
     "serve > done",
-    states=(
-        '{"step": 1, "held": true}',
-        '{"step": 3, "held": false, "served": true}',
-    ),
+    states=('{"step": 1, "held": true}', '{"step": 3, "held": false, "served": true}'),
 )
 
 

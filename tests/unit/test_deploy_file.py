@@ -81,14 +81,7 @@ programs:
 """,
     )
     programs = programs_of_deployment(deployment)
-    assert [program.name for program in programs] == [
-        "registry",
-        "middleware",
-        "sim",
-        "nav",
-        "arm",
-        "solver",
-    ]
+    assert [program.name for program in programs] == ["registry", "middleware", "sim", "nav", "arm", "solver"]
     sim, nav = programs[2:4]
     assert (sim.command, sim.folder, sim.ready) == (("python", "sim.py"), str(folder), ReadyPart(port=5555))
     assert (sim.start_s, sim.stop_s, sim.on_exit, sim.is_restarted) == (5, 7, "restart", True)
@@ -113,28 +106,16 @@ programs:
             "AOS106 programs.nav.on_exit is stop; it must be fault, restart or ignore",
         ),
         ("{command: [a], ready: up}", "AOS106 programs.nav.ready is not a mapping of keys to values"),
-        (
-            "{command: [a], ready: {prot: 1}}",
-            "AOS102 unknown key programs.nav.ready.prot. Did you mean",
-        ),
+        ("{command: [a], ready: {prot: 1}}", "AOS102 unknown key programs.nav.ready.prot. Did you mean"),
         ("{command: [a], ready: {port: 0}}", "AOS106 programs.nav.ready.port is 0"),
         ("{command: [a], ready: {}}", "AOS106 programs.nav.ready says nothing. Give it one of port, line,"),
         ("{command: [a], ready: {port: 1, line: up}}", "AOS106 programs.nav.ready says port and line."),
         ("{command: [a], ready: {line: '(up'}}", "AOS106 programs.nav.ready.line is no regular expression"),
-        (
-            "{command: [a], ready: {exit: 0}, on_exit: ignore}",
-            "AOS106 programs.nav is to end, and on_exit",
-        ),
+        ("{command: [a], ready: {exit: 0}, on_exit: ignore}", "AOS106 programs.nav is to end, and on_exit"),
         ("{command: [a], host: -oProxy}", "AOS106 programs.nav.host is no host"),
         ("{command: [a], folder: x}", "AOS106 programs.nav.folder is given without a host"),
-        (
-            "{command: [a], host: arm, ready: {file: x}}",
-            "AOS106 programs.nav.ready.file is looked for",
-        ),
-        (
-            "{command: [a], host: arm, ready: {port: 1}}",
-            "AOS106 programs.nav.ready.port is looked for",
-        ),
+        ("{command: [a], host: arm, ready: {file: x}}", "AOS106 programs.nav.ready.file is looked for"),
+        ("{command: [a], host: arm, ready: {port: 1}}", "AOS106 programs.nav.ready.port is looked for"),
     ],
 )
 def test_mistakes_about_programs_are_told_at_their_place(folder: Path, part: str, found: str) -> None:
@@ -204,10 +185,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ),
         ("leave_out: look", "4:12 AOS106 leave_out is not a list"),
         ("leave_out: [drive, loook]", "4:20 AOS110 no bundle has a skill loook. Did you mean `look`?"),
-        (
-            "skills: {loook: {timeout_s: 1}}",
-            "4:10 AOS110 no bundle has a skill loook. Did you mean `look`?",
-        ),
+        ("skills: {loook: {timeout_s: 1}}", "4:10 AOS110 no bundle has a skill loook. Did you mean `look`?"),
         ("watch: bundle/rover.ef", "4:8 AOS106 watch: "),
         ("leave_out: [zzz]", "4:13 AOS110 no bundle has a skill zzz. Known are drive, look"),
         ("bind: {/drive: 3}", "4:16 AOS106 bind./drive is not an adapter's name, and no mapping"),

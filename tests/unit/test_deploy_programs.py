@@ -70,9 +70,7 @@ bind:
     arm, base, world = deployment.adapters
     assert arm.bind == {
         "/pick": Binding(
-            target="/grasp",
-            fields={"x": "goal.x", "speed": "2"},
-            result={"success": "result == 'true'"},
+            target="/grasp", fields={"x": "goal.x", "speed": "2"}, result={"success": "result == 'true'"}
         )
     }
     assert (arm.is_command, arm.options) == (True, {"command": ["./arm", "--fast"]})

@@ -45,7 +45,7 @@ ENVIRONMENT: dict[str, Any] = {
                 "EnumValues": ["first", "second"],
             },
             "AssignmentCode": ["case_ = AOS.SampleDiscrete(Case,{0.5,0.5});", "state.at = Here;"],
-        },
+        }
     ],
     "SpecialStates": [
         {"StateConditionCode": "state.at == There ", "Reward": 5, "IsOneTimeReward": True},

@@ -67,13 +67,7 @@ def test_whether_the_goal_was_reached_in_the_world_is_asked_of_its_last_state() 
     assert figures_of([once], {}).world_goal is None
 
 
-@pytest.mark.parametrize(
-    ("stop_value", "mean"),
-    [
-        (None, 9.0),
-        (-10.0, (20.0 + -2.0 + 0.9 * -10.0) / 2),
-    ],
-)
+@pytest.mark.parametrize(("stop_value", "mean"), [(None, 9.0), (-10.0, (20.0 + -2.0 + 0.9 * -10.0) / 2)])
 def test_a_mission_that_stopped_is_worth_what_stopping_is_worth(
     stop_value: float | None, mean: float
 ) -> None:

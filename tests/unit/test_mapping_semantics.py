@@ -88,10 +88,7 @@ message_type: Int
 code:
 return first * 10
 """)
-    assert observed(mapping, {}, [("/n", {"data": 4})], {}).local_variables == {
-        "first": "4",
-        "second": "40",
-    }
+    assert observed(mapping, {}, [("/n", {"data": 4})], {}).local_variables == {"first": "4", "second": "40"}
 
 
 def test_the_result_is_evaluated_after_all_topic_messages() -> None:

@@ -193,8 +193,8 @@ def lock_files(root: Path) -> Any:
 def pins(lock: Path) -> dict[str, str]:
     """Package -> version, for this Python."""
     found = {}
-    for line in re.findall(r"^([a-z][^\\\n]*)", lock.read_text(encoding="utf-8"), re.MULTILINE):
-        pinned = Requirement(line.strip())
+    for line in lock.read_text(encoding="utf-8").splitlines():
+        pinned = Requirement(line.partition(" --hash=")[0])
         if pinned.marker is None or pinned.marker.evaluate():
             found[canonical(pinned.name)] = next(iter(pinned.specifier)).version
     return found

@@ -157,11 +157,7 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
     ("name", "change", "finding"),
     [
         ("tiger.pomdp", replaced("R: 1 : left", "R: 1 : lft"), "21:8 AOS110 there is no state lft"),
-        (
-            "tiger.pomdp",
-            replaced("0.85 0.15", "0.85 0.3"),
-            "15:1 AOS122 the probabilities of `O:",
-        ),
+        ("tiger.pomdp", replaced("0.85 0.15", "0.85 0.3"), "15:1 AOS122 the probabilities of `O:"),
         ("tiger.pomdp", replaced("0.85 0.15", "0.85 1.5"), "16:6 AOS122 1.5 is no probability"),
         ("tiger.pomdp", replaced("0.15 0.85", "0.15"), "15:1 AOS106 3 numbers where 2 rows of 2 are needed"),
         ("tiger.pomdp", replaced("0.5\n", "half\n"), "9:14 AOS106 half is not a finite number"),
@@ -175,11 +171,7 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("tiger.pomdp", replaced("R: 1 : left", f"R: 1 : {'9' * 5000}"), "21:8 AOS110 there is no state 99"),
         ("rover.pomdpx", replaced("<NumValues>2", f"<NumValues>{'9' * 5000}"), "11:5 AOS105 StateVar has no"),
         ("tiger.pomdp", replaced("T: * : *", "T: * : * : * "), "9:1 AOS106 `T:` has 4 fields"),
-        (
-            "rover.pomdpx",
-            replaced("look rock - -", "look rok - -"),
-            "66:29 AOS110 there is no value of",
-        ),
+        ("rover.pomdpx", replaced("look rock - -", "look rok - -"), "66:29 AOS110 there is no value of"),
         ("rover.pomdpx", replaced("0.9 0.1 0.2 0.8", "0.9 0.1 0.2"), "66:48 AOS106 3 numbers where"),
         ("rover.pomdpx", replaced("<Parent>do place_0</Parent>", "<Parent>do plac</Parent>"), "32:34 AOS110"),
         ("rover.pomdpx", replaced("</Discount>", "</Discont>"), "5:16 AOS104 this is not well-formed XML"),

@@ -46,12 +46,7 @@ def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str]
     assert settings.bind == {"/pick": Binding(target="grasp")}
     assert not settings.serves_others
     assert settings.run_dir == str(tmp_path / "20260101T000000Z-fetch")
-    assert settings.options == {
-        "command": ["python"],
-        "port": "/dev/ttyUSB0",
-        "baud": 9600,
-        "slow": True,
-    }
+    assert settings.options == {"command": ["python"], "port": "/dev/ttyUSB0", "baud": 9600, "slow": True}
 
 
 def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]) -> None:

@@ -52,15 +52,7 @@ _SIZES = (
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
-    | {
-        "inspection": 16,
-        "rescue": 3,
-        "tabletop": 5,
-        "lock": 5,
-        "towers": 10,
-        "photo": 12,
-        "sorting": 10,
-    }
+    | {"inspection": 16, "rescue": 3, "tabletop": 5, "lock": 5, "towers": 10, "photo": 12, "sorting": 10}
 )
 _RULES = (
     RULES

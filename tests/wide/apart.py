@@ -145,10 +145,7 @@ if (all) {{
 
 def courier(addresses: int = 6) -> Bundle:
     """A courier with a battery and an odometer without an end; people come and go."""
-    writer = BundleWriter(
-        f"courier{addresses}",
-        _courier_environment(addresses),
-    )
+    writer = BundleWriter(f"courier{addresses}", _courier_environment(addresses))
     go = """int way = abs(place - state.at) + 1;
 state__.at = place;
 state__.odometer = state.odometer + way;
@@ -206,10 +203,7 @@ if (state.joined >= 4) {{
 
 def arms(count: int = 8) -> Bundle:
     """Two arms with bolts and plates, good or bad: pick, inspect, put away, and join two good ones."""
-    writer = BundleWriter(
-        f"arms{count}",
-        _arms_environment(count),
-    )
+    writer = BundleWriter(f"arms{count}", _arms_environment(count))
     arm = {"arm": "2"}
     pick = f"""__reward = -0.5;
 int which = arm * {count} + part;

@@ -204,11 +204,5 @@ def panel_rule(count: int, rng: random.Random) -> float:
 
 TOGETHER: dict[str, Callable[[int], Bundle]] = {"tidy": tidy, "panel": panel}
 TOGETHER_SIZES = {"tidy": 6, "panel": 12}
-TOGETHER_RULES: dict[str, Callable[[int, random.Random], float]] = {
-    "tidy": tidy_rule,
-    "panel": panel_rule,
-}
-TOGETHER_WORLDS: dict[str, Callable[[int, random.Random], World]] = {
-    "tidy": Tidy,
-    "panel": Panel,
-}
+TOGETHER_RULES: dict[str, Callable[[int, random.Random], float]] = {"tidy": tidy_rule, "panel": panel_rule}
+TOGETHER_WORLDS: dict[str, Callable[[int, random.Random], World]] = {"tidy": Tidy, "panel": Panel}

@@ -52,11 +52,7 @@ def register(app: typer.Typer) -> None:
 
 @bundle_app.command(epilog="Example: aos bundle push deploy/bundles/armadillo-finer")
 @on_system
-def push(
-    system: System,
-    path: Folder,
-    as_json: AsJson = False,
-) -> None:
+def push(system: System, path: Folder, as_json: AsJson = False) -> None:
     """Send a bundle to the registry.
 
     A new project, new skills, or better documents of old ones.
@@ -84,10 +80,7 @@ def push(
 
 @bundle_app.command("list", epilog="Example: aos bundle list")
 @on_system
-def list_projects(
-    system: System,
-    as_json: AsJson = False,
-) -> None:
+def list_projects(system: System, as_json: AsJson = False) -> None:
     """List the projects that the registry holds, with their skills."""
 
     async def ask(client: AosClient) -> Catalogue:
@@ -132,11 +125,7 @@ def show(
 
 @bundle_app.command(epilog="Example: aos bundle history armadillo")
 @on_system
-def history(
-    system: System,
-    project: OneProject = "",
-    as_json: AsJson = False,
-) -> None:
+def history(system: System, project: OneProject = "", as_json: AsJson = False) -> None:
     """List a project's revisions.
 
     When each was stored, and which documents it added, changed or removed.

@@ -27,8 +27,7 @@ mission_app = typer.Typer(
 )
 
 Belief = Annotated[
-    Literal["initial", "keep"],
-    typer.Option(help="The documents' initial belief, or what was believed last"),
+    Literal["initial", "keep"], typer.Option(help="The documents' initial belief, or what was believed last")
 ]
 Given = Annotated[
     list[str] | None,

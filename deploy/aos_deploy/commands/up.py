@@ -37,8 +37,7 @@ Seed = Annotated[
     int | None, typer.Option(min=0, help="Seed of the planner and of the world, in place of the file's")
 ]
 Listen = Annotated[
-    str | None,
-    typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one"),
+    str | None, typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one")
 ]
 Runs = Annotated[
     Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)

@@ -61,7 +61,4 @@ def _send(sender: Sender, address: str, told: str) -> str:
 if __name__ == "__main__":
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(levelname)s %(name)s: %(message)s")
     logging.getLogger("opentelemetry").setLevel(logging.CRITICAL)
-    main(
-        msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Settings),
-        is_rest=sys.argv[2:] == [REST],
-    )
+    main(msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Settings), is_rest=sys.argv[2:] == [REST])

@@ -6,13 +6,7 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from aos_deploy.views.observations import (
-    at_least_text,
-    at_most_text,
-    by_worth,
-    observation_text,
-    value_text,
-)
+from aos_deploy.views.observations import at_least_text, at_most_text, by_worth, observation_text, value_text
 from aos_protocol.messages import BeliefSummary, DecisionRecord, Marginal, SkillProgress
 
 _BAR_CELLS = 20

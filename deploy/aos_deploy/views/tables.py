@@ -8,13 +8,7 @@ from rich.text import Text
 
 from aos_deploy.printing import count
 from aos_deploy.terminal import console
-from aos_deploy.views.observations import (
-    at_least_text,
-    at_most_text,
-    by_worth,
-    observation_text,
-    value_text,
-)
+from aos_deploy.views.observations import at_least_text, at_most_text, by_worth, observation_text, value_text
 from aos_protocol.messages import ActionValue
 from aos_solver.mission.simulation import SimulatedRun
 

@@ -35,9 +35,7 @@ def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
             )
 
 
-def _by_values(
-    missions: Sequence[RecordedMission],
-) -> Iterator[tuple[dict[str, str], list[RecordedMission]]]:
+def _by_values(missions: Sequence[RecordedMission]) -> Iterator[tuple[dict[str, str], list[RecordedMission]]]:
     """The missions with the same values of mission parameters, in the order of the first of them."""
     found: dict[frozenset[tuple[str, str]], list[RecordedMission]] = {}
     for mission in missions:

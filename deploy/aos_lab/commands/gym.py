@@ -53,8 +53,7 @@ def gym(
     bundle: Annotated[
         Path,
         typer.Argument(
-            metavar="BUNDLE",
-            help="A directory of documents; or a deploy file, for its bundles and values",
+            metavar="BUNDLE", help="A directory of documents; or a deploy file, for its bundles and values"
         ),
     ],
     steps: Annotated[int, typer.Option(min=0, help="Measure with so many random steps")] = 0,

@@ -11,10 +11,7 @@ from aos_solver.offline.explicit_model import ExplicitModel
 
 
 def read_problem(
-    path: Path,
-    *,
-    max_states: int = MAX_STATES,
-    on_progress: Callable[[int], None] = lambda states: None,
+    path: Path, *, max_states: int = MAX_STATES, on_progress: Callable[[int], None] = lambda states: None
 ) -> ExplicitModel:
     """The model of a file; DocumentError with its mistakes, IntractableError if it is too large."""
     try:

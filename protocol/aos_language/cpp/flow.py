@@ -65,10 +65,7 @@ def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset(), shared: frozenset[
     walk.flows += walk.flows_through_handles()
     draws = sorted(part.start_byte for part in below(root) if is_draw(part))
     return Flows(
-        tuple(walk.flows),
-        frozenset(walk.used),
-        frozenset(walk.looped),
-        tuple(map(_name_of_draw, draws)),
+        tuple(walk.flows), frozenset(walk.used), frozenset(walk.looped), tuple(map(_name_of_draw, draws))
     )
 
 

@@ -94,10 +94,7 @@ def _activation(record: Record) -> documents.Activation | None:
     }
     group.finish()
     if not given:
-        message, hint = (
-            'ModuleActivation lacks "RosService"',
-            'Or "RosAction", or "Skill" if it is neither',
-        )
+        message, hint = ('ModuleActivation lacks "RosService"', 'Or "RosAction", or "Skill" if it is neither')
         record.findings.error("AOS105", message, group.span, hint)
         return None
     kind, service = next(iter(given.items()))

@@ -37,9 +37,7 @@ def _only_block(record: Record | None, key: str) -> tuple[Assignment, ...]:
     return block
 
 
-def _preconditions(
-    record: Record,
-) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], float]:
+def _preconditions(record: Record) -> tuple[tuple[Assignment, ...], tuple[Assignment, ...], float]:
     group = record.record("Preconditions", "Preconditions")
     if group is None:
         return (), (), 0.0

@@ -77,12 +77,7 @@ def _schema(title: str, header: str, kinds: dict[str, str]) -> Schema:
 
 
 def _documents() -> dict[str, Schema]:
-    return {
-        _ENVIRONMENT: _environment(),
-        _SKILL: _skill(),
-        _MAPPING: _mapping(),
-        _LOW_LEVEL: _low_level(),
-    }
+    return {_ENVIRONMENT: _environment(), _SKILL: _skill(), _MAPPING: _mapping(), _LOW_LEVEL: _low_level()}
 
 
 def _environment() -> Schema:
@@ -90,8 +85,7 @@ def _environment() -> Schema:
         "How far the search looks.",
         Horizon=said({"type": "integer", "minimum": 1}, "How many decisions the search looks ahead."),
         Discount=said(
-            {"type": "number", "exclusiveMinimum": 0, "maximum": 1},
-            "What a reward one step later is worth.",
+            {"type": "number", "exclusiveMinimum": 0, "maximum": 1}, "What a reward one step later is worth."
         ),
         OneStateModel=said(TRUTH, "Whether `state`, `state_` and `state__` are one and the same."),
         required=("Horizon", "Discount"),
@@ -314,7 +308,5 @@ def _low_level() -> Schema:
         required=("Name", "Type", "InitCode"),
     )
     return object_of(
-        "The Python values behind `anyValue`.",
-        LocalVariableTypes=list_of(kind),
-        Constants=list_of(constant),
+        "The Python values behind `anyValue`.", LocalVariableTypes=list_of(kind), Constants=list_of(constant)
     )

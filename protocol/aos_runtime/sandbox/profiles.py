@@ -90,11 +90,7 @@ def _own(pid: int, start: tuple[int, int, int], refusal: int) -> list[Rule]:
         Rule("open", alternatives=[[(1, *reading)]], otherwise=refusal),
         Rule("openat", alternatives=[[(2, *reading)]], otherwise=refusal),
         # Another process's limits could end it. Those of this one are for its guard to set.
-        Rule(
-            "prlimit64",
-            alternatives=[[(0, _32_BITS, 0), (2, _64_BITS, 0)]],
-            otherwise=_REFUSED,
-        ),
+        Rule("prlimit64", alternatives=[[(0, _32_BITS, 0), (2, _64_BITS, 0)]], otherwise=_REFUSED),
         # Others would have signals sent to a process of one's choice.
         Rule("fcntl", alternatives=[[(1, _32_BITS, command)] for command in commands], otherwise=_REFUSED),
         Rule("ioctl", alternatives=[[(1, _32_BITS, request)] for request in requests], otherwise=_REFUSED),

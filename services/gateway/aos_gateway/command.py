@@ -27,8 +27,7 @@ Projects = Annotated[
     typer.Option("--projects", metavar="DIR", help="A folder of deploy files that the page may start"),
 ]
 Connect = Annotated[
-    list[str] | None,
-    typer.Option("--connect", metavar="ENDPOINT", help="A system elsewhere, with --robot"),
+    list[str] | None, typer.Option("--connect", metavar="ENDPOINT", help="A system elsewhere, with --robot")
 ]
 Metrics = Annotated[bool, typer.Option("--metrics", help="Also serve metrics for Prometheus, at /metrics")]
 Files = Annotated[

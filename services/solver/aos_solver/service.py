@@ -164,9 +164,7 @@ class _Solver:
     async def _start_engine(self, built: BuiltModel) -> Engine:
         reach("solver.engine.before")
         engine = await Engine.start(
-            built,
-            seed=self._settings.seed,
-            impossible_observation=self._settings.impossible_observation,
+            built, seed=self._settings.seed, impossible_observation=self._settings.impossible_observation
         )
         reach("solver.engine.after")
         engine.on_progress = self._report_planning

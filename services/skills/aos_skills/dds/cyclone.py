@@ -33,9 +33,7 @@ try:
     from cyclonedds.util import duration
 except ImportError as error:  # pragma: no cover - the extra is not installed
     raise DeployError(
-        "the adapter for DDS needs the package cyclonedds",
-        code="AOS805",
-        hint=f"Run {pip_install('dds')}",
+        "the adapter for DDS needs the package cyclonedds", code="AOS805", hint=f"Run {pip_install('dds')}"
     ) from error
 
 HEADER = struct.Struct("<Qq")

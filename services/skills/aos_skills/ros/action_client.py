@@ -98,11 +98,7 @@ class ActionClient:
         return await self._node.call(request)
 
     async def _ended(
-        self,
-        action: str,
-        result: asyncio.Task[Fields],
-        cancelled: asyncio.Event | None,
-        timeout_s: float,
+        self, action: str, result: asyncio.Task[Fields], cancelled: asyncio.Event | None, timeout_s: float
     ) -> str:
         """Waits and returns why waiting has ended: "" with the result, else "cancelled", "late" or "lost"."""
 

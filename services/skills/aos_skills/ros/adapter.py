@@ -98,10 +98,7 @@ class RosAdapter:
         """Serves what the robot serves, listens to what it publishes, whenever that changes."""
         while True:
             self._has_new_names.clear()
-            waits = [
-                asyncio.create_task(self.node.changed()),
-                asyncio.create_task(_set(self._has_new_names)),
-            ]
+            waits = [asyncio.create_task(self.node.changed()), asyncio.create_task(_set(self._has_new_names))]
             # What changes from here on ends the waiting.
             await asyncio.sleep(0)
             try:

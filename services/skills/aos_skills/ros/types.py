@@ -30,9 +30,7 @@ try:
     from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 except ImportError as error:  # pragma: no cover - the extra is not installed
     raise DeployError(
-        "the adapters for ROS 2 need the package rosbags",
-        code="AOS805",
-        hint=f"Run {pip_install('ros')}",
+        "the adapters for ROS 2 need the package rosbags", code="AOS805", hint=f"Run {pip_install('ros')}"
     ) from error
 
 DISTRIBUTIONS = tuple(

@@ -91,11 +91,7 @@ class MissionQuestions(Asking):
         return await self._ask(command_line("risks", seed=seed), Risks)
 
     async def may_reach_goal(
-        self,
-        *,
-        without: Sequence[str] = (),
-        without_actions: Sequence[int] = (),
-        cautious: bool = False,
+        self, *, without: Sequence[str] = (), without_actions: Sequence[int] = (), cautious: bool = False
     ) -> GoalReach:
         """Looks for a second of processor time whether the other skills and actions lead to a goal."""
         command = command_line(

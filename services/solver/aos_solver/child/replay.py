@@ -79,12 +79,7 @@ class _Replay:
     """The same once more, with the traced model."""
 
     def __init__(
-        self,
-        fault: CodeFaultError,
-        place: Span,
-        trace: TracedModel,
-        built: BuiltModel,
-        start: EngineStart,
+        self, fault: CodeFaultError, place: Span, trace: TracedModel, built: BuiltModel, start: EngineStart
     ) -> None:
         self._fault = fault
         self._trace = trace

@@ -61,12 +61,7 @@ class StudyQuestions(Asking):
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
     async def reward_terms(
-        self,
-        index: int,
-        *,
-        horizon: int | None = None,
-        is_first: bool = False,
-        cautious: bool = False,
+        self, index: int, *, horizon: int | None = None, is_first: bool = False, cautious: bool = False
     ) -> RewardTerms:
         """The exact value of an action by the statements that give its rewards, where all decide best.
 

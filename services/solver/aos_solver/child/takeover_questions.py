@@ -69,11 +69,7 @@ class TakeoverQuestions(Asking):
         return JointBeliefs(count.words, tuple(beliefs))
 
     async def _joint(self, common: Common, number: int) -> JointBelief:
-        fields = {
-            "variables": ",".join(common.kept),
-            "spendable": sum(common.bits),
-            "number": number,
-        }
+        fields = {"variables": ",".join(common.kept), "spendable": sum(common.bits), "number": number}
         belief = await self._ask(command_line("export_joint", first=0, **fields), JointBelief)
         rows = list(belief.rows)
         while len(rows) < belief.states:

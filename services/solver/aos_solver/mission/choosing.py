@@ -200,12 +200,7 @@ class Chooser:
         return _Without(reasons, sorted(skills & reasons.keys()), numbers)
 
     async def _plan(
-        self,
-        engine: Engine,
-        step: int,
-        belief: BeliefSummary,
-        barred: Mapping[int, str],
-        without: _Without,
+        self, engine: Engine, step: int, belief: BeliefSummary, barred: Mapping[int, str], without: _Without
     ) -> tuple[Plan, bool]:
         """The best action, and whether it is for the cautious belief.
 

@@ -156,14 +156,7 @@ def _entry(path: Path, number: int) -> list[MissionEntry]:
     begun = first.read_as(MissionBegun)
     start = begun.start or StartMission()
     entry = MissionEntry(
-        begun.mission,
-        number,
-        begun.seed,
-        first.stamp_ns,
-        start.belief,
-        start.given,
-        start.idle,
-        start.values,
+        begun.mission, number, begun.seed, first.stamp_ns, start.belief, start.given, start.idle, start.values
     )
     if not states:
         return [entry]

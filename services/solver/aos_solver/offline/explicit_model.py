@@ -131,12 +131,7 @@ class ExplicitModel(FlatModel, frozen=True, kw_only=True):
 
 
 def with_more_outcomes(
-    model: FlatModel,
-    rows: Integers,
-    row_count: int,
-    more: Integers,
-    state: int,
-    chances: Floats,
+    model: FlatModel, rows: Integers, row_count: int, more: Integers, state: int, chances: Floats
 ) -> tuple[Ragged, Integers]:
     """The model's outcomes and their sensings, with new numbers of their `rows`.
 

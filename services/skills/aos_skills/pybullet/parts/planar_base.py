@@ -82,9 +82,5 @@ class PlanarBase:
 
     def _push(self, velocities: Vector) -> None:
         self._client.setJointMotorControlArray(
-            self._body,
-            self._joints,
-            pybullet.VELOCITY_CONTROL,
-            targetVelocities=velocities,
-            forces=FORCES,
+            self._body, self._joints, pybullet.VELOCITY_CONTROL, targetVelocities=velocities, forces=FORCES
         )

@@ -125,11 +125,7 @@ class TicTacToe(World):
             shaken((0.0, 0.0, 1.0), 2 * faults.camera_noise_m),
         )
         image: Image.Image = photograph(
-            self.scene,
-            pose,
-            PICTURE_SIZE,
-            sun=shaken(SUN, faults.light),
-            field_of_view_deg=FIELD_OF_VIEW_DEG,
+            self.scene, pose, PICTURE_SIZE, sun=shaken(SUN, faults.light), field_of_view_deg=FIELD_OF_VIEW_DEG
         )
         pixels = np.asarray(image, dtype=np.float64)
         grain = np.random.default_rng(noise.getrandbits(32)).normal(0, faults.pixel_noise, pixels.shape)
