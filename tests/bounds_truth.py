@@ -30,7 +30,7 @@ def main() -> None:
     arguments.add_argument("--work", type=int, default=10_000_000)
     given = arguments.parse_args()
     program = truth_program(cache_dir())
-    command = [program, str(given.first_seed), str(given.models), str(given.work)]
+    command = [str(program), str(given.first_seed), str(given.models), str(given.work)]
     sys.exit(subprocess.run(command, check=False).returncode)
 
 

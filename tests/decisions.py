@@ -19,7 +19,7 @@ from aos_deploy.bundle_engine import engine_of_bundle
 from aos_protocol.errors import AosError
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine
-from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
+from aos_solver.child.mission_questions import UNRESTRICTED, Planner, Restriction
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
@@ -44,7 +44,7 @@ USUAL = (
     "bench/tag",
     "bench/tiger",
 )
-PLANNERS = ("auto", "pomcp", "despot", "sarsop")
+PLANNERS: tuple[Planner, ...] = ("auto", "pomcp", "despot", "sarsop")
 NEVER = 2.0
 """A probability that no belief reaches: a mission ends when its world does."""
 TIMES = ("seconds", "cpu_seconds", "preparation_s", "search_s")

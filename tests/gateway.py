@@ -212,7 +212,15 @@ def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -
     A file gets what was `said`; gateways that it starts write there as well.
     """
     runs = folder / "runs"
-    command = [BIN / "aos-up", ROOT / "deploy/errand.yaml", "--model", "--plain", "--runs", runs, *options]
+    command: list[str | Path] = [
+        BIN / "aos-up",
+        ROOT / "deploy/errand.yaml",
+        "--model",
+        "--plain",
+        "--runs",
+        runs,
+        *options,
+    ]
     with (said or folder / "said").open("wb") as out:
         subprocess.run(
             command, cwd=folder, env=environment(folder, cache), stdout=out, timeout=COMMAND_S, check=False

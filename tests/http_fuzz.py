@@ -47,7 +47,7 @@ def fuzz(served: Gateway, run: str, examples: int) -> subprocess.CompletedProces
     settings = served.folder / "schemathesis.toml"
     settings.write_text(_SETTINGS.format(examples=examples, run=run))
     command = [
-        *(sys.executable, "-m", "schemathesis.cli", "--no-color", "--config-file", settings, "run"),
+        *(sys.executable, "-m", "schemathesis.cli", "--no-color", "--config-file", str(settings), "run"),
         *("--checks", _CHECKS, "--exclude-path", _ENDLESS, "--continue-on-failure", "--warnings", "off"),
         *("--header", f"Authorization: Bearer {served.token}"),
         f"http://127.0.0.1:{served.port}/v1/openapi.json",

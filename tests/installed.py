@@ -6,6 +6,7 @@ import subprocess
 import sys
 import venv
 from pathlib import Path
+from typing import Any
 
 SIMULATOR = ("pybullet", "PIL")
 """The beginnings of what the extra `sim` adds to the packages."""
@@ -20,19 +21,25 @@ class Installation:
         self.commands = environment / "bin"
         self.folder = folder
         own = {"AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder.parent)}
-        self._place = {"cwd": folder, "env": {**os.environ, **own}, "stdin": subprocess.DEVNULL, "text": True}
+        self._place: dict[str, Any] = {
+            "cwd": folder,
+            "env": {**os.environ, **own},
+            "stdin": subprocess.DEVNULL,
+        }
 
     def run(self, *command: str) -> subprocess.CompletedProcess[str]:
         """Returns the result of a command, after its end."""
         name, *arguments = command
-        line = [self.commands / name, *arguments]
-        return subprocess.run(line, **self._place, capture_output=True, timeout=_PATIENCE_S)
+        line = [str(self.commands / name), *arguments]
+        return subprocess.run(line, **self._place, text=True, capture_output=True, timeout=_PATIENCE_S)
 
     def start(self, *command: str) -> subprocess.Popen[str]:
         """A command that goes on."""
         name, *arguments = command
-        line, pipe = [self.commands / name, *arguments], subprocess.PIPE
-        return subprocess.Popen(line, **self._place, stdout=pipe, stderr=pipe, start_new_session=True)
+        line, pipe = [str(self.commands / name), *arguments], subprocess.PIPE
+        return subprocess.Popen(
+            line, **self._place, text=True, stdout=pipe, stderr=pipe, start_new_session=True
+        )
 
 
 def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
@@ -40,7 +47,7 @@ def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
     source = folder / "source"
     ignored = shutil.ignore_patterns(".*", "build", "runs", "*.egg-info", "__pycache__")
     shutil.copytree(root, source, ignore=ignored)
-    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check"]
+    pip: list[str | Path] = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check"]
     subprocess.run(
         [*pip, "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", folder, source / part],
         check=True,
@@ -56,7 +63,14 @@ def install(
 ) -> None:
     """Makes an environment with the wheel in it, and with `link_packages` what it depends on."""
     venv.create(environment, symlinks=True)
-    pip = [sys.executable, "-m", "pip", "--python", environment / "bin" / "python", "install"]
+    pip: list[str | Path] = [
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        environment / "bin" / "python",
+        "install",
+    ]
     options = ["--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]
     subprocess.run([*pip, *options, wheel], check=True, stdin=subprocess.DEVNULL, timeout=_PATIENCE_S)
     link_packages(environment, without=without, only=only)

@@ -107,7 +107,8 @@ def _flip(data: bytes, draws: random.Random) -> bytes:
 
 def _insert(data: bytes, draws: random.Random) -> bytes:
     at = draws.randrange(len(data) + 1)
-    return data[:at] + draws.choice(INTERESTING) + data[at:]
+    word: bytes = draws.choice(INTERESTING)
+    return data[:at] + word + data[at:]
 
 
 def _cut(data: bytes, draws: random.Random) -> bytes:

@@ -15,7 +15,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "tutorial.md"
 PATIENCE_S = 900.0
@@ -51,7 +51,12 @@ class Walk:
         environment["AOS_RUNNING_DIR"] = str(folder / ".running")
         if cache_dir is not None:
             environment["AOS_CACHE_DIR"] = str(cache_dir)
-        self._place = {"cwd": folder, "env": environment, "stdin": subprocess.DEVNULL, "text": True}
+        self._place: dict[str, Any] = {
+            "cwd": folder,
+            "env": environment,
+            "stdin": subprocess.DEVNULL,
+            "text": True,
+        }
         self.said: dict[str, str] = {}
         self._background: subprocess.Popen[str] | None = None
 

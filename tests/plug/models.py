@@ -7,7 +7,7 @@ observed.
 
 import random
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from exam.families import FAMILIES
@@ -169,7 +169,7 @@ def _skill(problem: Problem, action: int, weather: Weather | None) -> str:
     return "\n".join([*lines, ""])
 
 
-def _listed(values: object) -> str:
+def _listed(values: Iterable[object]) -> str:
     return "{" + ", ".join(repr(value) for value in values) + "}"
 
 

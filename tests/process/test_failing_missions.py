@@ -243,10 +243,10 @@ async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the
 async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure(cache_dir: Path) -> None:
     built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
     around = Surroundings(jammed)
-    around.clock = Clock()
+    around.clock = clock = Clock()
 
     def robot(request: Activate) -> Outcome:
-        around.clock.now_s += 10.0
+        clock.now_s += 10.0
         answers = {"ask": "said_right" if request.id.step % 2 else "said_left", "take": "missed"}
         return jammed(request) if request.skill == "look" else observed(request, answers[request.skill])
 

@@ -8,7 +8,8 @@ from models import engine_of_text
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.search import Search
-from aos_solver.mission.choosing import Choice, Chooser
+from aos_solver.mission.choices import Choice
+from aos_solver.mission.choosing import Chooser
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.risk import RiskBudget

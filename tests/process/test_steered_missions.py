@@ -16,7 +16,7 @@ from aos_deploy.history_check.steering_rules import SteeringRules
 from aos_deploy.views.lines import decision_line
 from aos_language.load import load_bundle
 from aos_protocol.errors import SteeringError
-from aos_protocol.messages import Activate, MissionBegun, MissionState, Outcome, Steer
+from aos_protocol.messages import ActionRefused, Activate, MissionBegun, MissionState, Outcome, Steer
 from aos_protocol.mission_rows import BEGUN
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
@@ -212,7 +212,7 @@ async def test_a_mission_without_anything_left_holds_until_something_is_taken_ba
     )
     state = await run(tiger, around, step_limit=2)
     assert (state.ending, around.chosen[1]) == ("step_limit", ("listen", "planner"))
-    (refused,) = [payload for kind, payload in around.journalled if kind == "refused"]
+    (refused,) = [payload for _, payload in around.journalled if isinstance(payload, ActionRefused)]
     assert refused.why == "listen is left out by ana"
     assert violations(around) == []
 

@@ -88,7 +88,7 @@ def test_how_many_records_would_tell_falls_with_how_far_they_are_off() -> None:
 def test_a_terminal_of_any_width_shows_the_whole_table(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    result = Calibration(9, 9, (), (counted(discrete(0.5, 0.5), 5, 4),), (), "", (), ())
+    result = Calibration(9, 9, (), (counted(discrete(0.5, 0.5), 5, 4),), (), "", "", ())
     shown = {}
     for width in ("30", "80", "300"):
         monkeypatch.setenv("COLUMNS", width)

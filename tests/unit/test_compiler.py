@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from aos_protocol.errors import ModelError
-from aos_solver.building import compiler as compiler_module
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_run import run_compiler
 
@@ -19,7 +18,7 @@ def fake(directory: Path, name: str, text: str, status: int = 0) -> None:
 
 @pytest.fixture
 def no_wheel(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler_module.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
 
 
 @pytest.fixture
@@ -60,9 +59,9 @@ async def test_a_cxx_that_does_not_work_is_not_passed_over(tools: Path) -> None:
 
 
 async def test_the_wheel_is_the_last_resort(tools: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiler_module.importlib.util, "find_spec", lambda name: object())
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: object())
     fake(tools, "python", "clang version 19.1.7")
-    monkeypatch.setattr(compiler_module.sys, "executable", str(tools / "python"))
+    monkeypatch.setattr("sys.executable", str(tools / "python"))
     found = await find_compiler({"PATH": str(tools)})
     assert found.command[1:] == ("-m", "ziglang", "c++")
     assert found.family == "zig"

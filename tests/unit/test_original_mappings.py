@@ -23,7 +23,7 @@ def load(*documents: dict[str, Any]) -> LoadedBundle:
     return load_files({f"{i}.json": json.dumps(document).encode() for i, document in enumerate(documents)})
 
 
-def emitted(*mappings: dict[str, Any]) -> list[EmittedMapping]:
+def emitted(*mappings: dict[str, Any]) -> tuple[EmittedMapping, ...]:
     """The modules of skills that are alike but for their names and mappings."""
     skills = [copy.deepcopy(SKILL) for _ in mappings]
     for skill, mapping in zip(skills, mappings, strict=True):
