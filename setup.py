@@ -1,7 +1,7 @@
 """The parts that pyproject.toml cannot say: a wheel also holds deploy files, bundles, worlds and benchmarks
 by hand.
 
-They keep their places, below `aos_deploy/share`, and `aos_deploy.shipped` finds them there as in a checkout.
+They keep their places, below `aos_deploy/share`, and `aos_deploy.places` finds them there as in a checkout.
 """
 
 import shutil

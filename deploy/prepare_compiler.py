@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_protocol.errors import AosError
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.engine_build import ANY_SIZE, build_engine

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from exam.programs import built_program
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 
 _SOURCE = Path(__file__).parent / "cpp" / "point_based" / "point_based_truth.cpp"
 

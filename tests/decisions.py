@@ -15,7 +15,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.bundles.engine import engine_of_bundle
 from aos_protocol.errors import AosError
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.deploy_file import Deployment, read_deploy_file
+from aos_deploy.deployment.reading import Deployment, read_deploy_file
 from aos_protocol.errors import DeployError
 
 HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"

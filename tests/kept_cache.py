@@ -4,7 +4,7 @@ import contextlib
 import os
 from pathlib import Path
 
-from aos_deploy.program import cache_dir as user_cache_dir
+from aos_deploy.places import cache_dir as user_cache_dir
 
 _CACHE = Path(os.environ.get("AOS_TEST_CACHE", Path(__file__).resolve().parents[1] / ".compiled"))
 """The checkout may be another user's."""

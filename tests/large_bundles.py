@@ -13,7 +13,7 @@ from mappings import mapping_text
 from models import built_text, engine_of
 from texts import encoded
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_language.load import load_files
 
 _VALUES = {"int": "7", "bool": "true", "double": "0.5", "Level": "High", "string": '"a"', "Cup": "Cup{true}"}

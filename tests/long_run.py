@@ -5,8 +5,8 @@ from pathlib import Path
 
 from decision_records import decision_record
 
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.messages import (
     ActionValue,
     ActivationId,

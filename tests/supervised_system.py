@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from processes import kill
 
-from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, ServiceChanged
-from aos_deploy.program import Program
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_summary import ProcessEnd
-from aos_deploy.supervisor import Supervisor, supervised
+from aos_deploy.processes.endpoint import hold_endpoint
+from aos_deploy.processes.program import Program
+from aos_deploy.processes.supervisor import Supervisor, supervised
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.summary import ProcessEnd
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
 from aos_runtime.lifecycle import root_cause

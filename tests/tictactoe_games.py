@@ -10,7 +10,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.bundles.engine import engine_of_bundle
 from aos_skills.pybullet.worlds.tictactoe.rules import (
     EMPTY_BOARD,
     best_moves,

@@ -16,7 +16,7 @@ from pathlib import Path
 import msgspec
 from ruamel.yaml import YAML
 
-from aos_deploy.shipped import shipped
+from aos_deploy.places import shipped
 from aos_lab.trials.claims import Claim, Verdict, asking_the_world, judge
 from aos_lab.trials.files import Experiment, Part, read_experiment
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer

@@ -13,7 +13,7 @@ from urllib.request import Request, urlopen
 
 import msgspec
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 

@@ -7,9 +7,9 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from aos_deploy.bundle_engine import engine_of_bundle
-from aos_deploy.constraints import constraint_of_option
-from aos_deploy.mission_values import values_of_options
+from aos_deploy.bundles.engine import engine_of_bundle
+from aos_deploy.deployment.constraints import constraint_of_option
+from aos_deploy.deployment.mission_values import values_of_options
 from aos_deploy.options import finite
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner

@@ -7,8 +7,8 @@ import inspect
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, get_type_hints
 
-from aos_deploy.living_runs import living_run
 from aos_deploy.options import Connect, Robot, Run, Runs
+from aos_deploy.runs.living import living_run
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import DeployError
 from aos_runtime.credentials import credential_of_run

@@ -16,8 +16,8 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import IO
 
-from aos_deploy.living_runs import RUNS, living_runs
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.living import RUNS, living_runs
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import AosError, error_from_code
 from aos_runtime.client import AosClient

@@ -4,7 +4,7 @@ import getpass
 import sys
 from pathlib import Path
 
-from aos_deploy.deploy_file import Deployment
+from aos_deploy.deployment.reading import Deployment
 from aos_protocol.errors import DeployError
 
 _UNIT = """\

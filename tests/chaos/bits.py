@@ -25,8 +25,8 @@ import typer
 from tests.chaos.up import Up, compile_bundles, send, write_deploy_file
 
 from aos_deploy.cli import aos_app
-from aos_deploy.run_end import account_of
-from aos_deploy.taking_up import take_up
+from aos_deploy.missions.taking_up import take_up
+from aos_deploy.runs.end import account_of
 from aos_protocol.errors import AosError
 from aos_runtime.journal import Journal, JournalRow
 

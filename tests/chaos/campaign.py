@@ -14,7 +14,7 @@ from tests.chaos.failing import WRITES, failing, refused
 from tests.chaos.judged import Report
 from tests.chaos.twins import twins
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_deploy.terminal import progress
 from aos_runtime.failpoints import FAILPOINTS
 

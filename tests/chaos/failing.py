@@ -10,7 +10,7 @@ from pathlib import Path
 from tests.chaos.judged import Disturbance, Report, judge
 from tests.chaos.up import Process, Up, send, write_deploy_file
 
-from aos_deploy.run_end import account_of
+from aos_deploy.runs.end import account_of
 from aos_runtime.failpoints import EXIT_STATUS
 
 _STEPS = 5

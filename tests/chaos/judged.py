@@ -10,8 +10,8 @@ from pathlib import Path
 import msgspec
 from tests.chaos.up import BIN, Process
 
-from aos_deploy.run_end import account_of
-from aos_deploy.verdict import Verdict
+from aos_deploy.runs.end import account_of
+from aos_deploy.runs.verdict import Verdict
 
 _LEFT_S = 15.0
 

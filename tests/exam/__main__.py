@@ -30,7 +30,7 @@ import asyncio
 import sys
 from pathlib import Path
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 
 from .budgets import examine_budgets
 from .commands import CACHE, examine_bundles, examine_documents, examine_engine, examine_solver

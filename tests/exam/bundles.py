@@ -4,7 +4,7 @@ import random
 from pathlib import Path
 from statistics import fmean, stdev
 
-from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.bundles.engine import engine_of_bundle
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits

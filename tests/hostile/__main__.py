@@ -16,7 +16,7 @@ from tests.hostile.attempt import TOLD_S, WAYS, Playground
 from tests.hostile.log import Log, summary, who_plays
 from tests.hostile.said import import_commands
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_runtime.parent import adopt_orphans
 from aos_runtime.sandbox.support import sandbox_text
 

@@ -16,7 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_solver.building.engine_build import ANY_SIZE, STATE_BYTES, build_engine
 
 _USER = "nobody"

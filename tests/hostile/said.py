@@ -25,8 +25,8 @@ _IMPORTED = (
     "aos_deploy.commands.bundle",
     "aos_deploy.commands.documents",
     "aos_deploy.commands.up",
-    "aos_deploy.mission_run",
-    "aos_deploy.system_run",
+    "aos_deploy.missions.mission_run",
+    "aos_deploy.missions.system_run",
     "aos_runtime.client",
     "aos_solver.building.project_build",
 )

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from tests.kept_cache import link_engines
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 
 _SYSTEMD = Path("/lib/systemd/systemd")
 _UNIT = "aos-fetch.service"

@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 from aos_deploy.history_check.files import check_run
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_runtime.mission_folders import mission_folder
 
 from .knowing import largest_difference

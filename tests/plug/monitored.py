@@ -15,7 +15,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_language.load import load_bundle
 from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_runtime.journal import Journal

@@ -14,9 +14,9 @@ from pathlib import Path
 import msgspec
 from processes import descendants
 
-from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.bundles.files import files_of_bundle
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.access import OPERATOR
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionEntry, PushBundle
 from aos_runtime.client import AosClient

@@ -15,7 +15,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 
 from .changes import KINDS
 from .pushes import Played, Pushed, played

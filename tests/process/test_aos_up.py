@@ -19,7 +19,7 @@ from gateway import slow_deploy_file
 from processes import HANG_S, descendants, is_running, until_ended
 
 from aos_deploy.history_check.files import check_run
-from aos_deploy.run_end import account_of
+from aos_deploy.runs.end import account_of
 from aos_runtime.journal import Journal
 
 BIN = Path(sys.executable).parent

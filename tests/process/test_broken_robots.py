@@ -8,8 +8,8 @@ import pytest
 from processes import COMMAND_S
 from walk import steps_of
 
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_summary import Summary
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.summary import Summary
 
 BIN = Path(sys.executable).parent
 

@@ -15,7 +15,7 @@ import pytest
 from exam.programs import run, what_decides
 from scripted_models import bundle_project, lowered
 
-from aos_deploy.constraints import constrained, constraint_of_option
+from aos_deploy.deployment.constraints import constrained, constraint_of_option
 from aos_protocol.documents import Project
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler

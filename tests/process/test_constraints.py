@@ -13,7 +13,7 @@ from models import engine_of
 from scripted_models import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
 
-from aos_deploy.constraints import constrained, constraint_of_option
+from aos_deploy.deployment.constraints import constrained, constraint_of_option
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
 from aos_lab.trials.intervals import interval_of_share
 from aos_protocol.documents import Project

@@ -9,7 +9,7 @@ import pytest
 from commands import aos
 from models import built_bundle
 
-from aos_deploy.picture_findings import picture_findings
+from aos_deploy.bundles.pictures import picture_findings
 from aos_language.load import load_bundle, load_files, read_bundle_files
 from aos_middleware.picture import Drawn, draw, likeliest_state
 from aos_protocol.errors import DocumentError

@@ -13,7 +13,7 @@ from commands import aos
 from processes import COMMAND_S
 from texts import write_texts
 
-from aos_deploy import reachability
+from aos_deploy.bundles import reachability
 from aos_deploy.commands import documents
 from aos_language import load
 from aos_protocol.errors import ModelError

@@ -15,7 +15,7 @@ from models import built_bundle, built_text, engine_of
 from processes import COMMAND_S, HANG_S
 from scripted_models import text_project
 
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.runs.directory import RunDirectory
 from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option
 from aos_protocol.documents import Project

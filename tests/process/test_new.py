@@ -10,8 +10,8 @@ import typer
 from commands import aos
 from typer.testing import Result
 
-from aos_deploy.deploy_file import read_deploy_file
-from aos_deploy.shipped import deploy_files
+from aos_deploy.deployment.reading import read_deploy_file
+from aos_deploy.places import deploy_files
 from aos_language.convert import without_origins
 from aos_language.load import load_bundle
 

@@ -18,8 +18,8 @@ import pytest
 from processes import COMMAND_S, HANG_S, descendants, kill, until_ended
 from supervised_system import System, command, small
 
-from aos_deploy.own_programs import ReadyPart
-from aos_deploy.program import Program
+from aos_deploy.deployment.own_programs import ReadyPart
+from aos_deploy.processes.program import Program
 from aos_protocol.errors import AosError
 
 BIN = Path(sys.executable).parent

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 from processes import COMMAND_S, HANG_S
 
-from aos_deploy.endpoint import hold_endpoint
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.processes.endpoint import hold_endpoint
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import BusError
 
 BIN = Path(sys.executable).parent

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from commands import aos
 
-from aos_deploy.deploy_file import read_deploy_file
-from aos_deploy.program import programs_of_deployment
+from aos_deploy.deployment.reading import read_deploy_file
+from aos_deploy.processes.program import programs_of_deployment
 from aos_protocol.errors import DeployError, DocumentError, PlanningError
 from aos_solver.offline.policy import Policy
 

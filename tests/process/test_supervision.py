@@ -14,9 +14,9 @@ from processes import HANG_S, descendants, has_listener, is_running, kill, until
 from ssh_host import stand_in
 from supervised_system import System, command, small
 
-from aos_deploy.program import Program
-from aos_deploy.restarts import STARTS
-from aos_deploy.supervisor import FROZEN_S
+from aos_deploy.processes.program import Program
+from aos_deploy.processes.restarts import STARTS
+from aos_deploy.processes.supervisor import FROZEN_S
 from aos_protocol.errors import AosError, DeployError, DocumentError
 
 NAMES = ("registry", "middleware", "skills", "solver")

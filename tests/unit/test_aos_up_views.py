@@ -11,8 +11,8 @@ from rich.console import Console
 from aos_deploy.commands import decisions
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
+from aos_deploy.runs.verdict import Account
 from aos_deploy.terminal import console
-from aos_deploy.verdict import Account
 from aos_deploy.views import make_view
 from aos_deploy.views.lines import JsonView, PlainView, decision_line
 from aos_deploy.views.live import LiveView, Screen

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 from commands import aos
 
-from aos_deploy.bundle_files import files_of_bundles, planned_of, project_of
-from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.bundles.files import files_of_bundles, planned_of, project_of
+from aos_deploy.deployment.reading import read_deploy_file
 from aos_deploy.events import Event, ServiceChanged
-from aos_deploy.mission_run import MissionRun
+from aos_deploy.missions.mission_run import MissionRun
 from aos_language.load import load_files
 from aos_protocol.errors import DeployError, DocumentError
 from aos_runtime.clock import SystemClock

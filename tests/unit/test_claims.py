@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from aos_deploy.shipped import shipped
+from aos_deploy.places import shipped
 from aos_lab.commands.experiment import verdict_line
 from aos_lab.experiments.physics import simulated_speed
 from aos_lab.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.bundle_files import project_of
-from aos_deploy.constraints import constraint_of_option
-from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.bundles.files import project_of
+from aos_deploy.deployment.constraints import constraint_of_option
+from aos_deploy.deployment.reading import read_deploy_file
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DeployError
 from aos_solver.building.project_build import lowered

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from commands import aos
 
-from aos_deploy.bus_socket import place_of_socket, remove_left_sockets, remove_socket
-from aos_deploy.passes import Outsider, Passes
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.processes.passes import Outsider, Passes
+from aos_deploy.runs.bus_socket import place_of_socket, remove_left_sockets, remove_socket
+from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.access import ADAPTER, OPERATOR, SOLVER, WATCHER, Party
 from aos_protocol.errors import BusError, DeployError
 from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run

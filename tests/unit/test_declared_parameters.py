@@ -7,8 +7,8 @@ import pytest
 from scripted_models import text_project
 from texts import encoded, write_texts
 
-from aos_deploy.bundle_files import project_of
-from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.bundles.files import project_of
+from aos_deploy.deployment.reading import read_deploy_file
 from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option, parameter_leaves, usable_values
 from aos_language.outline import outline

@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from deploy_files import HEAD, findings, read
 
-from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.deploy_file import check_endpoint, read_deploy_file, without_a_robot
-from aos_deploy.needed_here import check_needed_here
-from aos_deploy.own_programs import ReadyPart
-from aos_deploy.program import programs_of_deployment
-from aos_deploy.readiness import misspelt_paths
+from aos_deploy.bundles.files import files_of_bundle
+from aos_deploy.deployment.own_programs import ReadyPart
+from aos_deploy.deployment.reading import check_endpoint, read_deploy_file, without_a_robot
+from aos_deploy.missions.readiness import misspelt_paths
+from aos_deploy.processes.needed_here import check_needed_here
+from aos_deploy.processes.program import programs_of_deployment
 from aos_protocol.errors import DeployError
 
 

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from deploy_files import HEAD, read
 
-from aos_deploy.program import programs_of_deployment
+from aos_deploy.processes.program import programs_of_deployment
 from aos_runtime.adapters import AdapterSettings, Binding
 
 

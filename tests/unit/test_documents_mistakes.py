@@ -14,8 +14,8 @@ def verdicts() -> list[Verdict]:
     return [judged(mistake) for mistake in mistakes()]
 
 
-def test_there_are_fifteen_mistakes_in_each_of_eight_bundles(verdicts: list[Verdict]) -> None:
-    assert len(verdicts) == 120
+def test_there_are_fifteen_mistakes_in_each_of_nine_bundles(verdicts: list[Verdict]) -> None:
+    assert len(verdicts) == 135
 
 
 def test_every_mistake_is_told_with_its_code_in_the_right_file_and_line(verdicts: list[Verdict]) -> None:
@@ -26,7 +26,7 @@ def test_nearly_every_mistake_is_told_in_the_right_column(verdicts: list[Verdict
     assert sum(verdict.has_column for verdict in verdicts) >= RIGHT_COLUMNS * len(verdicts)
 
 
-@pytest.mark.parametrize("bundle", ["fancy", "fetch", "lamp", "tiger"])
+@pytest.mark.parametrize("bundle", ["doors", "fancy", "fetch", "lamp", "tiger"])
 def test_the_bundles_emit_compile_and_run(root: Path, cache_dir: Path, bundle: str) -> None:
     model = scripted(bundle_project(root / "tests/data/bundles" / bundle), cache_dir)
     assert model.walk(1000)["steps"] == 1000

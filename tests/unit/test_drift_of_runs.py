@@ -9,9 +9,9 @@ from decision_records import decision_record
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
-from aos_deploy.drift_of_runs import drift_of_runs
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.drift import drift_of_runs
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.messages import ActivationId, Outcome, PredictedObservation
 from aos_protocol.mission_rows import DRIFT
 from aos_runtime.journal import Journal

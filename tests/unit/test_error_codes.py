@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from test_reading_rules import REFUSED, WARNED, WHOLE_FILES, Rule, bundle_of, found_by
 
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.runs.directory import RunDirectory
 from aos_language.load import load_files
 from aos_protocol.codec import open_envelope
 from aos_protocol.errors import CODES, BusError, DeployError, PlanningError

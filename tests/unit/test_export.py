@@ -24,7 +24,7 @@ from aos_deploy.export.kept_missions import kept_missions
 from aos_deploy.export.layouts import curves_of, foxglove_layout, plotjuggler_layout
 from aos_deploy.export.run_bundle import opened_bundle, write_bundle
 from aos_deploy.history_check.files import check_run
-from aos_deploy.living_runs import chosen_run, chosen_runs
+from aos_deploy.runs.living import chosen_run, chosen_runs
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import (
     ActionValue,

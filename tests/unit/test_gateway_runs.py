@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.record import RunRecord
 from aos_gateway.run_shelf import RunShelf
 from aos_gateway.runs import RemoteRun
 from aos_protocol.errors import GatewayError

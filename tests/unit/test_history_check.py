@@ -11,7 +11,7 @@ from decision_records import decision_record
 from aos_deploy.history_check import check
 from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.rules import RULES
-from aos_deploy.verdict import Account, Verdict
+from aos_deploy.runs.verdict import Account, Verdict
 from aos_protocol import messages
 from aos_runtime.journal import Journal, JournalRow
 

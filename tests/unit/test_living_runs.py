@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.living_runs import RUNS, chosen_run, living_runs, noted, runs_here
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.living import RUNS, chosen_run, living_runs, noted, runs_here
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import BusError
 
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from aos_deploy.log_sizes import shorten
-from aos_deploy.program_ready import _Printed
+from aos_deploy.processes.log_sizes import shorten
+from aos_deploy.processes.ready import _Printed
 
 
 def test_a_log_that_is_too_long_is_cut_to_its_end_and_its_writer_goes_on(tmp_path: Path) -> None:

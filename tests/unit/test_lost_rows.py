@@ -7,11 +7,11 @@ import msgspec
 import pytest
 from decision_records import decision_record
 
-from aos_deploy.deploy_file import read_deploy_file, without_a_robot
+from aos_deploy.deployment.reading import read_deploy_file, without_a_robot
 from aos_deploy.history_check.files import check_run
-from aos_deploy.run_end import account_of
-from aos_deploy.run_record import RunRecord
-from aos_deploy.taking_up import take_up, worlds_text
+from aos_deploy.missions.taking_up import take_up, worlds_text
+from aos_deploy.runs.end import account_of
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import Activate, ActivationId, MissionBegun, Outcome, SkillCall
 from aos_runtime.journal import Journal, JournalRow

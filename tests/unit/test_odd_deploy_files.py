@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from deploy_files import HEAD, findings
 
-from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.deployment.reading import read_deploy_file
 from aos_protocol.errors import DeployError
 
 

@@ -12,7 +12,7 @@ import msgspec
 import pytest
 from packaging.requirements import Requirement
 
-from aos_deploy.deploy_parts import BusPart, DeployFile, MissionPart, SkillPart, SolverPart
+from aos_deploy.deployment.parts import BusPart, DeployFile, MissionPart, SkillPart, SolverPart
 from aos_protocol import __version__, keys, messages
 from aos_protocol.errors import CODES
 from aos_protocol.keys import Keys, Serving

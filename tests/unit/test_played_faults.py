@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.played_faults import PlayedFaults
-from aos_deploy.shipped import shipped
+from aos_deploy.places import shipped
+from aos_deploy.played.faults import PlayedFaults
 from aos_lab.trials.setting import Setting, deployment_of
 from aos_protocol.errors import DeployError
 

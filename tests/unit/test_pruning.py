@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from aos_deploy.pruning import pruned
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_record import RunRecord
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.pruning import pruned
+from aos_deploy.runs.record import RunRecord
 
 DAY_NS = 86_400 * 10**9
 

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy import ssh_connection
-from aos_deploy.program import Program
-from aos_deploy.remote import HOST, dialled, is_lost, remote_command, why_it_failed
+from aos_deploy.deployment.hosts import HOST
+from aos_deploy.processes import ssh_connection
+from aos_deploy.processes.program import Program
+from aos_deploy.processes.remote import dialled, is_lost, remote_command, why_it_failed
 
 
 @pytest.mark.parametrize(

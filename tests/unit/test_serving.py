@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from commands import aos
 
-from aos_deploy.deploy_file import Deployment, read_deploy_file
-from aos_deploy.serving import serving_program
+from aos_deploy.deployment.reading import Deployment, read_deploy_file
+from aos_deploy.missions.serving import serving_program
 from aos_language.load import load_bundle
 from aos_protocol.errors import DeployError
 from aos_skills.ros.adapter import Way, way_to

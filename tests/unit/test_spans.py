@@ -12,8 +12,8 @@ from decision_records import decision_record
 
 from aos_deploy.commands.export import export
 from aos_deploy.commands.machine import examine_needs
-from aos_deploy.deploy_file import read_deploy_file
-from aos_deploy.needed_here import check_needed_here
+from aos_deploy.deployment.reading import read_deploy_file
+from aos_deploy.processes.needed_here import check_needed_here
 from aos_deploy.spans import otlp, sending
 from aos_deploy.spans.otlp import Collector
 from aos_deploy.spans.sending import Sender

@@ -7,10 +7,10 @@ import msgspec
 import pytest
 from decision_records import decision_record
 
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_end import account_of, settled
-from aos_deploy.run_summary import Summary
-from aos_deploy.verdict import Account
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.end import account_of, settled
+from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.verdict import Account
 from aos_protocol.errors import DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
     ActivationId,

@@ -7,7 +7,7 @@ from statistics import fmean, stdev
 import msgspec
 from processes import descendants
 
-from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.bundles.engine import engine_of_bundle
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.mission_questions import UNRESTRICTED, Restriction

@@ -10,9 +10,9 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.replayed import Replay, replayed
 from aos_deploy.history_check.rules import BY_TIME, RULES
-from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
+from aos_deploy.runs.living import chosen_run
 from aos_deploy.terminal import waiting
 from aos_protocol.errors import DeployError
 

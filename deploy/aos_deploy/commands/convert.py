@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.bundle_files import planned_of
+from aos_deploy.bundles.files import planned_of
 from aos_deploy.commands.documents import FolderOrDeployFile, refusal
 from aos_deploy.printing import count, print_diagnostics
 from aos_language.convert import Dialect, convert

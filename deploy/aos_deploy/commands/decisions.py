@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
-from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import Mission
 from aos_deploy.printing import from_here
-from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.living import chosen_run
 from aos_deploy.views.lines import lines_of, on_one_line
 from aos_protocol.access import WATCHER
 from aos_protocol.messages import DecisionRecord, MissionState
@@ -104,7 +104,7 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
 
 def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord | MissionState]:
     """The decisions of a mission that is over, and how it ended; by number in a system that stays."""
-    from aos_deploy.verdict import message_of_row
+    from aos_deploy.runs.verdict import message_of_row
     from aos_runtime.journal import Journal
 
     folder = mission_folder(directory.path, mission) if mission else directory.path

@@ -8,11 +8,11 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.bundle_files import planned_of, with_mission
+from aos_deploy.bundles.files import planned_of, with_mission
+from aos_deploy.bundles.sarif import sarif_log
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
-from aos_deploy.sarif import sarif_log
 from aos_language.load import load_files, with_excerpts
 from aos_language.outline import outline
 from aos_language.reading.picture_file import PICTURE
@@ -118,9 +118,9 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
     """Generates and compiles the model and returns what that finds."""
     import asyncio  # These would make the other commands start slower.
 
-    from aos_deploy.picture_findings import picture_findings
-    from aos_deploy.program import cache_dir
-    from aos_deploy.reachability import reachability_findings
+    from aos_deploy.bundles.pictures import picture_findings
+    from aos_deploy.bundles.reachability import reachability_findings
+    from aos_deploy.places import cache_dir
     from aos_solver.building.project_build import build_project, lowered
 
     async def findings() -> tuple[Diagnostic, ...]:
@@ -146,7 +146,7 @@ def _compiler_errors(files: Mapping[str, bytes], draft: Project) -> tuple[Diagno
     """Errors of the compiler in documents that have other mistakes as well."""
     import asyncio  # As above.
 
-    from aos_deploy.program import cache_dir
+    from aos_deploy.places import cache_dir
     from aos_solver.building.project_build import build_project
 
     try:

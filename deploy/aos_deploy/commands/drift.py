@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.living_runs import chosen_runs
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, print_json
+from aos_deploy.runs.living import chosen_runs
 
 if TYPE_CHECKING:
-    from aos_deploy.drift_of_runs import ModelTests
+    from aos_deploy.runs.drift import ModelTests
 
 
 def register(app: typer.Typer) -> None:
@@ -35,7 +35,7 @@ def drift(
     a model is right, the probability that any alarm of it ever comes is 1 % at most. Exit code 1: there is an
     alarm of the newest model.
     """
-    from aos_deploy.drift_of_runs import drift_of_runs  # It imports the solver.
+    from aos_deploy.runs.drift import drift_of_runs  # It imports the solver.
 
     chosen = chosen_runs(run, runs)
     models = drift_of_runs(chosen)

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 import typer
 
-from aos_deploy.living_runs import chosen_runs
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
+from aos_deploy.runs.living import chosen_runs
 from aos_protocol.errors import DeployError
 
 Format = Literal["mcap", "csv", "parquet", "bundle"]
@@ -58,7 +58,7 @@ def export(
 
 
 def _send_spans(runs: list[Path], address: str, *, as_json: bool) -> None:
-    from aos_deploy.run_directory import RunDirectory
+    from aos_deploy.runs.directory import RunDirectory
     from aos_deploy.spans.otlp import Collector, is_collector_address
     from aos_deploy.spans.sending import Sender
 

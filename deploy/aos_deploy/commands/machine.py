@@ -16,7 +16,7 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_protocol.errors import AosError
 from aos_runtime.distribution import pip_install
 from aos_runtime.sandbox.support import sandbox_support
@@ -86,8 +86,8 @@ def examine_machine() -> list[Finding]:
 def examine_needs(deploy: Path) -> list[Finding]:
     """Looks at each need of a deploy file's adapters and programs here; DeployError AOS801 if the file has
     errors."""
-    from aos_deploy.deploy_file import read_deploy_file
-    from aos_deploy.needed_here import needs_of
+    from aos_deploy.deployment.reading import read_deploy_file
+    from aos_deploy.processes.needed_here import needs_of
 
     findings = []
     for name, what, check in needs_of(read_deploy_file(deploy)):

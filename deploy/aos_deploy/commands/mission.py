@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from aos_deploy.commands import steering
+from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
-from aos_deploy.living_runs import chosen_run
-from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, print_json
 from aos_deploy.running_system import System, on_system
+from aos_deploy.runs.living import chosen_run
 from aos_protocol.messages import MissionEntry, MissionState
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 
 from aos_deploy.adapter_templates import KINDS, ROS_KINDS, adapter_files
-from aos_deploy.deploy_file import read_deploy_file
-from aos_deploy.shipped import deploy_files, shipped
+from aos_deploy.deployment.reading import read_deploy_file
+from aos_deploy.places import deploy_files, shipped
 from aos_deploy.systemd_unit import unit_name, unit_of
 from aos_language.convert import Dialect, convert
 from aos_language.cpp.keywords import CPP_KEYWORDS

@@ -8,7 +8,7 @@ from typing import Annotated
 import msgspec
 import typer
 
-from aos_deploy.mission_values import SetValues
+from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.planning_options import (
     Bundle,

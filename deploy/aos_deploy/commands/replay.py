@@ -9,11 +9,11 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import AsJson, Mission, Runs, TrustDocuments
 from aos_deploy.printing import count, from_here, print_json
-from aos_deploy.run_difference import Difference, difference
-from aos_deploy.studied_run import StudiedRun
+from aos_deploy.runs.difference import Difference, difference
+from aos_deploy.runs.living import chosen_run
+from aos_deploy.runs.studied import StudiedRun
 from aos_deploy.terminal import waiting
 from aos_protocol.messages import ModelAdopted
 from aos_solver.study.comparing import Comparison, compared

@@ -8,13 +8,13 @@ from typing import Annotated
 import msgspec
 import typer
 
-from aos_deploy.living_runs import living_runs, runs_here
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, from_here, print_json
-from aos_deploy.pruning import Pruned, pruned
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_end import account_of, beginning_of
-from aos_deploy.run_record import RunRecord
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.end import account_of, beginning_of
+from aos_deploy.runs.living import living_runs, runs_here
+from aos_deploy.runs.pruning import Pruned, pruned
+from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
 from aos_runtime.mission_folders import mission_folder, mission_folders
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.schemas import SCHEMAS
+from aos_deploy.deployment.schemas import SCHEMAS
 
 
 class Name(StrEnum):

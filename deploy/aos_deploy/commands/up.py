@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import msgspec
 import typer
 
+from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
-from aos_deploy.mission_values import SetValues
 from aos_deploy.options import HELP_NAMES, TrustDocuments, Version
 
 if TYPE_CHECKING:
-    from aos_deploy.deploy_file import Deployment
+    from aos_deploy.deployment.reading import Deployment
     from aos_protocol.errors import AosError
 
 _EPILOG = (
@@ -94,15 +94,15 @@ def up(
     """
     import asyncio  # For --help none of this is needed.
 
-    from aos_deploy.deploy_file import read_deploy_file
+    from aos_deploy.deployment.reading import read_deploy_file
     from aos_deploy.interruption import run_until_interrupted, told_while_read
-    from aos_deploy.living_runs import runs_here
-    from aos_deploy.mission_run import MissionRun
-    from aos_deploy.needed_here import check_needed_here, check_sandbox
-    from aos_deploy.run_directory import RunDirectory
-    from aos_deploy.serve_run import ServeRun
-    from aos_deploy.system_run import SystemRun
-    from aos_deploy.taking_up import take_up
+    from aos_deploy.missions.mission_run import MissionRun
+    from aos_deploy.missions.serve_run import ServeRun
+    from aos_deploy.missions.system_run import SystemRun
+    from aos_deploy.missions.taking_up import take_up
+    from aos_deploy.processes.needed_here import check_needed_here, check_sandbox
+    from aos_deploy.runs.directory import RunDirectory
+    from aos_deploy.runs.living import runs_here
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
@@ -169,8 +169,8 @@ def _with_options(
     is_played: bool,
 ) -> Deployment:
     """The deployment with what the command says otherwise; of two values for a parameter the last counts."""
-    from aos_deploy.deploy_file import check_endpoint, without_a_robot
-    from aos_deploy.mission_values import values_of_options
+    from aos_deploy.deployment.mission_values import values_of_options
+    from aos_deploy.deployment.reading import check_endpoint, without_a_robot
 
     file = deployment.file
     if is_to_stay:

@@ -6,11 +6,11 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import AsJson, Mission, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.running_system import System, on_system
-from aos_deploy.studied_run import StudiedRun
+from aos_deploy.runs.living import chosen_run
+from aos_deploy.runs.studied import StudiedRun
 from aos_deploy.terminal import waiting
 from aos_deploy.views.reasons import what_if_lines, why_lines
 from aos_protocol.access import WATCHER

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing
 from pathlib import Path, PurePosixPath
 
-from aos_deploy.program import cache_dir
+from aos_deploy.places import cache_dir
 from aos_language.archive import UNREADABLE_ARCHIVE
 from aos_protocol.errors import DeployError
 from aos_runtime.credentials import FOLDER, read_password

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Protocol
 from aos_deploy.history_check.journal_rules import KINDS, Found, JournalRules
 from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KINDS, LedgerRules, Motions
 from aos_deploy.history_check.rules import BY_TIME, Violation
-from aos_deploy.verdict import Verdict
+from aos_deploy.runs.verdict import Verdict
 from aos_protocol.errors import StorageError
 from aos_runtime.journal import JournalError, JournalRow
 

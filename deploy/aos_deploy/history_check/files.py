@@ -6,9 +6,9 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, Checked, History, check_histories
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_summary import Summary
-from aos_deploy.verdict import Verdict
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.verdict import Verdict
 from aos_runtime.journal import Journal, JournalRow
 from aos_runtime.mission_folders import mission_folders, mission_name, stays
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from aos_deploy.history_check.steering_rules import SteeringRules
-from aos_deploy.verdict import Account
+from aos_deploy.runs.verdict import Account
 from aos_protocol.messages import (
     ActionRefused,
     Activate,

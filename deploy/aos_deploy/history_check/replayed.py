@@ -8,7 +8,7 @@ import msgspec
 
 from aos_deploy.history_check.check import JOURNAL
 from aos_deploy.history_check.rules import Violation
-from aos_deploy.studied_run import StudiedRun
+from aos_deploy.runs.studied import StudiedRun
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_runtime.mission_folders import mission_folders

@@ -4,8 +4,8 @@ import asyncio
 import sys
 from contextlib import suppress
 
-from aos_deploy.adapters import SPANS
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.deployment.adapters import SPANS
+from aos_deploy.runs.directory import RunDirectory
 
 REST = "rest"
 """The word after the settings for a process that sends once what there is, and ends."""

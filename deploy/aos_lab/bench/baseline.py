@@ -7,7 +7,7 @@ from typing import Self
 
 import msgspec
 
-from aos_deploy.shipped import shipped
+from aos_deploy.places import shipped
 from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child
 from aos_solver.building.build_cache import BuildCache, digest_of

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.program import cache_dir
-from aos_deploy.shipped import shipped
+from aos_deploy.places import cache_dir, shipped
 from aos_lab.bench.rocksamples import LAYOUTS, write_bundle
 
 

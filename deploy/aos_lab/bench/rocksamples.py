@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from string import Template
 
-from aos_deploy.shipped import shipped
+from aos_deploy.places import shipped
 
 BENCH = shipped("deploy/bundles/bench")
 SKILLS_OF = "rocksample-7-8"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.program import cache_dir
+from aos_deploy.bundles.files import files_of_bundle
+from aos_deploy.places import cache_dir
 from aos_lab.calibration.draws import Draws, Skipped, draws_of
 from aos_lab.calibration.estimation import DrawEstimate, estimate
 from aos_lab.calibration.lattice import Lattice, Layers, lattice_of

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 
 from aos_deploy.printing import from_here
-from aos_deploy.run_end import beginning_of
+from aos_deploy.runs.end import beginning_of
 from aos_lab.trials.trial import Trial
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError

@@ -7,8 +7,8 @@ from typing import Annotated, get_args
 import typer
 
 from aos_deploy.options import AsJson, TrustDocuments, finite
+from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
-from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
 from aos_lab.bench.problems import problem_names, problems_named
 from aos_lab.bench.suite import METRICS, Effort, Suite

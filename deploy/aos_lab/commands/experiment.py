@@ -13,8 +13,8 @@ import typer
 from rich.progress import Progress
 
 from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
+from aos_deploy.places import shipped
 from aos_deploy.printing import from_here, print_json
-from aos_deploy.shipped import shipped
 from aos_deploy.terminal import progress
 from aos_lab.commands.interrupted import interruption_among_missions
 from aos_protocol.errors import DeployError

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
-from aos_deploy.mission_values import SetValues, values_of_options
+from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress

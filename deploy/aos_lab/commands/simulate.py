@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
+from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.mission_values import SetValues
 from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.planning_options import (
     Horizon,

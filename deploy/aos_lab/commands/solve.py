@@ -15,11 +15,11 @@ import msgspec
 import typer
 from rich.progress import BarColumn, TextColumn
 
-from aos_deploy.bundle_engine import engine_of_bundle
-from aos_deploy.mission_values import SetValues, values_of_options
+from aos_deploy.bundles.engine import engine_of_bundle
+from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, writable
+from aos_deploy.places import cache_dir
 from aos_deploy.printing import count, print_json
-from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress, waiting
 from aos_lab.formats import PROBLEM_ENDINGS
 from aos_lab.formats.graph_writers import c_header, graphviz, write_text

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import msgspec
 
-from aos_deploy.deploy_file import Deployment
-from aos_deploy.program import cache_dir
+from aos_deploy.deployment.reading import Deployment
+from aos_deploy.places import cache_dir
 from aos_lab.trials.intervals import Interval, interval_of_mean
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial

@@ -9,9 +9,9 @@ import numpy as np
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from numpy.typing import NDArray
 
-from aos_deploy.bundle_files import planned_of
-from aos_deploy.mission_values import values_of_mapping, with_values
-from aos_deploy.program import cache_dir
+from aos_deploy.bundles.files import planned_of
+from aos_deploy.deployment.mission_values import values_of_mapping, with_values
+from aos_deploy.places import cache_dir
 from aos_lab.gym.number_columns import NumberColumns, Numbers
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Span

@@ -8,8 +8,8 @@ from typing import Protocol
 
 import msgspec
 
-from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.deploy_file import Deployment
+from aos_deploy.bundles.files import files_of_bundle
+from aos_deploy.deployment.reading import Deployment
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.ray_cluster import RayPlayer
 from aos_lab.trials.script_player import ScriptPlayer

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.bundle_files import project_of
-from aos_deploy.deploy_file import read_deploy_file
-from aos_deploy.typed import known_names
+from aos_deploy.bundles.files import project_of
+from aos_deploy.deployment.reading import read_deploy_file
+from aos_deploy.deployment.typed import known_names
 from aos_lab.trials.claims import Claim, When
 from aos_lab.trials.setting import Setting
 from aos_lab.trials.trial import NOTHING_OBSERVED

@@ -5,8 +5,8 @@ from typing import Annotated, Literal, TypeVar
 
 import msgspec
 
-from aos_deploy.typed import read_structure
-from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, read_yaml
+from aos_deploy.deployment.typed import read_structure
+from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode, read_yaml
 from aos_lab.trials.claim_names import ClaimNames, project_of_setting
 from aos_lab.trials.claims import Claim, has_check
 from aos_lab.trials.setting import Setting

@@ -7,9 +7,9 @@ from contextlib import AsyncExitStack
 
 import msgspec
 
-from aos_deploy.bundle_files import project_of
-from aos_deploy.deploy_file import Deployment
-from aos_deploy.program import cache_dir
+from aos_deploy.bundles.files import project_of
+from aos_deploy.deployment.reading import Deployment
+from aos_deploy.places import cache_dir
 from aos_lab.trials.trial import Trial
 from aos_protocol.documents import Project
 from aos_solver.building.build import BuiltModel

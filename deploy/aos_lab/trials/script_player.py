@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from aos_deploy.adapter_kinds import check_installed
-from aos_deploy.deploy_file import Deployment
+from aos_deploy.deployment.adapter_kinds import check_installed
+from aos_deploy.deployment.reading import Deployment
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial
 from aos_middleware.evaluator import EvaluationLimits, Evaluator

@@ -6,12 +6,12 @@ from typing import Any, Literal
 import msgspec
 from ruamel.yaml import YAML
 
-from aos_deploy.bundle_files import project_of
-from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
-from aos_deploy.deploy_parts import BusPart
-from aos_deploy.mission_values import values_of_mapping
-from aos_deploy.needed_here import check_sandbox
-from aos_deploy.played_faults import PlayedFaults
+from aos_deploy.bundles.files import project_of
+from aos_deploy.deployment.mission_values import values_of_mapping
+from aos_deploy.deployment.parts import BusPart
+from aos_deploy.deployment.reading import Deployment, read_deploy_file, without_a_robot
+from aos_deploy.played.faults import PlayedFaults
+from aos_deploy.processes.needed_here import check_sandbox
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
 

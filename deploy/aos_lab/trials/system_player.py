@@ -6,11 +6,11 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.deploy_file import Deployment
-from aos_deploy.mission_run import MissionRun
-from aos_deploy.needed_here import check_needed_here
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_summary import Summary
+from aos_deploy.deployment.reading import Deployment
+from aos_deploy.missions.mission_run import MissionRun
+from aos_deploy.processes.needed_here import check_needed_here
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.summary import Summary
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock

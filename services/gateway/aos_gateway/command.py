@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from aos_deploy.export.run_bundle import opened_bundle
-from aos_deploy.living_runs import runs_here
+from aos_deploy.runs.living import runs_here
 from aos_protocol.errors import DeployError
 
 Listen = Annotated[str, typer.Option("--listen", metavar="ADDRESS", help="The address that it listens at")]

@@ -10,7 +10,7 @@ import logging
 import time
 from collections import Counter as Multiset
 
-from aos_deploy.consequence import STARTED_AGAIN
+from aos_deploy.processes.consequence import STARTED_AGAIN
 from aos_gateway.exposition import exposition
 from aos_gateway.metric_families import Families
 from aos_gateway.run_shelf import RunShelf

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import msgspec
 
-from aos_deploy.run_summary import Summary
+from aos_deploy.runs.summary import Summary
 from aos_gateway.documents import draws_state
 from aos_gateway.events import place_of, stream
 from aos_gateway.run_files import number_of_step

@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from aos_deploy.living_runs import living_runs
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.living import living_runs
 from aos_gateway.runs import KeptRun, RemoteRun, Run, RunEntry
 from aos_protocol.errors import DeployError, GatewayError
 from aos_runtime.mission_folders import number_of

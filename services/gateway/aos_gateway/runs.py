@@ -8,11 +8,11 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.run_directory import RunDirectory
-from aos_deploy.run_end import account_of
-from aos_deploy.run_record import RunRecord
-from aos_deploy.run_summary import Summary
-from aos_deploy.verdict import message_of_row
+from aos_deploy.runs.directory import RunDirectory
+from aos_deploy.runs.end import account_of
+from aos_deploy.runs.record import RunRecord
+from aos_deploy.runs.summary import Summary
+from aos_deploy.runs.verdict import message_of_row
 from aos_protocol.access import WATCHER
 from aos_protocol.errors import AosError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState

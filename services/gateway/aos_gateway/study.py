@@ -7,7 +7,7 @@ from typing import Annotated, TypeVar
 
 import msgspec
 
-from aos_deploy.studied_run import StudiedRun
+from aos_deploy.runs.studied import StudiedRun
 from aos_gateway.run_files import number_of_step
 from aos_gateway.runs import KeptRun
 from aos_gateway.shared import Gateway

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from aos_deploy.deploy_file import read_deploy_file
-from aos_deploy.deploy_folder import deploy_files_in
+from aos_deploy.deployment.folder import deploy_files_in
+from aos_deploy.deployment.reading import read_deploy_file
 from aos_gateway.runs import Run
 from aos_gateway.shared import Gateway
 from aos_gateway.starting import StartedRun, start_system

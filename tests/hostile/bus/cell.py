@@ -11,7 +11,7 @@ from typing import Any
 
 import zenoh
 
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.runs.directory import RunDirectory
 from aos_runtime.credentials import credential_of_run
 
 from ..counters import counting

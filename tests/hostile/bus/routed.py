@@ -13,8 +13,8 @@ import msgspec
 import zenoh
 from zenoh.handlers import Callback
 
-from aos_deploy.passes import Passes
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.processes.passes import Passes
+from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.access import ROUND_TRIP, Party
 from aos_runtime.bus_config import client_config
 from aos_runtime.credentials import Credential

@@ -1,0 +1,66 @@
+"""The engine of a bundle, for commands that need no robot."""
+
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import typer
+
+from aos_deploy.bundles.endless import endless_findings
+from aos_deploy.bundles.files import planned_of, with_mission
+from aos_deploy.places import cache_dir
+from aos_language.load import load_files, with_excerpts
+from aos_protocol.diagnostics import Severity, render
+from aos_protocol.documents import Constraint, MissionValue
+from aos_protocol.errors import DocumentError, ModelError
+from aos_solver.building.build import BuildKind
+from aos_solver.building.project_build import build_project
+from aos_solver.child.engine import Engine
+
+
+@asynccontextmanager
+async def engine_of_bundle(
+    bundle: Path,
+    seed: int,
+    *,
+    kind: BuildKind = "quick",
+    constraints: Sequence[Constraint] = (),
+    values: Sequence[MissionValue] = (),
+) -> AsyncIterator[Engine]:
+    """The engine of a bundle, compiled if need be, for missions with these constraints and values.
+
+    A deploy file stands for its bundles, and adds its own constraints and values. Mistakes in documents come
+    as one DocumentError; faults of the model show the line of the document. Loops that no draw ended are told
+    in the end.
+    """
+    planned = planned_of(bundle)
+    loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
+    if loaded.project is None:
+        raise DocumentError(
+            f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
+        )
+    # Remarks are for `aos lint`: here they would be told with every run.
+    for diagnostic in (finding for finding in loaded.diagnostics if finding.severity is not Severity.REMARK):
+        typer.echo(render(diagnostic), err=True)
+    try:
+        built = await build_project(
+            with_mission(
+                loaded.project,
+                (*planned.constraints, *constraints),
+                (*planned.values, *values),
+                planned.sources,
+            ),
+            cache_dir(),
+            lambda remark: typer.echo(f"aos: {remark}", err=True),
+            kind=kind,
+        )
+        engine = await Engine.start(built, seed=seed)
+        try:
+            yield engine
+            for finding in with_excerpts(await endless_findings(engine), planned.files):
+                typer.echo(render(finding), err=True)
+        finally:
+            await engine.close()
+    except ModelError as error:
+        error.diagnostics = with_excerpts(error.diagnostics, planned.files)
+        raise

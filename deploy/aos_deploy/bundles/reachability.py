@@ -1,0 +1,93 @@
+"""Goals and preconditions that nothing leads to: told as warnings, by looking at what the actions can do."""
+
+import msgspec
+
+from aos_deploy.bundles.endless import endless_findings
+from aos_language.findings import Findings
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.documents import Environment, Project
+from aos_protocol.errors import ModelError
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import Reach
+from aos_solver.child.engine import Engine
+from aos_solver.child.engine_child import OverdueError
+
+_NAMED_ACTIONS = 3
+_TIME_S = 1.5
+_DRAWN_TIME_S = 0.3
+MAX_CPU_S = 4.0
+"""The processor time of each of the two looks; a place that takes longer is told."""
+
+
+async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Diagnostic, ...]:
+    """Looks at the states that the actions can lead to from the initial belief, for a few seconds at most.
+
+    What is missing is a warning where all states were looked at. Where there are more, a missing goal is a
+    remark with the search's extent if that is at least the horizon, and nothing is said of preconditions.
+    Loops that never end there are warnings, too. Nothing more is said where the initial belief cannot be
+    enumerated. Where not all is looked at, random actions are tried as well. A fault of model code on the way
+    is an error at its place.
+    """
+    try:
+        engine = await Engine.start(built, seed=1)
+        try:
+            reach = await engine.reach(_TIME_S, MAX_CPU_S)
+            if not reach.is_whole:
+                await engine.rate(_DRAWN_TIME_S, seed=1, max_seconds=MAX_CPU_S)
+            endless = await endless_findings(engine)
+        finally:
+            await engine.close()
+    except ModelError as error:
+        is_fault = not isinstance(error, OverdueError)
+        if is_fault and not error.diagnostics:
+            raise
+        return tuple(_reached(diagnostic, is_fault) for diagnostic in error.diagnostics)
+    if reach.states == 0:
+        return endless
+    findings = Findings()
+    is_whole = not reach.limit
+    goal = _goal_span(project.environment)
+    if goal is not None and not reach.has_goal:
+        if is_whole:
+            findings.warning("AOS132", "no action leads to a goal", goal, _extent(reach))
+        elif reach.depth >= project.environment.horizon:
+            findings.remark("AOS132", "no goal was found", goal, _extent(reach))
+    for skill in project.skills if is_whole else ():
+        actions = [action for action in reach.actions if action.skill == skill.name]
+        unmet = [action.name for action in actions if not action.is_met]
+        if unmet and skill.model.precondition:
+            message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
+            findings.warning("AOS131", message, skill.model.precondition[0].span, _extent(reach))
+    return (*endless, *findings.diagnostics)
+
+
+def _reached(diagnostic: Diagnostic, is_fault: bool) -> Diagnostic:
+    """A fault is an error. What only takes too long to look at everything is a warning."""
+    severity = Severity.ERROR if is_fault else Severity.WARNING
+    hint = diagnostic.hint if is_fault else "Make steps cheaper: a search makes many thousand of them"
+    message = f"in a state that can be reached: {diagnostic.message}"
+    return msgspec.structs.replace(diagnostic, severity=severity, message=message, hint=hint)
+
+
+def _goal_span(environment: Environment) -> Span | None:
+    """The first special state that may be a goal."""
+    for special in environment.special_states:
+        code = " ".join(part.code.code for part in special.code if part.code is not None)
+        is_goal = special.is_goal and not special.is_failure
+        if (is_goal and (special.is_failure is False or special.reward > 0)) or "__isGoalState" in code:
+            return special.span
+    return None
+
+
+def _named(unmet: list[str], actions: int, skill: str) -> str:
+    if len(unmet) == actions:
+        return skill
+    rest = len(unmet) - _NAMED_ACTIONS
+    return ", ".join(unmet[:_NAMED_ACTIONS]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _extent(reach: Reach) -> str:
+    states = "1 state" if reach.states == 1 else f"{reach.states} states"
+    if reach.limit:
+        return f"Looked at {states}, up to {reach.depth} actions from the start; {reach.limit}"
+    return f"Looked at all that can be reached, {states}, up to {reach.depth} actions from the start"

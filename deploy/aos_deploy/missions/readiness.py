@@ -1,0 +1,127 @@
+"""The skills that can be run: the wait for all before the first decision, and those that leave after it."""
+
+import asyncio
+from collections.abc import Collection
+
+from aos_deploy.deployment.reading import Deployment
+from aos_deploy.events import Report, Told
+from aos_deploy.processes.supervisor import Supervisor
+from aos_protocol.errors import BusError, DeployError
+from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
+from aos_protocol.spelling import nearest
+from aos_runtime.reported_state import state_when
+from aos_runtime.subscription import merged
+
+_ASK_S = 5.0
+_NOBODY_S = 1.0
+MAPPINGS_S = 60.0
+_SETTLED_S = 2.0
+"""An absence this short is not told."""
+
+
+async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> tuple[str, ...]:
+    """Returns when all skills of the newest revision can be run, with `misspelt_paths` of these.
+
+    DeployError AOS807 names the paths that nobody serves, or two adapters serve, after the time that adapters
+    may take to start.
+    """
+    bus, keys = supervisor.bus, supervisor.keys
+    project = await bus.ask(keys.project, ProjectQuery(deployment.project), ProjectRevision, timeout_s=_ASK_S)
+    newest: MappingState | None = None
+
+    def has_revision(state: MappingState) -> bool:
+        nonlocal newest
+        newest = state
+        return max(state.refused, state.revision) >= project.revision
+
+    def is_complete(state: MappingState) -> bool:
+        return has_revision(state) and (state.refused >= project.revision or not state.unavailable)
+
+    # How long mappings take to be generated says nothing of adapters.
+    await state_when(
+        bus, keys.mapping_state, MappingQuery(), MappingState, has_revision, timeout_s=MAPPINGS_S
+    )
+    longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_NOBODY_S)
+    try:
+        await state_when(
+            bus, keys.mapping_state, MappingQuery(), MappingState, is_complete, timeout_s=longest_s
+        )
+    except BusError as error:
+        if newest is None or not newest.unavailable:
+            raise
+        raise DeployError(
+            f"not every skill can be run within {longest_s:g} s: {_reasons(newest, newest.unavailable)}",
+            code="AOS807",
+            hint=_hint(supervisor, deployment),
+        ) from error
+    return misspelt_paths(deployment, {skill.mapping.activation.path for skill in project.project.skills})
+
+
+async def tell_lost_skills(supervisor: Supervisor, report: Report) -> None:
+    """Reports skills that could be run and cannot any more, and those that can again, until it is cancelled.
+
+    Nothing is told of them while a program starts again, which is told itself.
+    """
+    bus, keys = supervisor.bus, supervisor.keys
+    runnable: set[str] = set()
+    lost: set[str] = set()
+    told = bus.listen(keys.mapping_state, MappingState)
+    async with merged(told, bus.presence(keys.live("middleware"))) as changes:
+        async for _, change in changes:
+            runnable |= _runnable(change)
+            while True:
+                await asyncio.sleep(_SETTLED_S)
+                if not supervisor.is_changing:
+                    break
+            while changes.has_items:  # The answer is newer, and a skill of theirs may have left since.
+                runnable |= _runnable((await anext(changes))[1])
+            try:
+                state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
+            except BusError:
+                continue  # It is told when the middleware is back.
+            if left := runnable & state.unavailable.keys():
+                more = "`aos skill list` and the adapters' logs tell more"
+                report(Told(f"cannot be run any more: {_reasons(state, left)} ({more})"))
+            now = _runnable(state)
+            if back := lost & now:
+                report(Told(f"can be run again: {', '.join(sorted(back))}"))
+            lost = (lost | left) - now
+            runnable = (runnable | now) - left
+
+
+def _runnable(state: MappingState | bool) -> set[str]:
+    """The skills that the middleware tells can be run; none where it tells of its presence."""
+    return set(state.skills) - state.unavailable.keys() if isinstance(state, MappingState) else set()
+
+
+def _reasons(state: MappingState, skills: Collection[str]) -> str:
+    return "; ".join(f"{skill}: {state.unavailable[skill]}" for skill in sorted(skills))
+
+
+def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str, ...]:
+    """A remark for each path of `bind:` that no skill calls, and that is nearly one that a skill calls and
+    `"*"` binds: another adapter moves there. A path that is like none may be that of a skill to come.
+    """
+    bound = {path for plan in deployment.adapters for path in plan.bind}
+    remarks = []
+    for path in sorted(bound.difference(called)):
+        if close := nearest(path, set(called) - bound):
+            others = next((plan.name for plan in deployment.adapters if plan.serves_others), "another")
+            remarks.append(
+                f"`bind:` names {path}, which no skill calls. Did you mean {close}? {others} serves that"
+            )
+    return tuple(remarks)
+
+
+def _hint(supervisor: Supervisor, deployment: Deployment) -> str:
+    bound = [f"{path} to {plan.name}" for plan in deployment.adapters for path in plan.bind]
+    bound += [f"all others to {plan.name}" for plan in deployment.adapters if plan.serves_others]
+    lines = [
+        f"The deploy file binds {', '.join(bound)}"
+        if bound
+        else "The deploy file binds nothing: see `bind:`",
+        *(f"{plan.name} is external: start it" for plan in deployment.adapters if not plan.is_process),
+        *(supervisor.look_at_log(plan.name) for plan in deployment.adapters if plan.is_process),
+        "Or play without a robot: aos-up --model",
+    ]
+    return "\n    ".join(lines)

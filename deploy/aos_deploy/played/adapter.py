@@ -1,0 +1,167 @@
+"""The adapter `model`: skills that are played by their own documents, where there is no robot.
+
+All skills that are bound to it share one hidden true state, drawn from the initial belief by the mission's
+seed and stepped by the model, as `aos simulate` does it. A call answers with the observation itself. The
+truth of each step is in `<run>/<adapter>.jsonl`; the planner is not told. A process that starts again plays
+the steps of that file once more, and so comes to the same state. With the option `faults` some calls fail.
+
+In a system that stays each mission has such a file in its folder. Its world is as `played_worlds.py` says.
+"""
+
+import asyncio
+import logging
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_deploy.played.faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
+from aos_deploy.played.worlds import PlayedStep, PlayedWorld, bring_to, steps_in, worlds_of
+from aos_protocol.documents import MissionValue, Project
+from aos_protocol.errors import AosError, SkillError
+from aos_protocol.messages import ProjectRevision
+from aos_runtime.adapters import Call, Host, Observed
+from aos_runtime.mission_folders import number_in
+from aos_solver.building.project_build import build_project
+from aos_solver.child.engine import Engine
+
+__all__ = ["ModelAdapter", "PlayedStep"]
+
+_log = logging.getLogger("aos.model")
+
+
+class _World(msgspec.Struct, frozen=True):
+    """A running model, and the number of each of its actions by skill and parameters."""
+
+    engine: Engine
+    project: Project
+    names: tuple[str, ...]
+    skills: dict[str, list[tuple[dict[str, Any], int]]]
+
+
+class ModelAdapter:
+    """Serves the paths of all skills that fall to it, as soon as their model is built."""
+
+    version = "1"
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._cache_dir = Path(host.options["cache_dir"])
+        self._file = host.run_dir / f"{host.name}.jsonl"
+        self._mission_values = msgspec.convert(
+            host.options.get("mission_values", ()), tuple[MissionValue, ...]
+        )
+        self._faults = PlayedFaults(host.options.get("faults", {}))
+        self._worlds = [PlayedWorld(self._file, host.seed, self._mission_values)]
+        self._mission = ""
+        self._world: _World | None = None
+        self._following: asyncio.Task[None] | None = None
+        self._changing = asyncio.Lock()
+
+    async def start(self) -> None:
+        """Documents come after everything has started; a model takes its time to be compiled."""
+        self._worlds = [msgspec.structs.replace(self._worlds[0], played=steps_in(self._file))]
+        self._following = asyncio.create_task(self._follow())
+
+    async def call(self, call: Call) -> Observed:
+        """A step of the hidden state; SkillError where a fault was drawn for it."""
+        await self._turn_to(call.id.mission)
+        fault = self._faults.drawn(call.skill, self._worlds[-1].seed, call.id.step)
+        # A step takes far less than its cancellation could: it is done or not begun.
+        observed = await asyncio.shield(self._step(call, fault))
+        if fault == FAILED_CALL:
+            raise SkillError(f"{call.skill} has failed, as the test wants it", code="AOS510")
+        if fault == LOST_RESULT:
+            raise SkillError(f"the result of {call.skill} is lost, as the test wants it", code="AOS504")
+        if fault == NO_ANSWER:
+            await asyncio.Event().wait()
+        return observed
+
+    async def close(self) -> None:
+        if self._following is not None:
+            self._following.cancel()
+            await asyncio.wait({self._following})
+        if self._world is not None:
+            await self._world.engine.close()
+
+    async def _turn_to(self, mission: str) -> None:
+        """Turns to the world of another mission, in a system that stays."""
+        number = number_in(self._host.run_dir.name, mission)
+        if mission == self._mission or number is None:
+            return
+        entries = (await self._host.missions()).entries
+        async with self._changing:
+            self._worlds = worlds_of(
+                entries, number, self._host.run_dir, self._host.name, self._mission_values
+            )
+            if self._world is not None:
+                self._world = await self._brought(self._world.engine, self._world.project)
+            self._mission = mission
+
+    async def _brought(self, engine: Engine, project: Project) -> _World:
+        """The world to which the missions have come, with the actions that the mission's values give it."""
+        await bring_to(engine, project, self._worlds, self._cache_dir)
+        actions = engine.description.actions
+        world = _World(engine, project, tuple(action.name for action in actions), {})
+        for index, action in enumerate(actions):
+            world.skills.setdefault(action.skill, []).append((action.parameters, index))
+        return world
+
+    async def _step(self, call: Call, fault: str) -> Observed:
+        async with self._changing:
+            world = self._world
+            if world is None:
+                raise SkillError("the model is not ready", code="AOS505")
+            index = _index(world, call)
+            name = world.names[index]
+            if fault == FAILED_CALL:
+                played = PlayedStep(name, "", 0.0, "", await world.engine.world_state(), fault)
+                numbers: dict[str, Any] = {}
+                monitors: dict[str, str] = {}
+            else:
+                step = await world.engine.step_world(index)
+                state = await world.engine.world_state()
+                played = PlayedStep(name, step.response, step.reward, step.ending, state, fault)
+                numbers = step.numbers
+                monitors = await world.engine.monitor_world()
+                now = self._worlds[-1]
+                self._worlds[-1] = msgspec.structs.replace(now, played=(*now.played, name))
+        with self._worlds[-1].file.open("ab") as file:
+            file.write(msgspec.json.encode(played) + b"\n")
+        return Observed(played.response, numbers, monitors)
+
+    async def _follow(self) -> None:
+        async for revision in self._host.revisions():
+            try:
+                await self._adopt(revision)
+            except AosError as error:
+                _log.error("revision %d cannot be played: %s", revision.revision, error)
+                if self._world is None:
+                    await self._serve(revision.project)  # A mission that starts is told why it cannot.
+
+    async def _adopt(self, revision: ProjectRevision) -> None:
+        """Goes over to new documents: the steps so far are played again by them."""
+        project = msgspec.structs.replace(revision.project, mission_values=self._mission_values)
+        built = await build_project(project, self._cache_dir, lambda remark: _log.info("%s", remark))
+        engine = await Engine.start(built, seed=self._host.seed, keeps_belief=False)
+        async with self._changing:
+            outdated, self._world = self._world, await self._brought(engine, revision.project)
+        if outdated is not None:
+            await outdated.engine.close()
+        await self._serve(revision.project)
+
+    async def _serve(self, project: Project) -> None:
+        paths = {"/" + skill.mapping.activation.path.strip("/") for skill in project.skills}
+        bound = {path for path in paths if path in self._host.bound or self._host.wants(path)}
+        await self._host.serve(*sorted(bound))
+
+
+def _index(world: _World, call: Call) -> int:
+    for parameters, index in world.skills.get(call.skill, ()):
+        if parameters == call.parameters:
+            return index
+    raise SkillError(
+        f"the model has no action {call.skill} with {call.parameters}",
+        code="AOS502",
+        hint="A model plays what a planner has decided; a call by hand does not say which action it is",
+    )

@@ -1,0 +1,80 @@
+"""The consequence of a program that ends by itself: started again, given up, ignored, or the run ends."""
+
+import asyncio
+from collections.abc import Iterable
+
+from aos_deploy.processes.end import end_of
+from aos_deploy.processes.program import Program
+from aos_deploy.processes.remote import is_lost
+from aos_deploy.processes.restarts import WITHIN_S, Restarts
+from aos_deploy.runs.directory import RunDirectory
+from aos_protocol.errors import AosError
+from aos_runtime.children import Child
+from aos_runtime.guard import NOT_STARTED
+from aos_runtime.lifecycle import STORAGE_STATUS
+
+STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
+"""The consequences of a process that ends by itself."""
+
+_MISTAKES = (2, 126, NOT_STARTED)
+"""Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
+_HOPELESS = ("AOS1", "AOS7", "AOS8")
+"""The beginnings of the codes of faults that the next start would find again."""
+
+
+class RunningProgram:
+    """A program's process. `starts` counts how often it was started, `ready` is set once it was ready."""
+
+    child: Child
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.restarts = Restarts(is_adapter=program.is_adapter)
+        self.started_s = 0.0
+        self.ready = asyncio.Event()
+        self.is_ready = False
+        self.seeking: asyncio.Task[None] | None = None
+        self.silence: asyncio.Task[None] | None = None
+        self.silent_since_s = 0.0
+
+
+def consequence(
+    running: RunningProgram, status: int, others: Iterable[RunningProgram], run: RunDirectory, now_s: float
+) -> str:
+    """Returns the consequence of a program that ended by itself with a status, beside these others."""
+    program, was_ready = running.program, running.ready.is_set()
+    if program.on_exit == "ignore" and was_ready:
+        return IGNORED
+    # Before it was ready, only what the next start may find otherwise is tried again.
+    is_mistake = status in _MISTAKES or run.fault(program.name) is not None
+    may_succeed = (
+        not _is_hopeless(program, status, run) if was_ready else bool(program.command) and not is_mistake
+    )
+    # A link that is cut again and again is no fault of the program: how long to wait, the mission says.
+    is_cut = was_ready and is_lost(program, status)
+    has_starts = is_cut or running.restarts.are_left(now_s)
+    if may_succeed and program.is_restarted and has_starts:
+        return STARTED_AGAIN
+    # What an adapter served is unavailable; the mission goes on with the rest.
+    goes_on = was_ready and program.is_adapter and any(map(_is_living_adapter, others))
+    return GIVEN_UP if goes_on else THE_RUN_ENDS
+
+
+def fatal_end(running: RunningProgram, status: int, run: RunDirectory) -> AosError:
+    """The error that a run ends with because this program has ended."""
+    error = end_of(running.program, run, status, was_ready=running.ready.is_set())
+    if running.restarts.count >= running.restarts.most:
+        error.message += f", and was started {running.restarts.most} times within {WITHIN_S:g} s"
+    return error
+
+
+def _is_hopeless(program: Program, status: int, run: RunDirectory) -> bool:
+    if program.is_adapter:
+        return False
+    fault = run.fault(program.name)
+    # On a full disk there may be no space for the fault.
+    return fault.code.startswith(_HOPELESS) if fault is not None else status == STORAGE_STATUS
+
+
+def _is_living_adapter(running: RunningProgram) -> bool:
+    return running.program.is_adapter and running.child.returncode is None

@@ -1,0 +1,67 @@
+"""The end of a run: what stopped it goes into the journal, and the verdict comes out of that."""
+
+from pathlib import Path
+
+from aos_deploy.runs.verdict import Account, Verdict, message_of_row
+from aos_protocol.errors import AosError, StorageError
+from aos_protocol.messages import MissionBegun
+from aos_protocol.mission_rows import BEGUN, STATE
+from aos_runtime.journal import Journal
+
+_JOURNAL = "journal.db"
+
+
+def account_of(run: Path) -> Account:
+    """The account in a run's journal, an empty one if it has none; StorageError AOS702 if it is damaged."""
+    account = Account()
+    if (run / _JOURNAL).exists():
+        with Journal.read(run / _JOURNAL) as journal:
+            for row in journal.walk():
+                message = message_of_row(row)
+                if message is not None:
+                    account.take(message)
+    return account
+
+
+def beginning_of(run: Path) -> MissionBegun | None:
+    """The first `begun` row of a mission's folder; None where there is none, or it cannot be read."""
+    path = run / _JOURNAL
+    if not path.is_file():
+        return None
+    try:
+        with Journal.read(path) as journal:
+            row = next(journal.walk(BEGUN), None)
+            return None if row is None else row.read_as(MissionBegun)
+    except StorageError:
+        return None
+
+
+def settled(
+    run: Path, heard: Account, *, stopped_by: AosError | None, was_interrupted: bool, mission: str = ""
+) -> tuple[Verdict, StorageError | None]:
+    """The verdict on a run whose processes are gone, and why the journal has not all of it, if it has not.
+
+    `run` is the folder of the mission, which has the `mission`'s name where that is not the folder's.
+    Where the journal cannot be read the verdict is on `heard` from the bus. Where it cannot be written,
+    as on a full disk, the end is not in it, but the verdict is the same.
+    """
+    lacking: StorageError | None = None
+    try:
+        account = account_of(run)
+        if heard.has_ended and not (run / _JOURNAL).exists():
+            raise StorageError(
+                f"the journal {run / _JOURNAL} was removed while it was written", code="AOS702"
+            )
+    except StorageError as error:
+        account, lacking = heard, error
+    stopped = None
+    if was_interrupted or stopped_by is not None:
+        stopped = account.stopped(mission or run.name, stopped_by)
+    if stopped is not None:
+        account.take(stopped)
+        try:
+            with Journal.open(run / _JOURNAL) as journal:
+                journal.append(STATE, stopped)
+        except StorageError as error:
+            lacking = lacking or error
+    return account.verdict(), lacking
