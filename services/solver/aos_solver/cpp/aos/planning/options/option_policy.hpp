@@ -102,6 +102,12 @@ class OptionPolicy {
     return PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);
   }
   double reward_of(int action, Sampler& random) const { return PlainPlans<Model>::played(action, belief_, of_reward, 1, random).returned; }
+  // Whether the world, left to itself, comes to cost more than ways earn where the state is seen. Ways do not tell then what to do.
+  bool is_neglect_dear(int horizon, Sampler& random) const {
+    double earned = 0;
+    for (std::size_t k = 0; k < belief_.size(); ++k) earned += belief_.weights()[k] * gains_.best_in(k);
+    return PlainPlans<Model>::all_decay(belief_, horizon, earned, random);
+  }
   // Lets a plain plan decide. What was told of all else is `lost` too much.
   void settle_for(const PlainPlan& plain, double lost) {
     for (ActionEstimate& estimate : estimates_) estimate.q -= estimate.n > 0 ? lost : 0;

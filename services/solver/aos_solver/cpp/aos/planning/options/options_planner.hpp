@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "aos/base/clock.hpp"
@@ -76,6 +77,7 @@ class OptionsPlanner final : public Planner<Model> {
     promises_ = {};
     policy_.start_over();
     looks_ = Backoff{};
+    is_neglect_dear_.reset();
   }
 
  private:
@@ -86,7 +88,10 @@ class OptionsPlanner final : public Planner<Model> {
     const double affordable = affordable_.of(question.budget, question.horizon);
     std::string obstacle = policy_.prepare(question.belief, affordable, question.budget.seconds, random);
     affordable_.note(policy_.taken(), PlanningClock::now() - start);
-    return obstacle;
+    if (!obstacle.empty() || question.is_by_name) return obstacle;
+    const ForgottenTexts forgotten;
+    if (!is_neglect_dear_) is_neglect_dear_ = policy_.is_neglect_dear(question.horizon, random);
+    return *is_neglect_dear_ ? "what is neglected costs more than ways to rewards earn" : "";
   }
 
   // A robot that looks for ever for what pays for itself leaves, or waits, once promises have lost what it could still gain.
@@ -114,6 +119,7 @@ class OptionsPlanner final : public Planner<Model> {
   AffordableSteps<Model> affordable_;
   Backoff looks_;
   bool has_looked_ = false;
+  std::optional<bool> is_neglect_dear_;  // by the first decision of a mission that has ways
 };
 
 }  // namespace aos

@@ -46,6 +46,14 @@ class PlainPlans {
     return played(actions.front(), belief, last_tries, horizon, random);
   }
 
+  // Whether each plan, up to its end, returns by more than `amount` less than if each of its steps returned what its first one does.
+  static bool all_decay(const SampledBelief<Model>& belief, int horizon, double amount, Sampler& random) {
+    for (int action = 0; action < Model::action_count(); ++action) {
+      if (decay(action, belief, horizon, random) <= amount) return false;
+    }
+    return true;
+  }
+
   // What an action returns that is taken so many times.
   static PlainPlan played(int action, const SampledBelief<Model>& belief, std::size_t tries, int length, Sampler& random) {
     double sum = 0;
@@ -65,6 +73,27 @@ class PlainPlans {
   static constexpr std::size_t kept_share = 4;
   static constexpr double rounds = 4;
   static constexpr std::size_t last_tries = 64;
+
+  // Less two standard errors. To leave, or to reach a goal, is no decay.
+  static double decay(int action, const SampledBelief<Model>& belief, int horizon, Sampler& random) {
+    const double first = played(action, belief, last_tries, 1, random).returned;
+    double sum = 0;
+    double squares = 0;
+    draw_states(belief.weights(), static_cast<int>(last_tries), random, [&](std::size_t k) {
+      State state = belief.states()[k];
+      double lost = 0;
+      double discount = 1;
+      for (int i = 0; i < horizon && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
+        const double reward = Model::step(state, action, random).reward;
+        if (Model::ending(state) == Ending::running || Model::ending(state) == Ending::failure) lost += discount * (first - reward);
+      }
+      sum += lost;
+      squares += lost * lost;
+    });
+    constexpr auto count = static_cast<double>(last_tries);
+    const double mean = sum / count;
+    return mean - 2 * std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1));
+  }
 
   static double returned(State state, int action, int length, Sampler& random) {
     double sum = 0;
