@@ -139,7 +139,7 @@ async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_
 
 
 async def test_a_robot_whose_battery_ends_is_not_led_by_what_intruders_pay(cache_dir: Path) -> None:
-    """In ten rooms intruders come by themselves; left alone they cost more than they pay, and ways do not lead back to the dock."""
+    """Intruders come by themselves, and cost more than they pay. No way leads through the dock."""
     patrol = BundleWriter(
         "patrol",
         """horizon: 50
@@ -161,14 +161,14 @@ reward_code:
 for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
 """,
     )
-    go = "state__.battery--;\nstate__.at = (state.at + (east ? 1 : 9)) % 10;\n__reward = -0.1;\n__moduleResponse = moved;"
-    patrol.skill("go", ["moved"], go, over={"east": "2"})
-    look = "state__.battery--;\n__reward = -0.1;\nbool is_seen = AOS.Bernoulli(state_.intruder[state.at] ? 0.9 : 0.1);\n"
-    patrol.skill("look", ["somebody", "nobody"], look + "__moduleResponse = is_seen ? somebody : nobody;")
+    go = "state__.battery--;\n__reward = -0.1;\nstate__.at = (state.at + (east ? 1 : 9)) % 10;\n"
+    patrol.skill("go", ["moved"], go + "__moduleResponse = moved;", over={"east": "2"})
+    look = "__reward = -0.1;\nbool is_seen = AOS.Bernoulli(state_.intruder[state.at] ? 0.9 : 0.1);\n"
+    patrol.skill("look", ["somebody", "nobody"], look + "state__.battery--;\n__moduleResponse = is_seen ? somebody : nobody;")
     expel = "state__.battery -= 2;\n__reward = state_.intruder[state.at] ? 4 : -3;\n"
     patrol.skill("expel", ["done"], expel + "state__.intruder[state.at] = false;\n__moduleResponse = done;")
-    charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n__moduleResponse = charged;"
-    patrol.skill("charge", ["charged"], charge)
+    charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n"
+    patrol.skill("charge", ["charged"], charge + "__moduleResponse = charged;")
     async with engine_of_text(patrol.files, cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=45)
         run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
