@@ -164,7 +164,11 @@ for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
     go = "state__.battery--;\n__reward = -0.1;\nstate__.at = (state.at + (east ? 1 : 9)) % 10;\n"
     patrol.skill("go", ["moved"], go + "__moduleResponse = moved;", over={"east": "2"})
     look = "__reward = -0.1;\nbool is_seen = AOS.Bernoulli(state_.intruder[state.at] ? 0.9 : 0.1);\n"
-    patrol.skill("look", ["somebody", "nobody"], look + "state__.battery--;\n__moduleResponse = is_seen ? somebody : nobody;")
+    patrol.skill(
+        "look",
+        ["somebody", "nobody"],
+        look + "state__.battery--;\n__moduleResponse = is_seen ? somebody : nobody;",
+    )
     expel = "state__.battery -= 2;\n__reward = state_.intruder[state.at] ? 4 : -3;\n"
     patrol.skill("expel", ["done"], expel + "state__.intruder[state.at] = false;\n__moduleResponse = done;")
     charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n"
