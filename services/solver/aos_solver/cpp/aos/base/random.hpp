@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
@@ -29,6 +30,13 @@ template <class Values>
 concept ListOfValues = requires(Values&& values) {
   std::begin(values);
   std::size(values);
+};
+
+// Weights that stand in one piece, so that a draw needs no copy of them.
+template <class Weights>
+concept InOnePiece = requires(const Weights& weights) {
+  { std::data(weights) } -> std::same_as<const double*>;
+  std::size(weights);
 };
 
 // The element of that number; of a list that nobody keeps a copy of it. Throws std::out_of_range where there is none.
@@ -74,6 +82,7 @@ class Draws {
   }
   template <class Weights>
   int SampleDiscrete(int name, const Weights& weights) {
+    if constexpr (InOnePiece<Weights>) return name + 1 + normalised(std::data(weights), static_cast<int>(std::size(weights)));
     const Copied copied{weights};
     return name + 1 + normalised(copied.weights, copied.count);
   }
@@ -100,6 +109,11 @@ class Draws {
   template <class Weights = std::initializer_list<double>>
     requires(!std::is_enum_v<Weights>)
   int SampleDiscrete(const Weights& weights) {
+    if constexpr (InOnePiece<Weights>) {
+      const auto count = static_cast<int>(std::size(weights));
+      const double total = checked_total(std::data(weights), count, /*may_be_zero=*/true);
+      if (1 - total <= weight_rounding) return source().choose(std::data(weights), count, total);
+    }
     Copied copied{weights};
     const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);
     const double gap = 1 - total;
