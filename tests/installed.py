@@ -45,8 +45,13 @@ class Installation:
 def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
     """The wheel of a checkout's files, or of a part of it, built in a copy: the checkout stays as it is."""
     source = folder / "source"
-    ignored = shutil.ignore_patterns(".*", "build", "runs", "*.egg-info", "__pycache__")
-    shutil.copytree(root, source, ignore=ignored)
+    inside = shutil.ignore_patterns(".*", "build", "*.egg-info", "__pycache__")
+    runs = shutil.ignore_patterns("runs")
+    shutil.copytree(
+        root,
+        source,
+        ignore=lambda at, names: inside(at, names) | (runs(at, names) if at == str(root) else set()),
+    )
     pip: list[str | Path] = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check"]
     subprocess.run(
         [*pip, "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", folder, source / part],
