@@ -6,7 +6,7 @@ from textwrap import dedent
 from aos_language.findings import Findings
 from aos_language.load import load_bundle
 from aos_language.reading.files import read_documents
-from aos_middleware.emit import EmittedMapping, emit_mapping
+from aos_middleware.emission.emit import EmittedMapping, emit_mapping
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Project, Skill, SkillModel
 

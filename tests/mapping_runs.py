@@ -5,9 +5,9 @@ from typing import Any
 
 from mapping_documents import emitted
 
-from aos_middleware.emit import EmittedMapping
-from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
-from aos_middleware.worker import LoadedMapping
+from aos_middleware.emission.emit import EmittedMapping
+from aos_middleware.workers.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
+from aos_middleware.workers.worker import LoadedMapping
 
 HEAD = """\
 project: garden

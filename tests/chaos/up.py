@@ -27,7 +27,7 @@ _COMMAND_LINES = {
     "router": r"-m aos_runtime\.router ",
     "registry": r"-m aos_registry ",
     "middleware": r"-m aos_middleware ",
-    "worker": r"-m aos_middleware\.worker",
+    "worker": r"-m aos_middleware\.workers\.worker",
     "solver": r"-m aos_solver ",
     "engine": r"/model-[0-9a-f]+/",
     "adapter": r"-m aos_runtime\.adapters ",

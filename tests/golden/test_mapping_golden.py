@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from mapping_documents import project_in
 
-from aos_middleware.mappings import emit_project
+from aos_middleware.mappings.revisions import emit_project
 
 EXPECTED = Path(__file__).parent / "python"
 

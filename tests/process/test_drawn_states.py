@@ -11,7 +11,7 @@ from models import built_bundle
 
 from aos_deploy.bundles.pictures import picture_findings
 from aos_language.load import load_bundle, load_files, read_bundle_files
-from aos_middleware.picture import Drawn, draw, likeliest_state
+from aos_middleware.workers.picture import Drawn, draw, likeliest_state
 from aos_protocol.errors import DocumentError
 from aos_protocol.messages import BeliefSummary, Marginal
 

@@ -15,8 +15,8 @@ from mapping_documents import emitted
 from mapping_runs import HEAD
 from processes import descendants, until_ended
 
-from aos_middleware.evaluator import EvaluationLimits, Evaluator, MappingFault
-from aos_middleware.frames import Load, pack
+from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator, MappingFault
+from aos_middleware.workers.frames import Load, pack
 
 RESULT = (
     HEAD
@@ -238,7 +238,7 @@ def test_a_worker_whose_middleware_was_killed_ends_without_a_word() -> None:
     heard_by_nobody, answers = os.pipe()
     os.close(heard_by_nobody)
     worker = subprocess.run(
-        [sys.executable, "-I", "-m", "aos_middleware.worker"],
+        [sys.executable, "-I", "-m", "aos_middleware.workers.worker"],
         input=pack(Load("", "mapping.py", load_s=20.0, evaluation_s=20.0)),
         stdout=answers,
         stderr=subprocess.PIPE,

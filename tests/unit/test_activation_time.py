@@ -6,7 +6,7 @@ from typing import Any
 from mapping_documents import emitted
 from scripted_missions import Clock
 
-from aos_middleware.activation import _Activation
+from aos_middleware.activations.activation import _Activation
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId
 

@@ -10,9 +10,9 @@ from scripted_models import text_project
 from texts import encoded
 
 from aos_language.load import load_files
-from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised
-from aos_middleware.low_level import LowLevelValues, assigned_variables, default_constants
-from aos_middleware.worker import LoadedMapping
+from aos_middleware.mappings.low_level import LowLevelValues, assigned_variables, default_constants
+from aos_middleware.workers.frames import Begin, Begun, Finish, Load, Observed, Raised
+from aos_middleware.workers.worker import LoadedMapping
 from aos_protocol.diagnostics import Severity
 from aos_protocol.messages import Activate, ActivationId, Outcome
 

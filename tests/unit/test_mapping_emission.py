@@ -12,8 +12,8 @@ from msgspec.structs import replace
 
 from aos_language.findings import Findings
 from aos_language.reading.files import read_documents
-from aos_middleware.emit import emit_mapping
-from aos_middleware.mappings import emit_project
+from aos_middleware.emission.emit import emit_mapping
+from aos_middleware.mappings.revisions import emit_project
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
     AbstractionMapping,

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from mapping_runs import emitted_with, loaded, observed, raised, running
 
-from aos_middleware.frames import Begin, Finish, Raised, Take
+from aos_middleware.workers.frames import Begin, Finish, Raised, Take
 
 
 def test_an_exception_is_placed_at_the_innermost_line_of_the_mapping() -> None:

@@ -9,8 +9,8 @@ import pytest
 from mapping_documents import emitted, project_in
 from mapping_runs import HEAD, fields, loaded, observed, running
 
-from aos_middleware.mappings import emit_project
-from aos_middleware.worker import LoadedMapping
+from aos_middleware.mappings.revisions import emit_project
+from aos_middleware.workers.worker import LoadedMapping
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import LowLevelConstant, LowLevelDocument, Snippet
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aos_middleware.values import Message, low_level_type, message_from, plain_from, stand_in, text_of
+from aos_middleware.workers.values import Message, low_level_type, message_from, plain_from, stand_in, text_of
 
 
 class RosMessage:

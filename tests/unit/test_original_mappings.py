@@ -9,8 +9,8 @@ from mapping_runs import fields, loaded, observed
 from test_documents_constructs import ENVIRONMENT, LOW_LEVEL, MAPPING, SKILL
 
 from aos_language.load import LoadedBundle, load_files
-from aos_middleware.emit import EmittedMapping
-from aos_middleware.mappings import emit_project
+from aos_middleware.emission.emit import EmittedMapping
+from aos_middleware.mappings.revisions import emit_project
 
 
 @pytest.fixture

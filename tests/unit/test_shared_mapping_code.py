@@ -9,8 +9,8 @@ from texts import encoded
 from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
 from aos_language.outline import outline
-from aos_middleware.mappings import emit_project
-from aos_middleware.worker import LoadedMapping
+from aos_middleware.mappings.revisions import emit_project
+from aos_middleware.workers.worker import LoadedMapping
 from aos_protocol.documents import Project
 
 SHARED = """import math

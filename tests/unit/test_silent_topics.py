@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from aos_middleware.silent_topics import CALLS, SilentTopics
+from aos_middleware.robot.silent_topics import CALLS, SilentTopics
 
 
 def test_a_topic_on_which_nothing_comes_is_told_once_with_the_nearest_name(

@@ -7,7 +7,7 @@ from mapping_documents import emitted
 from mapping_runs import HEAD, fields, loaded, raised
 
 from aos_language.load import load_files
-from aos_middleware.frames import Raised, Take, Taken
+from aos_middleware.workers.frames import Raised, Take, Taken
 
 ENVIRONMENT = b"""\
 project: garden

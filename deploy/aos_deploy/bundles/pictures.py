@@ -13,7 +13,7 @@ async def picture_findings(files: Mapping[str, bytes], built: BuiltModel) -> tup
     """Says why the initial belief cannot be drawn, at the line; nothing where there is no `picture.py`."""
     if PICTURE not in files:
         return ()
-    from aos_middleware.picture import draw
+    from aos_middleware.workers.picture import draw
 
     engine = await Engine.start(built, seed=1)
     try:

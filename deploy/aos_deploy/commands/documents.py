@@ -188,7 +188,10 @@ def inspect(
 
 
 def _python_modules(project: Project, only: str) -> str:
-    from aos_middleware.emit import emit_mapping, emit_monitor  # Keeps the other commands quick to start.
+    from aos_middleware.emission.emit import (  # Keeps the other commands quick to start.
+        emit_mapping,
+        emit_monitor,
+    )
 
     names = [*(skill.name for skill in project.skills), *(mapping.monitor for mapping in project.monitors)]
     if only and only not in names:

@@ -16,8 +16,8 @@ from aos_deploy.deployment.adapter_kinds import check_installed
 from aos_deploy.deployment.reading import Deployment
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial
-from aos_middleware.evaluator import EvaluationLimits, Evaluator
-from aos_middleware.mappings import emit_project
+from aos_middleware.mappings.revisions import emit_project
+from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError
 from aos_solver.child.answers import GroundedAction

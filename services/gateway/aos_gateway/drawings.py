@@ -4,7 +4,7 @@ import asyncio
 from collections import OrderedDict
 from typing import Any
 
-from aos_middleware.picture import Drawn, draw
+from aos_middleware.workers.picture import Drawn, draw
 from aos_protocol.messages import DecisionRecord
 
 _KEPT = 32

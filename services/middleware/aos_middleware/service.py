@@ -10,18 +10,18 @@ from pathlib import Path
 
 import msgspec
 
-from aos_middleware.activation import refused, run_activation
-from aos_middleware.emit import EmittedMapping
-from aos_middleware.evaluator import EvaluationLimits, Evaluator
-from aos_middleware.ledger import OutcomeLedger
-from aos_middleware.low_level import LowLevelValues
-from aos_middleware.mappings import Mappings
-from aos_middleware.monitors import Monitors
-from aos_middleware.motion_gate import MotionGate
-from aos_middleware.served_paths import ServedPaths
+from aos_middleware.activations.activation import refused, run_activation
+from aos_middleware.activations.ledger import OutcomeLedger
+from aos_middleware.activations.surroundings import Surroundings
+from aos_middleware.emission.emit import EmittedMapping
+from aos_middleware.mappings.low_level import LowLevelValues
+from aos_middleware.mappings.monitors import Monitors
+from aos_middleware.mappings.revisions import Mappings
+from aos_middleware.robot.motion_gate import MotionGate
+from aos_middleware.robot.served_paths import ServedPaths
+from aos_middleware.robot.silent_topics import SilentTopics
 from aos_middleware.settings import Settings
-from aos_middleware.silent_topics import SilentTopics
-from aos_middleware.surroundings import Surroundings
+from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.errors import BusError, SkillError
 from aos_protocol.messages import Activate, ActivationId, MappingQuery, MappingState, Outcome, ProjectRevision
 from aos_runtime.fence import Fence, epoch_of_solver

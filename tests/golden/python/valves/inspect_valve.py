@@ -4,7 +4,7 @@
 
 import math
 
-from aos_middleware.values import low_level_type, stand_in
+from aos_middleware.workers.values import low_level_type, stand_in
 
 try:
     from geometry_msgs.msg import Point, Quaternion

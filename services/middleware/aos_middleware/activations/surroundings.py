@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from aos_middleware.low_level import LowLevelValues
-from aos_middleware.monitors import Monitors
-from aos_middleware.motion_gate import MotionGate
-from aos_middleware.served_paths import ServedPaths
-from aos_middleware.silent_topics import SilentTopics
+from aos_middleware.mappings.low_level import LowLevelValues
+from aos_middleware.mappings.monitors import Monitors
+from aos_middleware.robot.motion_gate import MotionGate
+from aos_middleware.robot.served_paths import ServedPaths
+from aos_middleware.robot.silent_topics import SilentTopics
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Stray
 from aos_runtime.bus import Bus

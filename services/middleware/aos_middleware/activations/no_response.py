@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from aos_middleware.evaluator import MappingFault
+from aos_middleware.workers.evaluator import MappingFault
 from aos_protocol.documents import AbstractionMapping
 from aos_protocol.spelling import did_you_mean, quoted, shortened
 

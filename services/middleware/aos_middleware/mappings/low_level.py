@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from aos_language.cpp.snippets import Access, read_cpp
-from aos_middleware.values import put
+from aos_middleware.workers.values import put
 from aos_protocol.documents import CompoundType, Environment, Project
 from aos_protocol.messages import Activate, Outcome
 

@@ -8,7 +8,7 @@ import re
 
 import msgspec
 
-from aos_middleware.python_code import LineOrigin, PythonCode
+from aos_middleware.emission.python_code import LineOrigin, PythonCode
 
 _MARK = re.compile("\x00(\\d+)\x00")
 _INDENT = " " * 4

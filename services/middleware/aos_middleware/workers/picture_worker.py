@@ -1,4 +1,4 @@
-"""The process in which a bundle's `picture.py` runs, once: `python -I -m aos_middleware.picture_worker`.
+"""The process in which a bundle's `picture.py` runs, once: `python -I -m` of this module.
 
 It reads what is to be drawn from its input and writes the picture to its output, which the code that draws
 does not reach: what that prints goes to the error output.
@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 
 import msgspec
 
-from aos_middleware.raised import raised
-from aos_middleware.worker_pipes import take_over_pipes
+from aos_middleware.workers.raised import raised
+from aos_middleware.workers.worker_pipes import take_over_pipes
 
 FILE_NAME = "picture.py"
 MOST_BYTES = 1024 * 1024

@@ -11,17 +11,17 @@ from typing import Any
 
 import msgspec
 
-from aos_middleware.evaluator import Evaluator, MappingFault
-from aos_middleware.frames import Observed
-from aos_middleware.heard_topics import QUEUE_SIZE, HeardTopics
-from aos_middleware.low_level import assigned_variables
-from aos_middleware.monitors import Monitored
-from aos_middleware.no_response import no_response
-from aos_middleware.observed_numbers import observed_numbers
-from aos_middleware.skill_call import Call
-from aos_middleware.stopping import Stop
-from aos_middleware.surroundings import Surroundings
-from aos_middleware.values import kept_texts
+from aos_middleware.activations.heard_topics import QUEUE_SIZE, HeardTopics
+from aos_middleware.activations.no_response import no_response
+from aos_middleware.activations.observed_numbers import observed_numbers
+from aos_middleware.activations.skill_call import Call
+from aos_middleware.activations.surroundings import Surroundings
+from aos_middleware.mappings.low_level import assigned_variables
+from aos_middleware.mappings.monitors import Monitored
+from aos_middleware.robot.stopping import Stop
+from aos_middleware.workers.evaluator import Evaluator, MappingFault
+from aos_middleware.workers.frames import Observed
+from aos_middleware.workers.values import kept_texts
 from aos_protocol.documents import AbstractionMapping
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Activate, Fault, Outcome, SkillResult, TopicMessage

@@ -9,8 +9,8 @@ import logging
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from aos_middleware.evaluator import Evaluator
-from aos_middleware.stopping import Stop
+from aos_middleware.robot.stopping import Stop
+from aos_middleware.workers.evaluator import Evaluator
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys

@@ -10,8 +10,8 @@ from typing import Any
 
 import msgspec
 
-from aos_middleware.evaluator import worker_confinement
-from aos_middleware.picture_worker import FILE_NAME, MOST_BYTES, Drawn, NotDrawn, Subject
+from aos_middleware.workers.evaluator import worker_confinement
+from aos_middleware.workers.picture_worker import FILE_NAME, MOST_BYTES, Drawn, NotDrawn, Subject
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
@@ -36,7 +36,7 @@ async def draw(source: str, belief: BeliefSummary, step: dict[str, Any]) -> Draw
         source, likeliest_state(belief), {each.variable: each.values for each in belief.marginals}, step
     )
     command = guarded(
-        [sys.executable, "-I", "-m", "aos_middleware.picture_worker"],
+        [sys.executable, "-I", "-m", "aos_middleware.workers.picture_worker"],
         Limits(address_space_bytes=_MEMORY_BYTES, cpu_s=_MOST_CPU_S, file_bytes=0),
         worker_confinement(),
     )

@@ -7,11 +7,11 @@ import asyncio
 import logging
 from typing import Any
 
-from aos_middleware.motion_gate import GONE_S
-from aos_middleware.pause_watch import PauseWatch
-from aos_middleware.served_paths import no_adapter
-from aos_middleware.stopping import Stop
-from aos_middleware.surroundings import Surroundings
+from aos_middleware.activations.pause_watch import PauseWatch
+from aos_middleware.activations.surroundings import Surroundings
+from aos_middleware.robot.motion_gate import GONE_S
+from aos_middleware.robot.served_paths import no_adapter
+from aos_middleware.robot.stopping import Stop
 from aos_protocol.codec import TooLargeError
 from aos_protocol.documents import Activation
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError

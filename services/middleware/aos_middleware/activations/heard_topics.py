@@ -4,9 +4,9 @@ import asyncio
 import logging
 from typing import Any
 
-from aos_middleware.evaluator import Evaluator
-from aos_middleware.stopping import Stop
-from aos_middleware.surroundings import Surroundings
+from aos_middleware.activations.surroundings import Surroundings
+from aos_middleware.robot.stopping import Stop
+from aos_middleware.workers.evaluator import Evaluator
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.messages import SkillResult, TopicMessage

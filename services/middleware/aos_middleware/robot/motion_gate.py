@@ -5,7 +5,7 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
-from aos_middleware.served_paths import ServedPaths
+from aos_middleware.robot.served_paths import ServedPaths
 from aos_protocol.errors import AosError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId, Cancel, Cancelled

@@ -14,11 +14,11 @@ import msgspec
 
 from aos_language.observed import reported_numbers
 from aos_language.templates import templates_in
-from aos_middleware.generated_lines import word
-from aos_middleware.module_names import ModuleNames
-from aos_middleware.python_code import LineOrigin, python_fault
-from aos_middleware.read_snippets import ReadSnippets
-from aos_middleware.sections import Sections
+from aos_middleware.emission.generated_lines import word
+from aos_middleware.emission.module_names import ModuleNames
+from aos_middleware.emission.python_code import LineOrigin, python_fault
+from aos_middleware.emission.read_snippets import ReadSnippets
+from aos_middleware.emission.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, SkillModel, Snippet
 from aos_protocol.errors import DocumentError

@@ -1,4 +1,4 @@
-"""The process in which mapping code runs: `python -I -m aos_middleware.worker`, started by `evaluator`.
+"""The process in which mapping code runs: `python -I -m` of this module, started by `evaluator`.
 
 Reads questions from its input and writes answers to its output, which mapping code cannot reach: what it
 prints goes to the error output. An evaluation that takes too long ends the process by the alarm signal, with
@@ -17,10 +17,10 @@ from numbers import Number
 from types import CodeType
 from typing import Any
 
-from aos_middleware import frames
-from aos_middleware.raised import NoTruthValue, raised
-from aos_middleware.values import is_truth, message_from, plain_from, put, text_of
-from aos_middleware.worker_pipes import take_over_pipes
+from aos_middleware.workers import frames
+from aos_middleware.workers.raised import NoTruthValue, raised
+from aos_middleware.workers.values import is_truth, message_from, plain_from, put, text_of
+from aos_middleware.workers.worker_pipes import take_over_pipes
 from aos_protocol.spelling import shortened
 
 Function = Callable[..., Any]

@@ -11,9 +11,9 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-from aos_middleware.emit import EmittedMapping, emit_mapping, emit_monitor
-from aos_middleware.evaluator import Evaluator
-from aos_middleware.low_level import default_constants
+from aos_middleware.emission.emit import EmittedMapping, emit_mapping, emit_monitor
+from aos_middleware.mappings.low_level import default_constants
+from aos_middleware.workers.evaluator import Evaluator
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, SkillError

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_middleware.generated_lines import literal, word
-from aos_middleware.python_code import LineOrigin, PythonCode
-from aos_middleware.read_snippets import ReadSnippets, function_name
+from aos_middleware.emission.generated_lines import literal, word
+from aos_middleware.emission.python_code import LineOrigin, PythonCode
+from aos_middleware.emission.read_snippets import ReadSnippets, function_name
 from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable
 
 _OF_SKILL = ("__skill_status", "__skill_error")

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-from aos_middleware.generated_lines import MarkedLines
-from aos_middleware.python_code import PythonCode, read_body, read_expression
+from aos_middleware.emission.generated_lines import MarkedLines
+from aos_middleware.emission.python_code import PythonCode, read_body, read_expression
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import AbstractionMapping, LocalSource, LocalVariable, Snippet
 

@@ -16,8 +16,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from aos_middleware import frames
-from aos_middleware.emit import EmittedMapping
+from aos_middleware.emission.emit import EmittedMapping
+from aos_middleware.workers import frames
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
@@ -156,7 +156,7 @@ class Evaluator:
     async def _start_worker(self) -> Child:
         limits = self._limits
         command = guarded(
-            [sys.executable, "-I", "-m", "aos_middleware.worker"],
+            [sys.executable, "-I", "-m", "aos_middleware.workers.worker"],
             Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
             worker_confinement(),
         )

@@ -3,7 +3,7 @@
 import re
 from types import CodeType, TracebackType
 
-from aos_middleware.frames import Raised
+from aos_middleware.workers.frames import Raised
 
 _MAX_ERROR_CHARACTERS = 2000
 _NAME = re.compile(r"[^\W\d]\w*")

@@ -1,0 +1,1 @@
+"""Activations: one skill from its parameters to the observation, and the ledger of those that ended."""

@@ -1,0 +1,1 @@
+"""Abstraction mappings to Python: the text of the modules that workers run."""
