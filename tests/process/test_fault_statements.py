@@ -16,7 +16,7 @@ WARD = """project: ward
 horizon: 4
 
 define_type: tFault
-enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn
+enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn, eEmpty
 
 shared_code:
 int bed_of(const auto& state__, int i) {
@@ -37,7 +37,7 @@ SLIP = """project: ward
 parameter: tFault fault
 
 available_parameters_code:
-for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn})
+for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn, eEmpty})
     __possibleParameters.push_back(make_tuple(fault));
 
 dynamic_model:
@@ -62,6 +62,11 @@ switch (fault) {
     case eOwn: {
         vector<int> own{1, 2, state__.rooms};
         state__.rooms = own[own.size()];  // eOwn
+        break;
+    }
+    case eEmpty: {
+        struct Shelf { vector<int> cups; } shelf;
+        shelf.cups.pop_back();  // eEmpty
         break;
     }
     case eShared:
@@ -89,6 +94,7 @@ FAULTS = {
     "eLambda": ("AOS215", "element 6 of a vector of 3"),
     "eShared": ("AOS215", "element 6 of a vector of 3"),
     "eOwn": ("AOS215", "element 3 of a vector of 3"),
+    "eEmpty": ("AOS215", "element 0 of a vector of 0"),
 }
 
 

@@ -58,6 +58,17 @@ class Mention(msgspec.Struct, frozen=True):
         return ".".join(self.path).replace(".[]", "[]")
 
 
+class Element(msgspec.Struct, frozen=True):
+    """An element that a container has to have: `row[i]`, or that of `row.back()` and its like.
+
+    `brackets` are those of the index; None for a method. `root` is the name that the container begins with.
+    """
+
+    container: Extent
+    brackets: Extent | None = None
+    root: str = ""
+
+
 class Call(msgspec.Struct, frozen=True):
     """A call: `AOS.Bernoulli(p)` is named `("AOS", "Bernoulli")`. `function` covers the name."""
 
@@ -94,6 +105,7 @@ class Cpp(msgspec.Struct, frozen=True):
     code: str
     mentions: tuple[Mention, ...] = ()
     calls: tuple[Call, ...] = ()
+    elements: tuple[Element, ...] = ()
     declarations: tuple[Declaration, ...] = ()
     types: tuple[tuple[str, Extent], ...] = ()
     literals: tuple[Extent, ...] = ()

@@ -14,12 +14,14 @@ from aos_language.cpp.facts import (
     Cpp,
     Declaration,
     DeclarationKind,
+    Element,
     Mention,
 )
 from aos_language.cpp.nodes import below, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
+_OF_FILLED = frozenset({"back", "front", "pop", "pop_back", "pop_front", "top"})
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
 """Expressions that do nothing but have a value."""
 
@@ -40,6 +42,7 @@ class TreeReader:
         self._stack: list[tuple[tree_sitter.Node, Access]] = []
         self.mentions: list[Mention] = []
         self.calls: list[Call] = []
+        self.elements: list[Element] = []
         self.declarations: list[Declaration] = []
         self.types: list[tuple[str, Extent]] = []
         self.faults: list[Fault] = []
@@ -54,6 +57,7 @@ class TreeReader:
             code=self._code,
             mentions=_of_code(self.mentions),
             calls=tuple(sorted(self.calls, key=_by_start)),
+            elements=tuple(self.elements),
             declarations=_of_code(self.declarations),
             types=tuple(sorted(self.types, key=lambda item: item[1].start)),
             literals=self._tokens.literals,
@@ -131,7 +135,10 @@ class TreeReader:
                 current = _child(current, "argument")
             elif current.type == "subscript_expression":
                 parts.append("[]")
-                self._push([current.child_by_field_name("indices")])
+                indices = current.child_by_field_name("indices")
+                self._push([indices])
+                if indices is not None and _is_checked(current, indices):
+                    self._element(_child(current, "argument"), self.extent(indices))
                 current = _child(current, "argument")
             elif current.type == "parenthesized_expression" and current.named_child_count == 1:
                 current = current.named_children[0]
@@ -143,6 +150,12 @@ class TreeReader:
             else:
                 self._push([current], access)
                 return (), None
+
+    def _element(self, container: tree_sitter.Node, brackets: Extent | None = None) -> None:
+        root = container
+        while root.type in ("field_expression", "subscript_expression"):
+            root = _child(root, "argument")
+        self.elements.append(Element(self.extent(container), brackets, text_of(root)))
 
     def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
         while node is not None and node.type == "qualified_identifier":
@@ -219,6 +232,8 @@ class TreeReader:
             return parts
         target = _child(function, "argument")
         method = _names(function.child_by_field_name("field"))[-1:]
+        if not _OF_FILLED.isdisjoint(method) and text_of(function.children[1]) == ".":
+            self._element(target)
         parts, root = self._flatten(target, _method_access("".join(method), access, is_aos=False))
         if root is not None:
             kind = _method_access("".join(method), access, is_aos=parts == ("AOS",))
@@ -347,6 +362,15 @@ _HANDLERS = {
     "type_identifier": TreeReader._type,
     "update_expression": TreeReader._update,
 }
+
+
+def _is_checked(subscript: tree_sitter.Node, indices: tree_sitter.Node) -> bool:
+    """Returns whether an index must be that of an element: not a key `{1, 2}`, nor `&row[9]`, where one may
+    stand just behind the last."""
+    outer = subscript.parent
+    is_address = outer is not None and outer.type == "pointer_expression" and outer.children[0].type == "&"
+    is_one = [part.type for part in indices.named_children if part.type != "comment"]
+    return not is_address and len(is_one) == 1 and is_one[0] not in ("initializer_list", "comma_expression")
 
 
 def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:

@@ -243,4 +243,13 @@ constexpr decltype(auto) at(Values&& values, const Index& index) {
   return values[index];
 }
 
+// What `values.back()` and its like of document code are asked of: a ModelFault where it has no element.
+template <class Values>
+constexpr Values&& filled(Values&& values) {
+  if constexpr (requires { values.empty(); }) {
+    if (values.empty()) out_of_range(0, 0);
+  }
+  return std::forward<Values>(values);
+}
+
 }  // namespace aos
