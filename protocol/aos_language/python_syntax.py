@@ -1,11 +1,17 @@
-"""Python's own parser, one thread at a time."""
+"""Python's own parser, one thread at a time, and what code binds in its own scope."""
 
 import ast
 import threading
+from collections.abc import Iterator
 
 _ONE_AT_A_TIME = threading.Lock()
 """CPython 3.11 counts the depth of all threads together: where a finalizer lets another thread parse in the
 middle of a parse, it raises SystemError (seen with 3.11.2 and 3.11.7; its issue 106905)."""
+
+_OWN_SCOPES = (
+    ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
+    | ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
+)  # fmt: skip
 
 
 def module_of(text: str) -> ast.Module:
@@ -18,3 +24,28 @@ def tree_of(text: str, mode: str) -> ast.AST:
     """The syntax tree of statements ("exec") or an expression ("eval"); errors are those of `ast.parse`."""
     with _ONE_AT_A_TIME:
         return ast.parse(text, mode=mode)
+
+
+def own_scope(tree: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of code that are not inside a function, a class or a comprehension of its own."""
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if node is tree or not isinstance(node, _OWN_SCOPES):
+            waiting += ast.iter_child_nodes(node)
+
+
+def names_bound_by(node: ast.AST) -> tuple[str, ...]:
+    """The names that one node of code binds by itself, in whatever scope."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+            return (name,)
+        case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+            return (name,)
+        case ast.alias(name=name, asname=alias):
+            return (alias or name.partition(".")[0],)
+        case ast.MatchAs(name=str(name)) | ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
+            return (name,)
+        case _:
+            return ()

@@ -9,6 +9,7 @@ import pytest
 from mapping_documents import emitted, project_in
 from mapping_runs import HEAD, fields, loaded, observed, running
 
+from aos_middleware.emission.python_code import PythonCode, read_body
 from aos_middleware.mappings.revisions import emit_project
 from aos_middleware.workers.worker import LoadedMapping
 from aos_protocol.diagnostics import Span
@@ -47,17 +48,43 @@ success = __input.success
     assert observed(mapping, {}, [], {"success": False}).response == "not_done"
 
 
-def test_what_the_code_of_a_result_does_not_assign_has_no_value() -> None:
-    mapping = running("""\
+@pytest.mark.parametrize(
+    "code",
+    [
+        "if __input.m > 5:\n    far = True",
+        "with closing(__input):\n    if __input.m > 5:\n        far = True",
+        "with suppress(ZeroDivisionError):\n    far = __input.m / 0",
+        "with suppress(ZeroDivisionError):\n    far = 1 / 0\n    return far",
+        "match __input.m:\n    case 5:\n        far = True",
+        "def is_far():\n    far = True\nif __input.m > 5:\n    far = is_far()",
+        "near = [1 for far in ()]\nif __input.m > 5:\n    far = near",
+    ],
+)
+def test_what_the_code_of_a_result_does_not_assign_has_no_value(code: str) -> None:
+    mapping = running(f"""\
 response: done
 response_rule: far is None
 local_variable: far
+imports: from: contextlib import: nullcontext as closing, suppress
 from_ros_service_response: true
 code:
-if __input.m > 5:
-    far = True
+{code}
 """)
     assert observed(mapping, {}, [], {"m": 2}).response == "done"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "with open(__file__) as far:\n    pass",
+        "match __input.m:\n    case 2:\n        far = 1\n    case _:\n        raise ValueError",
+        "if __input.m > 5:\n    return None\nelse:\n    far = 1",
+    ],
+)
+def test_a_variable_that_is_set_on_every_way_is_not_kept(code: str) -> None:
+    read = read_body(Snippet(code, (Span("a.am", 1, 1),)))
+    assert isinstance(read, PythonCode)
+    assert "far" in read.surely_assigns
 
 
 def test_topic_messages_are_evaluated_in_the_order_in_which_they_came() -> None:

@@ -87,6 +87,7 @@ ACCEPTED = [
 ]  # fmt: skip
 
 WARNED = [
+    Rule("go.am", "ok = __input.success«→\n§return»", "AOS121"),
     Rule("room.json", '"Discount": 0.9§«→,»}', "AOS127"),
     Rule("room.json", 'false};"}§«→,»\n', "AOS127"),
     Rule("room.json", '§«→// what counts\n»"SpecialStates"', "AOS127"),

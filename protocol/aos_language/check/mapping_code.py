@@ -7,11 +7,17 @@ import warnings
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.enum_texts import check_enum_texts
-from aos_language.check.python_names import PythonNames, check_fields_set, check_names
+from aos_language.check.python_names import (
+    PythonNames,
+    check_fields_set,
+    check_names,
+    column_of,
+    top_level_names,
+)
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
-from aos_language.python_syntax import tree_of
+from aos_language.python_syntax import own_scope, tree_of
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
     AbstractionMapping,
@@ -163,16 +169,28 @@ def _check_variable(
     if tree is None:
         return
     check_names(variable.code, tree, names.of_code(), findings, severity)
-    assigned = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    _check_ends(variable, variable.code, tree, findings)
+
+
+def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings: Findings) -> None:
+    """Looks at what leaves a variable's code: what it assigns, and what it returns."""
+    assigned = top_level_names(tree)
+    returns = [node for node in own_scope(tree) if isinstance(node, ast.Return)]
+    for node in returns:
+        if node.value is None:
+            message = f"`return` without a value makes {variable.name} `None`"
+            span = code.locate(node.lineno, column_of(code, node.lineno, node.col_offset))
+            hint = f"Write `return {variable.name}`, or `return None` where that is meant"
+            findings.warning("AOS121", message, span, hint)
     if variable.name in assigned:
         return
     if variable.source is LocalSource.SERVICE_RESPONSE:
         message = f"this code never assigns `{variable.name}`"
-        hint = f"It assigns {quoted(sorted(assigned))}" if assigned else "Write `name = ...`"
-        findings.error("AOS121", message, variable.code.span, hint)
-    elif not any(isinstance(node, ast.Return) for node in ast.walk(tree)):
+        hint = f"It assigns {quoted(sorted(assigned))}" if assigned else f"Write `{variable.name} = ...`"
+        findings.error("AOS121", message, code.span, hint)
+    elif not returns:
         hint = f"Without it {variable.name} stays as it was, whatever the message says"
-        findings.warning("AOS121", "this code returns nothing", variable.code.span, hint)
+        findings.warning("AOS121", "this code returns nothing", code.span, hint)
 
 
 def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:

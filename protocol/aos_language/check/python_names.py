@@ -15,7 +15,7 @@ import msgspec
 
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.findings import Findings
-from aos_language.python_syntax import module_of
+from aos_language.python_syntax import module_of, names_bound_by, own_scope
 from aos_protocol.diagnostics import Severity
 from aos_protocol.documents import (
     AbstractionMapping,
@@ -120,24 +120,9 @@ def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
         return frozenset(_WORD.findall(snippet.code))  # Told where the code is checked.
 
 
-def top_level_names(tree: ast.Module) -> frozenset[str]:
-    """The names that a module's own statements bind: not those of functions' insides."""
-    names: set[str] = set()
-    waiting: list[ast.AST] = [*tree.body]
-    while waiting:
-        node = waiting.pop()
-        match node:
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                names.add(name)
-                continue
-            case ast.Name(id=name, ctx=ast.Store()):
-                names.add(name)
-            case ast.alias(name=name, asname=alias):
-                names.add(alias or name.partition(".")[0])
-            case ast.Lambda() | ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
-                continue
-        waiting += ast.iter_child_nodes(node)
-    return frozenset(names)
+def top_level_names(tree: ast.AST) -> frozenset[str]:
+    """The names that code's own statements bind: not those of functions' insides."""
+    return frozenset(name for node in own_scope(tree) for name in names_bound_by(node))
 
 
 def check_names(
@@ -189,20 +174,12 @@ def _bound_names(tree: ast.AST) -> frozenset[str]:
     bound: set[str] = set()
     for node in ast.walk(tree):
         match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
-                bound.add(name)
-            case ast.arg(arg=name):
-                bound.add(name)
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                bound.add(name)
-            case ast.alias(name=name, asname=alias):
-                bound.add(alias or name.partition(".")[0])
-            case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
-                bound.add(name)
-            case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
+            case ast.Name(id=name, ctx=ast.Del()) | ast.ExceptHandler(name=str(name)):
                 bound.add(name)
             case ast.Global(names=several) | ast.Nonlocal(names=several):
                 bound.update(several)
+            case _:
+                bound.update(names_bound_by(node))
     return frozenset(bound)
 
 

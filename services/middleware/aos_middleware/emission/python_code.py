@@ -10,12 +10,12 @@ import ast
 import io
 import tokenize
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable
 from typing import Literal
 
 import msgspec
 
-from aos_language.python_syntax import module_of, tree_of
+from aos_language.python_syntax import module_of, names_bound_by, own_scope, tree_of
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Snippet
 
@@ -220,8 +220,8 @@ def _always_returns(statements: list[ast.stmt]) -> bool:
             return True
         case ast.If(body=body, orelse=orelse):
             return _always_returns(body) and _always_returns(orelse)
-        case ast.With(body=body):
-            return _always_returns(body)
+        case ast.With(items=items, body=body):
+            return _always_returns(body) and not _may_suppress(items)
         case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
             return _always_returns(final) or (
                 _always_returns(orelse or body) and all(_always_returns(handler.body) for handler in handlers)
@@ -230,22 +230,47 @@ def _always_returns(statements: list[ast.stmt]) -> bool:
             return False
 
 
+def _may_suppress(items: list[ast.withitem]) -> bool:
+    """Returns whether a `with` goes on behind what fails in it."""
+    return any("suppress" in ast.unparse(item.context_expr) for item in items)
+
+
 def _surely_assigned(statements: list[ast.stmt]) -> set[str]:
     """The names that are set on every way to the end of the statements."""
     names: set[str] = set()
     for statement in statements:
         match statement:
             case ast.If(body=body, orelse=orelse):
-                names |= _surely_assigned(body) & _surely_assigned(orelse)
+                names |= _assigned_by_all(body, orelse)
+            case ast.Match(cases=cases):
+                last = cases[-1]
+                is_whole = (
+                    last.guard is None and isinstance(last.pattern, ast.MatchAs) and not last.pattern.pattern
+                )
+                names |= _assigned_by_all(*(case.body for case in cases)) if is_whole else set()
             case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
-                ways = [handler.body for handler in handlers if not _always_returns(handler.body)]
-                tried = _surely_assigned([*body, *orelse])
-                names |= tried.intersection(*map(_surely_assigned, ways)) | _surely_assigned(final)
-            case ast.For() | ast.While() | ast.Match():
+                ways = [handler.body for handler in handlers]
+                names |= _assigned_by_all([*body, *orelse], *ways) | _surely_assigned(final)
+            case ast.With(items=items, body=body) | ast.AsyncWith(items=items, body=body):
+                names |= _bound_in([item.optional_vars for item in items if item.optional_vars is not None])
+                names |= set() if _may_suppress(items) else _surely_assigned(body)
+            case ast.For() | ast.AsyncFor() | ast.While() | ast.TryStar():
                 pass
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
             case _:
-                names |= _Names(statement).assigns
+                names |= _bound_in([statement])
     return names
+
+
+def _assigned_by_all(*ways: list[ast.stmt]) -> set[str]:
+    """The names that are set on each of the ways that go on."""
+    going_on = [_surely_assigned(way) for way in ways if not _always_returns(way)]
+    return set.intersection(*going_on) if going_on else set()
+
+
+def _bound_in(parts: Iterable[ast.AST]) -> set[str]:
+    return {name for part in parts for node in own_scope(part) for name in names_bound_by(node)}
 
 
 class _Names:
@@ -256,15 +281,9 @@ class _Names:
         assigned: set[str] = set()
         called: set[str] = set()
         for node in ast.walk(tree):
-            match node:
-                case ast.Name(id=name, ctx=ast.Store()):
-                    assigned.add(name)
-                case ast.Name(id=name):
-                    read.add(name)
-                case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.arg(arg=name):
-                    assigned.add(name)
-                case ast.alias(name=name, asname=alias):
-                    assigned.add(alias or name.partition(".")[0])
+            if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store):
+                read.add(node.id)
+            assigned.update(names_bound_by(node))
             if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
                 read.add(node.target.id)
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
@@ -272,15 +291,6 @@ class _Names:
         self.reads = frozenset(read)
         self.assigns = frozenset(assigned)
         self.calls = frozenset(called)
-        own = list(_own_scope(tree))
+        own = list(own_scope(tree))
         self.returns = any(isinstance(node, ast.Return) for node in own)
         self.suspends = any(isinstance(node, ast.Yield | ast.YieldFrom | ast.Await) for node in own)
-
-
-def _own_scope(tree: ast.AST) -> Iterator[ast.AST]:
-    """The nodes of a snippet that are not inside a function of its own."""
-    for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-            continue
-        yield node
-        yield from _own_scope(node)

@@ -21,7 +21,11 @@ def index_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
     own.sort(key=lambda element: (element.container.start, -element.container.end))
     for start, outermost_first in groupby(own, key=lambda element: element.container.start):
         elements = list(outermost_first)
-        yield start, start, "".join("aos::at(" if element.brackets else "aos::filled(" for element in elements)
+        yield (
+            start,
+            start,
+            "".join("aos::at(" if element.brackets else "aos::filled(" for element in elements),
+        )
         for element in elements:
             yield from _closed(element)
 
