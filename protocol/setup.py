@@ -11,7 +11,7 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-NOT_FOR_ROBOTS = ("children", "distribution", "foreign_bus", "guard", "router")
+NOT_FOR_ROBOTS = ("children", "distribution", "foreign_bus", "guard", "sandbox_trial")
 """The modules of `aos_runtime` that only compilers, generators and aos-up need."""
 
 SEARCH = (

@@ -33,10 +33,10 @@ from aos_protocol.messages import (
     Outcome,
     PredictedObservation,
 )
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_runtime.client import AosClient
-from aos_runtime.journal import Journal
-from aos_runtime.lifecycle import ServiceSettings
+from aos_runtime.disk.journal import Journal
+from aos_runtime.processes.lifecycle import ServiceSettings
 from aos_solver.mission.history import history_page
 
 ROBOT, MISSION = "tiger", "20260101T000000Z-tiger"

@@ -17,7 +17,7 @@ from aos_protocol.messages import (
     Outcome,
     PredictedObservation,
 )
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 SKILLS = ("look", "go(to=hall)", "go(to=lab)", "pick", "put", "wait")
 PLACES = ("hall", "lab", "yard", "office")

@@ -13,8 +13,8 @@ from xmlrpc.client import ServerProxy
 
 import pytest
 
-from aos_runtime.children import guarded
-from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.processes.children import guarded
+from aos_runtime.processes.parent import PARENT_VARIABLE
 
 PYTHON = "/usr/bin/python3"
 START_S = 120.0

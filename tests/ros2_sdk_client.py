@@ -11,7 +11,7 @@ from typing import Any
 
 from zenoh_ros2_sdk import ROS2ServiceClient, ROS2Subscriber
 
-from aos_runtime.parent import die_with_parent
+from aos_runtime.processes.parent import die_with_parent
 
 REQUEST = "float64 x\nfloat64 y\nfloat64 yaw\n"
 RESPONSE = "bool success\nstring message\n"

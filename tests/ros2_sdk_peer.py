@@ -12,7 +12,7 @@ from typing import Any
 
 from zenoh_ros2_sdk import ROS2Publisher, ROS2ServiceClient, ROS2ServiceServer, ROS2Subscriber
 
-from aos_runtime.parent import die_with_parent
+from aos_runtime.processes.parent import die_with_parent
 
 ADD = {"request_definition": "int64 a\nint64 b\n", "response_definition": "int64 sum\n"}
 STRING = "string data\n"

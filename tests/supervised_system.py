@@ -16,8 +16,8 @@ from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import ProcessEnd
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
-from aos_runtime.lifecycle import root_cause
-from aos_runtime.service_settings import ServiceSettings
+from aos_runtime.processes.lifecycle import root_cause
+from aos_runtime.processes.settings import ServiceSettings
 
 TESTS = Path(__file__).parent
 

@@ -11,7 +11,7 @@ from aos_deploy.options import Connect, Robot, Run, Runs
 from aos_deploy.runs.living import living_run
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import DeployError
-from aos_runtime.credentials import credential_of_run
+from aos_runtime.bus.credentials import credential_of_run
 
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient

@@ -43,14 +43,14 @@ from aos_protocol.messages import (
     Why,
     WhyQuery,
 )
-from aos_runtime.asking import ask_until_answered
-from aos_runtime.bus import Access, Bus
-from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
-from aos_runtime.decision_feed import DecisionFeed
+from aos_runtime.bus.bus import Access, Bus
+from aos_runtime.bus.credentials import Credential, credential_of_environment, credential_of_run
+from aos_runtime.bus.subscription import Subscription, merged
 from aos_runtime.older_python import timeout
-from aos_runtime.reported_state import state_when
-from aos_runtime.steering import STEER_TIMEOUT_S, SteeringQuestions, start_mission
-from aos_runtime.subscription import Subscription, merged
+from aos_runtime.parties.asking import ask_until_answered
+from aos_runtime.parties.decision_feed import DecisionFeed
+from aos_runtime.parties.reported_state import state_when
+from aos_runtime.parties.steering import STEER_TIMEOUT_S, SteeringQuestions, start_mission
 
 _HISTORY_TIMEOUT_S = 5.0
 _PUSH_TIMEOUT_S = 200.0

@@ -28,7 +28,7 @@ from aos_deploy.cli import aos_app
 from aos_deploy.missions.taking_up import take_up
 from aos_deploy.runs.end import account_of
 from aos_protocol.errors import AosError
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 
 DECISIONS = 30
 _JOURNAL = ("journal.db", "journal.db-wal")

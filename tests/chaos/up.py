@@ -32,7 +32,7 @@ _COMMAND_LINES = {
     "engine": r"/model-[0-9a-f]+/",
     "adapter": r"-m aos_runtime\.adapters ",
 }
-_GUARD = r"aos_runtime[./]guard"
+_GUARD = r"aos_runtime[./]processes[./]guard"
 
 _DEPLOY = """aos: 1
 robot: tester

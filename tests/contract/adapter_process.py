@@ -10,8 +10,8 @@ from processes import HANG_S
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillResult
 from aos_runtime.adapters import AdapterSettings
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import Child
 
 
 async def started_adapter(keys: Keys, endpoint: str, run_dir: Path, service: str, **settings: Any) -> Child:

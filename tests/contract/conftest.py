@@ -17,9 +17,9 @@ from ros1_core import roscore, skip_without_ros1
 
 from aos_language.load import read_bundle_files
 from aos_protocol.keys import Keys
-from aos_runtime.bus import Bus
-from aos_runtime.lifecycle import ServiceSettings
-from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.processes.parent import PARENT_VARIABLE
 
 
 def free_endpoint() -> str:

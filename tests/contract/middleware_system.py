@@ -16,9 +16,9 @@ from aos_middleware.settings import Settings
 from aos_protocol import messages
 from aos_protocol.documents import Project
 from aos_protocol.keys import Keys, Serving
-from aos_runtime.bus import Bus
-from aos_runtime.children import PIPE, Child
-from aos_runtime.reported_state import state_when
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.reported_state import state_when
+from aos_runtime.processes.children import PIPE, Child
 
 __all__ = [
     "HANG_S",

@@ -6,7 +6,7 @@ from contextlib import asynccontextmanager
 
 from processes import HANG_S
 
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 
 @asynccontextmanager

@@ -12,7 +12,7 @@ from processes import HANG_S
 
 from aos_protocol.messages import MissionQuery, MissionState
 from aos_runtime.adapters import Binding
-from aos_runtime.children import Child
+from aos_runtime.processes.children import Child
 
 ROBOT = "async def sense(call):\n    return {}\n"
 

@@ -17,8 +17,8 @@ from aos_deploy.cli import aos_app
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MappingQuery, MappingState
 from aos_registry.settings import Settings
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import Child
 
 Aos = Callable[..., Awaitable[Result]]
 

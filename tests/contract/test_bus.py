@@ -13,8 +13,8 @@ from processes import HANG_S
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Catalogue, CatalogueQuery, TopicMessage
-from aos_runtime.bus import Bus
-from aos_runtime.children import PIPE, Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import PIPE, Child
 
 
 async def test_no_router_is_a_clear_error(unused_tcp_port: int) -> None:
@@ -75,7 +75,7 @@ async def test_presence_shows_who_is_there_who_comes_and_who_goes(
 
 ANNOUNCE = """
 import asyncio, sys
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_protocol.keys import Keys
 async def main():
     bus = await Bus.open(sys.argv[1], sender="mortal")
@@ -112,7 +112,7 @@ async def test_who_left_the_bus_is_told_so(endpoint: str, keys: Keys) -> None:
 NEVER_CLOSE = """
 import asyncio, sys
 from aos_protocol.messages import TopicMessage
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 async def main():
     bus = await Bus.open(sys.argv[1], sender="hasty")
     await bus.listen("aos/test/topic/x", TopicMessage).__aenter__()

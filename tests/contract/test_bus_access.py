@@ -9,8 +9,8 @@ from hostile.bus.routed import ROBOT, Routed, routed
 from aos_protocol.access import OPERATOR, WATCHER
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
-from aos_runtime.bus import Bus
-from aos_runtime.credentials import Credential
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.credentials import Credential
 
 KEYS = Keys(ROBOT)
 

@@ -30,10 +30,10 @@ from aos_protocol.messages import (
     ProjectQuery,
     TopicMessage,
 )
-from aos_runtime.bus import Bus
-from aos_runtime.bus_config import client_config
-from aos_runtime.children import PIPE, Child
-from aos_runtime.server_watch import ServerWatch
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.config import client_config
+from aos_runtime.bus.server_watch import ServerWatch
+from aos_runtime.processes.children import PIPE, Child
 
 ENTRY = CatalogueEntry("armadillo", 1, "digest", 0, ("pick",))
 
@@ -86,7 +86,7 @@ async def test_nobody_answers_is_said_at_once(bus: Bus, keys: Keys) -> None:
 
 MORTAL = """
 import asyncio, os, sys
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Catalogue, CatalogueQuery, ProjectQuery
 async def main():

@@ -14,10 +14,10 @@ import pytest
 from aos_protocol.errors import LostAnswerError, NobodyAnswersError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Catalogue, Message, ProjectQuery
-from aos_runtime.bus import Bus
-from aos_runtime.lifecycle import ServiceSettings
-from aos_runtime.parent import PARENT_VARIABLE
-from aos_runtime.server_watch import ServerWatch
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.server_watch import ServerWatch
+from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.processes.parent import PARENT_VARIABLE
 
 
 @contextmanager
@@ -47,7 +47,7 @@ async def test_a_question_is_lost_with_its_router_also_where_nobody_tells_of_tha
     # Zenoh may forward a question for a moment into a link that is gone, and then nobody tells of it.
     monkeypatch.setattr(ServerWatch, "_leave", lambda self: None)
     monkeypatch.setattr(ServerWatch, "is_served", True)
-    monkeypatch.setattr("aos_runtime.question.Question._settle", lambda self, result: None)
+    monkeypatch.setattr("aos_runtime.bus.question.Question._settle", lambda self, result: None)
     with router(endpoint, tmp_path) as first:
         async with (
             await Bus.open(endpoint, sender="asking", connect_timeout_s=60) as asking,

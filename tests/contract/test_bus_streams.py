@@ -8,9 +8,9 @@ import zenoh
 from aos_protocol.codec import encode
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
-from aos_runtime.bus import Bus
-from aos_runtime.bus_config import client_config
-from aos_runtime.subscription import merged
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.config import client_config
+from aos_runtime.bus.subscription import merged
 
 
 async def test_a_stream_is_complete_and_in_order_once_entered(bus: Bus, other: Bus, keys: Keys) -> None:

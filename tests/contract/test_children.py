@@ -7,7 +7,7 @@ import sys
 from contextlib import suppress
 from typing import Any
 
-from aos_runtime.children import Child
+from aos_runtime.processes.children import Child
 
 
 async def test_a_child_that_is_killed_while_it_is_told_something_leaves_nothing_in_the_log() -> None:

@@ -10,7 +10,7 @@ from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import ActivationId, SkillCall
 from aos_runtime.adapters import Binding
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 ARM = """
 class Arm:

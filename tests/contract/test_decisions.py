@@ -10,9 +10,9 @@ from decision_records import decision_record
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery, Message, MissionQuery, MissionState
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_runtime.client import AosClient
-from aos_runtime.decision_feed import DecisionFeed
+from aos_runtime.parties.decision_feed import DecisionFeed
 
 
 def record(sequence: int, mission: str = "m") -> DecisionRecord:

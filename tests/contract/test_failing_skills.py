@@ -13,8 +13,8 @@ from middleware_system import HANG_S, SENSE, System, answering, hang
 from aos_protocol.codec import MAX_BYTES
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Activate, ActivationId, Cancelled, Outcome, SkillCall, SkillResult, Stray
-from aos_runtime.asking import ask_until_answered
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
+from aos_runtime.parties.asking import ask_until_answered
 
 JAMMED = """\
 project: armadillo

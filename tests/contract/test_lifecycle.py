@@ -15,14 +15,14 @@ from small_service import Settings
 
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
-from aos_runtime.bus import Bus
-from aos_runtime.children import PIPE, Child
-from aos_runtime.service_settings import fault_path
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import PIPE, Child
+from aos_runtime.processes.settings import fault_path
 
 TESTS = Path(__file__).parents[1]
 PROGRAM = ("-m", "small_service")
 IMPATIENT = """
-from aos_runtime import lifecycle
+from aos_runtime.processes import lifecycle
 from small_service import Settings, serve
 lifecycle.ROUTER_S = 0.1
 lifecycle.run_service(Settings, serve)
@@ -119,7 +119,7 @@ async def test_wrong_settings_are_a_usage_error(tmp_path: Path) -> None:
 
 START_A_SERVICE = """
 import asyncio, sys
-from aos_runtime.children import Child
+from aos_runtime.processes.children import Child
 async def main():
     child = await Child.start([sys.executable, "-m", "small_service", sys.argv[1]])
     print(child.pid, flush=True)

@@ -6,7 +6,7 @@ from processes import HANG_S
 
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MappingQuery, MappingState
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_solver.mapping_watch import MappingWatch
 
 

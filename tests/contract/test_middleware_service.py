@@ -12,14 +12,14 @@ from middleware_system import SENSE, System, answering, hang, succeed
 
 from aos_protocol.errors import AosError, LostAnswerError, SkillError
 from aos_protocol.messages import Outcome, SkillCall
-from aos_runtime.children import PIPE, Child
+from aos_runtime.processes.children import PIPE, Child
 
 HANGING_ADAPTER = """
 import asyncio, sys
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import SkillCall
-from aos_runtime.bus import Bus
-from aos_runtime.parent import die_with_parent
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.parent import die_with_parent
 
 async def main():
     async def hang(call, key):

@@ -31,9 +31,9 @@ from aos_protocol.messages import (
     SkillCall,
     SkillResult,
 )
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
-from aos_runtime.reported_state import state_when
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.reported_state import state_when
+from aos_runtime.processes.children import Child
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits

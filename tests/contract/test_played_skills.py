@@ -12,7 +12,7 @@ from middleware_system import System, answering, running_system
 
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Outcome, SkillResult
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 NO_FIELDS = """\
 project: armadillo

@@ -15,8 +15,8 @@ from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import ActivationId, SkillCall, SkillProgress, SkillResult, TopicMessage
 from aos_runtime.adapters import Binding
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import Child
 
 ROBOT = """
 import asyncio, time

@@ -8,7 +8,7 @@ from test_registry_service import push, running_registry
 
 from aos_language.load import load_files, read_bundle_files
 from aos_protocol.keys import Keys
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 ROUNDS = 20
 

@@ -23,8 +23,8 @@ from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
 from aos_registry.settings import Settings
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import Child
 
 SEED = 20261121
 HOSTILE_PUSHES = 300

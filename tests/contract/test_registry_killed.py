@@ -13,7 +13,7 @@ from aos_language.load import bundle_digest
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
 from aos_registry.catalogue import Catalogue, Revision
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 pytestmark = pytest.mark.slow
 

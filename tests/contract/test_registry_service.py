@@ -18,8 +18,8 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DocumentError
 from aos_protocol.keys import Keys
 from aos_registry.settings import Settings
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import Child
 
 
 def written_settings(settings: Settings) -> Path:

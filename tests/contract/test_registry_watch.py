@@ -11,9 +11,9 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import ProjectQuery, ProjectRevision
-from aos_runtime import registry_watch
-from aos_runtime.bus import Bus
-from aos_runtime.registry_watch import RegistryWatch
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties import registry_watch
+from aos_runtime.parties.registry_watch import RegistryWatch
 
 
 class Registry:

@@ -8,8 +8,8 @@ from processes import HANG_S
 from aos_protocol.errors import BusError, NobodyAnswersError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MappingQuery, MappingState
-from aos_runtime.bus import Bus
-from aos_runtime.reported_state import state_when
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.reported_state import state_when
 
 
 class Teller:

@@ -11,7 +11,7 @@ from processes import HANG_S
 from ros1_core import PYTHON
 
 from aos_protocol.errors import AosError, BusError, SkillError
-from aos_runtime.children import Child, guarded
+from aos_runtime.processes.children import Child, guarded
 from aos_skills.ros.node import ActionRequest, Qos, ServiceRequest
 from aos_skills.ros1.node import Ros1Node
 

@@ -16,7 +16,7 @@ from processes import HANG_S
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
 from aos_protocol.errors import BusError, DeployError, SkillError
-from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.processes.parent import PARENT_VARIABLE
 from aos_skills.ros.node import ActionRequest, Qos, ServiceRequest
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.node import Node

@@ -36,7 +36,7 @@ from aos_protocol.messages import (
     TopicMessage,
 )
 from aos_runtime.adapters import Binding
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_skills.ros.node import RosNode
 from aos_skills.ros.types import RosTypes
 

@@ -22,8 +22,8 @@ from aos_protocol.messages import (
     TopicMessage,
 )
 from aos_runtime.adapters import Binding
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.bus.bus import Bus
+from aos_runtime.processes.children import Child
 
 pytestmark = pytest.mark.physics
 

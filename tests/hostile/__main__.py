@@ -17,7 +17,7 @@ from tests.hostile.log import Log, summary, who_plays
 from tests.hostile.said import import_commands
 
 from aos_deploy.places import cache_dir
-from aos_runtime.parent import adopt_orphans
+from aos_runtime.processes.parent import adopt_orphans
 from aos_runtime.sandbox.support import sandbox_text
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from aos_protocol.keys import Serving
 from aos_protocol.messages import Cancel, Cancelled, Outcome, SkillCall, SkillResult, TopicMessage
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 from .harness import Harness, harness, project_of
 

@@ -26,10 +26,10 @@ from aos_protocol.messages import (
     ProjectRevision,
 )
 from aos_runtime.adapters import AdapterSettings, Binding
-from aos_runtime.bus import Bus
-from aos_runtime.children import Child
-from aos_runtime.lifecycle import ServiceSettings
-from aos_runtime.reported_state import state_when
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.reported_state import state_when
+from aos_runtime.processes.children import Child
+from aos_runtime.processes.lifecycle import ServiceSettings
 
 PATIENCE_S = 60.0
 

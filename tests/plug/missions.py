@@ -12,7 +12,7 @@ from pathlib import Path
 
 from aos_deploy.history_check.files import check_run
 from aos_deploy.places import cache_dir
-from aos_runtime.mission_folders import mission_folder
+from aos_runtime.disk.mission_folders import mission_folder
 
 from .knowing import largest_difference
 from .staying import Process, Stayed, decisions_of, fresh, stayed

@@ -18,7 +18,7 @@ import msgspec
 from aos_deploy.places import cache_dir
 from aos_language.load import load_bundle
 from aos_protocol.messages import BeliefSummary, DecisionRecord
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.mission.memory import MissionMemory, folded

@@ -9,7 +9,7 @@ import statistics
 import time
 
 from aos_protocol.messages import MappingState
-from aos_runtime.bus import Subscription
+from aos_runtime.bus.bus import Subscription
 
 from .harness import PATIENCE_S, Harness, harness, project_of
 

@@ -20,8 +20,8 @@ from aos_deploy.runs.record import RunRecord
 from aos_protocol.access import OPERATOR
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionEntry, PushBundle
 from aos_runtime.client import AosClient
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import mission_folder
 
 from .harness import drained
 

@@ -20,7 +20,7 @@ from processes import HANG_S, descendants, is_running, until_ended
 
 from aos_deploy.history_check.files import check_run
 from aos_deploy.runs.end import account_of
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 BIN = Path(sys.executable).parent
 ENDINGS = {"goal": 0, "failure": 4, "nothing_worthwhile": 5, "step_limit": 6}

@@ -20,8 +20,8 @@ from aos_lab.trials.campaign import play_campaign
 from aos_lab.trials.setting import Setting
 from aos_language.load import load_files
 from aos_protocol.messages import MissionBegun, StartMission
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import make_mission_folder, mission_folder
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import make_mission_folder, mission_folder
 
 AOS = Path(sys.executable).parent / "aos"
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"

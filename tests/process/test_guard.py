@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from processes import descendants, until_ended
 
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 
 SLEEPERS = "sleep 1000 & setsid sleep 1000 & echo $$; {tail}"
 
@@ -77,7 +77,7 @@ async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace() -> Non
 
 START_GUARDED = f"""
 import asyncio, sys
-from aos_runtime.children import Child, PIPE, guarded
+from aos_runtime.processes.children import Child, PIPE, guarded
 async def main():
     child = await Child.start(guarded(["sh", "-c", {SLEEPERS.format(tail="wait")!r}]), stdout=PIPE)
     await child.stdout.readline()

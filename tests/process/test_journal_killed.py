@@ -8,12 +8,12 @@ from pathlib import Path
 import msgspec
 
 from aos_protocol.messages import Cancel
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 WRITE_FOR_EVER = """
 import sys
 from aos_protocol.messages import Cancel
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 journal = Journal.open(sys.argv[1])
 while True:
     number = len(journal.rows()) + 1

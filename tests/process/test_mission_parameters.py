@@ -21,7 +21,7 @@ from aos_language.mission_parameters import mission_value_of_option
 from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError, PlanningError
 from aos_protocol.messages import MissionBegun, ProjectRevision
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine

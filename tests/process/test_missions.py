@@ -22,8 +22,8 @@ from aos_protocol.access import OPERATOR
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import BundleReport, PushBundle
 from aos_runtime.client import AosClient
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import mission_folder
 from aos_solver.mission.logbook import entries_of
 
 BIN = Path(sys.executable).parent

@@ -11,7 +11,7 @@ from models import built_bundle, engine_of
 from scripted_missions import run_mission
 
 from aos_protocol.messages import Activate, BeliefSummary, Outcome
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search

@@ -12,7 +12,7 @@ from aos_deploy.history_check.replayed import Replay, replayed
 from aos_protocol.messages import DecisionRecord, Message, MissionBegun, ModelAdopted
 from aos_protocol.mission_rows import BEGUN
 from aos_registry.catalogue import Catalogue
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits

@@ -17,7 +17,7 @@ from aos_protocol.messages import Activate, DecisionRecord, Message, MissionBegu
 from aos_protocol.mission_rows import BEGUN
 from aos_registry.catalogue import Catalogue
 from aos_runtime.clock import SystemClock
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import earlier_models

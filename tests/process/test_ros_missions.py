@@ -15,7 +15,7 @@ import pytest
 from processes import COMMAND_S, HANG_S, events_of
 from ros1_core import roscore, skip_without_ros1
 
-from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.processes.parent import PARENT_VARIABLE
 
 pytestmark = [pytest.mark.physics, pytest.mark.slow]
 

@@ -12,8 +12,8 @@ from processes import COMMAND_S
 from texts import write_texts
 
 from aos_protocol.errors import CodeFaultError, ModelError
+from aos_runtime.processes.sandbox_trial import what_a_confined_program_can
 from aos_runtime.sandbox.support import sandbox_support
-from aos_runtime.sandbox.trial import what_a_confined_program_can
 
 needs_sandbox = pytest.mark.skipif(not sandbox_support().is_whole, reason="needs a kernel with a sandbox")
 

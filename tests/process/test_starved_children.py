@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 
 BURN = "import time\nwhile time.process_time() < 0.15: pass\nprint('burnt')"
 COMPETITOR = "print(flush=True)\nwhile True: pass"

@@ -15,8 +15,8 @@ from aos_deploy.history_check.files import check_run
 from aos_protocol.access import OPERATOR
 from aos_protocol.errors import SteeringError
 from aos_runtime.client import AosClient
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import mission_folder
 
 
 def followed(root: Path, run: Path) -> subprocess.CompletedProcess[str]:

@@ -11,7 +11,7 @@ from study.played import Played, play
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
 from aos_protocol.messages import PredictedObservation, TreeQuery, WhatIfQuery, WhyQuery
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.study.study import Study
 
 BUNDLE = "armadillo-rough"

@@ -12,7 +12,7 @@ from aos_deploy.views.lines import adopted_line
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import Activate, ModelAdopted, Outcome
 from aos_runtime.clock import SystemClock
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.mission_questions import UNRESTRICTED

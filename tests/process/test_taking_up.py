@@ -17,7 +17,7 @@ from aos_protocol.messages import (
     Outcome,
 )
 from aos_protocol.mission_rows import BEGUN
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits

@@ -15,7 +15,7 @@ from aos_protocol.errors import StorageError
 from aos_protocol.messages import Activate, Message, MissionBegun, MissionState, Outcome
 from aos_protocol.mission_rows import BEGUN
 from aos_runtime.clock import SystemClock
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search

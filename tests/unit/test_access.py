@@ -20,9 +20,9 @@ from aos_protocol.access import (
 )
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys, Serving
-from aos_runtime.access_check import Access
-from aos_runtime.router_access import access_control
-from aos_runtime.router_log import RefusalLog
+from aos_runtime.bus.access_check import Access
+from aos_runtime.router.access import access_control
+from aos_runtime.router.log import RefusalLog
 
 KEYS = Keys("r")
 ARM = Party(name="arm", role=ADAPTER, paths=("/pick", "gripper/open"))

@@ -18,7 +18,7 @@ from aos_deploy.runs.bus_socket import place_of_socket, remove_left_sockets, rem
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.access import ADAPTER, OPERATOR, SOLVER, WATCHER, Party
 from aos_protocol.errors import BusError, DeployError
-from aos_runtime.credentials import Credential, credential_of_environment, credential_of_run
+from aos_runtime.bus.credentials import Credential, credential_of_environment, credential_of_run
 
 ARM = Party(name="arm", role=ADAPTER, paths=("/pick",))
 

@@ -8,7 +8,7 @@ from decision_records import decision_record
 from drift_truth import BELIEF, SKILLS, alarm_of, silent, use
 
 from aos_protocol.messages import ActivationId, DriftTests, Outcome, PredictedObservation
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.mission.drift import FALSE_ALARMS, after_use, begun, drifts, text_of
 from aos_solver.mission.memory import folded
 

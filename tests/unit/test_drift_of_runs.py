@@ -14,7 +14,7 @@ from aos_deploy.runs.drift import drift_of_runs
 from aos_deploy.runs.record import RunRecord
 from aos_protocol.messages import ActivationId, Outcome, PredictedObservation
 from aos_protocol.mission_rows import DRIFT
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 from aos_solver.mission.drift import begun
 
 PREDICTED = (PredictedObservation("pressed", 0.9), PredictedObservation("stuck", 0.1))

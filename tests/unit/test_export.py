@@ -39,7 +39,7 @@ from aos_protocol.messages import (
     PredictedObservation,
     Steer,
 )
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 replace = msgspec.structs.replace
 STEPS = 3

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
+from aos_runtime.disk.journal import Journal
 from aos_runtime.failpoints import EXIT_STATUS
-from aos_runtime.journal import Journal
 
 APPENDS = """
 import sys
 from pathlib import Path
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Cancel
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 with Journal.open(Path("journal.db")) as journal:
     for number in range(3):
         try:

@@ -7,7 +7,7 @@ import pytest
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Activate, ActivationId, Cancel, SkillCall
-from aos_runtime.fence import Fence, meaning
+from aos_runtime.parties.fence import Fence, meaning
 
 
 def a_request(step: int, *, epoch: int = 1, skill: str = "pick", **parameters: Any) -> Activate:

@@ -15,7 +15,7 @@ from aos_deploy.runs.record import RunRecord
 from aos_gateway.run_shelf import RunShelf
 from aos_gateway.runs import RemoteRun
 from aos_protocol.errors import GatewayError
-from aos_runtime.mission_folders import make_folder_of_missions
+from aos_runtime.disk.mission_folders import make_folder_of_missions
 
 
 class EndingRun(RemoteRun):

@@ -13,7 +13,7 @@ from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.rules import RULES
 from aos_deploy.runs.verdict import Account, Verdict
 from aos_protocol import messages
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 
 MISSION = "run"
 STEPS = 3

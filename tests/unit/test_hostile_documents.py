@@ -16,7 +16,7 @@ from aos_language.load import LoadedBundle, load_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DeployError, DocumentError, StorageError
 from aos_registry.watch import watch_for_bundles
-from aos_runtime.lifecycle import root_cause
+from aos_runtime.processes.lifecycle import root_cause
 
 
 def loaded(code: str = "", **replaced: str) -> LoadedBundle:

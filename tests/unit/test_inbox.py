@@ -3,7 +3,7 @@
 import asyncio
 from functools import partial
 
-from aos_runtime.inbox import Inbox
+from aos_runtime.bus.inbox import Inbox
 
 
 async def test_messages_keep_their_order_and_leave_time_for_the_rest() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Cancel, MissionState
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 
 
 class StoppedClock:

@@ -14,7 +14,7 @@ from aos_deploy.runs.end import account_of
 from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import Activate, ActivationId, MissionBegun, Outcome, SkillCall
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 
 MISSION = "run"
 STEPS = 2

@@ -99,9 +99,9 @@ def test_every_error_code_that_is_used_has_a_meaning(root: Path) -> None:
 def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(root / "docs")
     table = importlib.import_module("limits_table")
-    assert table.value_at("aos_runtime.bus_config.LEASE_S") == 2.0
+    assert table.value_at("aos_runtime.bus.config.LEASE_S") == 2.0
     assert table.value_at("planning/listed/state_lister.hpp:states") == 400_000
-    for place in ("aos_runtime.bus_config.LEASES", "planning/listed/state_lister.hpp:stats", "aos_x.y.Z"):
+    for place in ("aos_runtime.bus.config.LEASES", "planning/listed/state_lister.hpp:stats", "aos_x.y.Z"):
         with pytest.raises(AttributeError, match="any more"):
             table.value_at(place)
 

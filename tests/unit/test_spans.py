@@ -21,7 +21,7 @@ from aos_protocol.errors import DeployError
 from aos_protocol.messages import ActivationId, DecisionRecord, MissionState, Outcome
 from aos_protocol.messages.base import Fault
 from aos_protocol.tracing import span_id, trace_id, traceparent
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 S = 10**9
 

@@ -20,7 +20,7 @@ from aos_protocol.messages import (
     MissionState,
     Outcome,
 )
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 MISSION = "run"
 KILLED = DeployError("registry ended unexpectedly: killed by SIGKILL", code="AOS804")

@@ -19,8 +19,8 @@ from aos_deploy.options import AsJson
 from aos_deploy.places import cache_dir
 from aos_protocol.errors import AosError
 from aos_runtime.distribution import pip_install
+from aos_runtime.processes.sandbox_trial import what_a_confined_program_can
 from aos_runtime.sandbox.support import sandbox_support
-from aos_runtime.sandbox.trial import what_a_confined_program_can
 
 _PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "tree-sitter", "rich")
 _SIMULATOR = "pybullet"

@@ -16,7 +16,7 @@ from aos_deploy.runs.living import living_runs, runs_here
 from aos_deploy.runs.pruning import Pruned, pruned
 from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
-from aos_runtime.mission_folders import mission_folder, mission_folders
+from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 
 runs_app = typer.Typer()
 

@@ -27,9 +27,9 @@ from aos_protocol.messages import (
     SkillResult,
 )
 from aos_protocol.spelling import did_you_mean, quoted
+from aos_runtime.bus.subscription import Subscription
 from aos_runtime.client import AosClient
-from aos_runtime.served import served
-from aos_runtime.subscription import Subscription
+from aos_runtime.parties.served import served
 
 _ASK_S = 5.0
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import DECISION
-from aos_runtime.journal import Journal, JournalRow
-from aos_runtime.mission_folders import mission_folders, mission_name
+from aos_runtime.disk.journal import Journal, JournalRow
+from aos_runtime.disk.mission_folders import mission_folders, mission_name
 
 
 class KeptMission(NamedTuple):

@@ -21,7 +21,7 @@ from aos_deploy.export.plotted import BELIEF, VALUES, belief_of, merged_schema, 
 from aos_protocol import __version__
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import MESSAGES
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 
 PICTURE = "/aos/picture"
 

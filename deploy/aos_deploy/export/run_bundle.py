@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath
 from aos_deploy.places import cache_dir
 from aos_language.archive import UNREADABLE_ARCHIVE
 from aos_protocol.errors import DeployError
-from aos_runtime.credentials import FOLDER, read_password
+from aos_runtime.bus.credentials import FOLDER, read_password
 
 SUFFIX = ".aosrun"
 """The end of the name of such a file."""

@@ -8,7 +8,7 @@ from aos_deploy.history_check.ledger_rules import ADAPTER_KINDS, MIDDLEWARE_KIND
 from aos_deploy.history_check.rules import BY_TIME, Violation
 from aos_deploy.runs.verdict import Verdict
 from aos_protocol.errors import StorageError
-from aos_runtime.journal import JournalError, JournalRow
+from aos_runtime.disk.journal import JournalError, JournalRow
 
 SET_BACK_NS = 10_000_000
 """Times of one file that go back by less say nothing of the clock."""

@@ -9,8 +9,8 @@ from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, Checked, History
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import Summary
 from aos_deploy.runs.verdict import Verdict
-from aos_runtime.journal import Journal, JournalRow
-from aos_runtime.mission_folders import mission_folders, mission_name, stays
+from aos_runtime.disk.journal import Journal, JournalRow
+from aos_runtime.disk.mission_folders import mission_folders, mission_name, stays
 
 
 def check_run(run: Path) -> Checked:

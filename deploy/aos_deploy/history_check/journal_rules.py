@@ -21,8 +21,8 @@ from aos_protocol.messages import (
     Steer,
 )
 from aos_protocol.mission_rows import DRIFT, MESSAGES
-from aos_runtime.fence import meaning
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
+from aos_runtime.parties.fence import meaning
 
 KINDS = {kind: message for kind, message in MESSAGES.items() if kind != DRIFT}
 """The kinds of rows that the rules are about."""

@@ -5,8 +5,8 @@ from typing import Any
 
 from aos_deploy.history_check.journal_rules import Found, JournalRules, digest
 from aos_protocol.messages import Activate, ActivationId, Fault, Message, Outcome, SkillCall, SkillResult
-from aos_runtime.fence import meaning
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
+from aos_runtime.parties.fence import meaning
 
 
 class Failed(Message, frozen=True):

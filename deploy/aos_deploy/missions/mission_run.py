@@ -34,12 +34,12 @@ from aos_protocol.messages import (
     SkillProgress,
     StartMission,
 )
-from aos_runtime.asking import ask_until_answered
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
-from aos_runtime.lifecycle import ServiceSettings, root_cause
+from aos_runtime.parties.asking import ask_until_answered
+from aos_runtime.parties.steering import start_mission
+from aos_runtime.processes.lifecycle import ServiceSettings, root_cause
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
-from aos_runtime.steering import start_mission
 
 _END_NOTICE_S = 5.0
 CAUSE_NOTICE_S = 0.5

@@ -9,8 +9,8 @@ from aos_deploy.processes.supervisor import Supervisor
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
 from aos_protocol.spelling import nearest
-from aos_runtime.reported_state import state_when
-from aos_runtime.subscription import merged
+from aos_runtime.bus.subscription import merged
+from aos_runtime.parties.reported_state import state_when
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0

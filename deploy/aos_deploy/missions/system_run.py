@@ -17,9 +17,9 @@ from aos_deploy.runs.verdict import Account, Verdict
 from aos_protocol.errors import AosError, MissionRunsError, StorageError
 from aos_protocol.messages import MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import DECISION
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import make_folder_of_missions, mission_folder
-from aos_runtime.steering import start_mission
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import make_folder_of_missions, mission_folder
+from aos_runtime.parties.steering import start_mission
 from aos_solver.mission.logbook import JOURNAL, entries_of, entry_of
 
 

@@ -12,8 +12,8 @@ from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
 from aos_protocol.messages import ActivationId
-from aos_runtime.journal import Journal, JournalRow
-from aos_runtime.mission_folders import stays
+from aos_runtime.disk.journal import Journal, JournalRow
+from aos_runtime.disk.mission_folders import stays
 from aos_solver.mission.logbook import JOURNAL, entries_of
 from aos_solver.mission.memory import MissionMemory, folded
 

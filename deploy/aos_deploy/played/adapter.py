@@ -21,7 +21,7 @@ from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
-from aos_runtime.mission_folders import number_in
+from aos_runtime.disk.mission_folders import number_in
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 

@@ -16,7 +16,7 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import MissionEntry
-from aos_runtime.mission_folders import mission_folder
+from aos_runtime.disk.mission_folders import mission_folder
 from aos_solver.child.engine import Engine
 from aos_solver.mission.conditions import built_with_conditions
 from aos_solver.mission.succession import KEEP

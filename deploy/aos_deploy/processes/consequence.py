@@ -9,9 +9,9 @@ from aos_deploy.processes.remote import is_lost
 from aos_deploy.processes.restarts import WITHIN_S, Restarts
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.errors import AosError
-from aos_runtime.children import Child
-from aos_runtime.guard import NOT_STARTED
-from aos_runtime.lifecycle import STORAGE_STATUS
+from aos_runtime.processes.children import Child
+from aos_runtime.processes.guard import NOT_STARTED
+from aos_runtime.processes.lifecycle import STORAGE_STATUS
 
 STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
 """The consequences of a process that ends by itself."""

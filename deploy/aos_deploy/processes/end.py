@@ -7,7 +7,7 @@ from aos_deploy.processes.program import Program
 from aos_deploy.processes.remote import why_it_failed
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.errors import AosError, DeployError, StorageError, error_from_code
-from aos_runtime.lifecycle import STORAGE_STATUS
+from aos_runtime.processes.lifecycle import STORAGE_STATUS
 
 
 def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool) -> AosError:

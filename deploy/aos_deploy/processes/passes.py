@@ -9,7 +9,7 @@ from typing import NamedTuple
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.access import OPERATOR, WATCHER, Party
 from aos_protocol.errors import DeployError, StorageError
-from aos_runtime.credentials import Credential, read_password, write_password
+from aos_runtime.bus.credentials import Credential, read_password, write_password
 
 DICTIONARY = "router"
 """The name of the router's file: names and passwords of all, there until the router has read it."""

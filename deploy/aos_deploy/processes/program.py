@@ -14,8 +14,8 @@ from aos_deploy.deployment.reading import Deployment
 from aos_deploy.places import cache_dir
 from aos_deploy.processes.passes import Outsider
 from aos_protocol.access import ADAPTER, ROLES, SERVER, WATCHER, Party
-from aos_runtime.children import Limits, guarded
-from aos_runtime.service_settings import ServiceSettings
+from aos_runtime.processes.children import Limits, guarded
+from aos_runtime.processes.settings import ServiceSettings
 
 
 class Program(msgspec.Struct, frozen=True, kw_only=True):

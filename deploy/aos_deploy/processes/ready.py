@@ -10,7 +10,7 @@ from pathlib import Path
 from aos_deploy.deployment.own_programs import ReadyPart
 from aos_deploy.processes.program import words_of
 from aos_protocol.errors import DeployError
-from aos_runtime.children import Child, guarded
+from aos_runtime.processes.children import Child, guarded
 
 _LOOK_EVERY_S = 0.1
 _CONNECT_S = 2.0

@@ -14,10 +14,10 @@ from aos_deploy.processes.program import Program, settings_of
 from aos_deploy.processes.remote import check_ssh, dialled, remote_command
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.errors import DeployError
-from aos_runtime.children import PIPE, Child, Limits, guarded
-from aos_runtime.credentials import PASSWORD_FILE_VARIABLE, USER_VARIABLE
+from aos_runtime.bus.credentials import PASSWORD_FILE_VARIABLE, USER_VARIABLE
 from aos_runtime.failpoints import reach
-from aos_runtime.service_settings import ServiceSettings
+from aos_runtime.processes.children import PIPE, Child, Limits, guarded
+from aos_runtime.processes.settings import ServiceSettings
 
 ROUTER_MODULE = "aos_runtime.router"
 

@@ -42,11 +42,11 @@ from aos_protocol.access import OPERATOR, Party
 from aos_protocol.errors import DeployError
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
-from aos_runtime.bus import Access, Bus
+from aos_runtime.bus.bus import Access, Bus
+from aos_runtime.bus.subscription import merged
 from aos_runtime.clock import Clock
 from aos_runtime.failpoints import reach
-from aos_runtime.lifecycle import ROUTER_S, ServiceSettings
-from aos_runtime.subscription import merged
+from aos_runtime.processes.lifecycle import ROUTER_S, ServiceSettings
 
 ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
 

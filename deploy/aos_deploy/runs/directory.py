@@ -33,9 +33,9 @@ from aos_deploy.runs.summary import Summary
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
+from aos_runtime.disk.mission_folders import mission_folder
 from aos_runtime.failpoints import reach
-from aos_runtime.mission_folders import mission_folder
-from aos_runtime.service_settings import fault_path
+from aos_runtime.processes.settings import fault_path
 
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""

@@ -6,7 +6,7 @@ from aos_deploy.runs.verdict import Account, Verdict, message_of_row
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import MissionBegun
 from aos_protocol.mission_rows import BEGUN, STATE
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 _JOURNAL = "journal.db"
 

@@ -15,8 +15,8 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError, StudyError
 from aos_registry.catalogue import Catalogue
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder, mission_folders
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import NICENESS, ReplayedMission

@@ -13,7 +13,7 @@ from aos_deploy.runs.summary import RunEnd
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionState
 from aos_protocol.mission_rows import DECISION, STATE
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 
 
 class Verdict(RunEnd, frozen=True, kw_only=True):

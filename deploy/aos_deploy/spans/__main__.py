@@ -15,7 +15,7 @@ from aos_deploy.spans.otlp import Collector
 from aos_deploy.spans.rest import REST
 from aos_deploy.spans.sending import Sender
 from aos_protocol.errors import AosError
-from aos_runtime.service_settings import ServiceSettings
+from aos_runtime.processes.settings import ServiceSettings
 
 _LOOK_S = 2.0
 _SEND_S = 10.0

@@ -15,7 +15,7 @@ from aos_deploy.spans.spans import Span, span_of_mission, spans_of_record
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_protocol.mission_rows import DECISION, STATE
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 
 _BATCH = 500
 _PLACES = "spans.json"

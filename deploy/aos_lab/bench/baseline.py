@@ -9,7 +9,7 @@ import msgspec
 
 from aos_deploy.places import shipped
 from aos_protocol.errors import ModelError
-from aos_runtime.children import PIPE, Child
+from aos_runtime.processes.children import PIPE, Child
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler
 from aos_solver.building.engine_build import SOURCES

@@ -14,7 +14,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import DECISION
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 
 _TRUTHS = ("world.jsonl", "model.jsonl")
 

@@ -19,7 +19,7 @@ from aos_lab.trials.trial import Trial
 from aos_protocol import __version__
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import MissionValue
-from aos_runtime.lifecycle import root_cause
+from aos_runtime.processes.lifecycle import root_cause
 
 HERE = "local"
 """The name of this machine as the place where missions are played."""

@@ -14,8 +14,8 @@ import sys
 from aos_runtime.adapters.host import serve_adapter
 from aos_runtime.adapters.settings import AdapterSettings
 from aos_runtime.adapters.told import settings_told
-from aos_runtime.bus_config import ADAPTER_LEASE_S
-from aos_runtime.lifecycle import run_service
+from aos_runtime.bus.config import ADAPTER_LEASE_S
+from aos_runtime.processes.lifecycle import run_service
 
 if __name__ == "__main__":
     settings = settings_told(sys.argv[1:])

@@ -19,10 +19,10 @@ from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.adapters.results import result_of
 from aos_runtime.adapters.running_call import RunningCall, last_progress
 from aos_runtime.adapters.settings import AdapterSettings, Binding
-from aos_runtime.fence import Fence, epoch_of_solver, is_waited_for
-from aos_runtime.lifecycle import Service
+from aos_runtime.bus.subscription import Subscription
 from aos_runtime.older_python import timeout
-from aos_runtime.subscription import Subscription
+from aos_runtime.parties.fence import Fence, epoch_of_solver, is_waited_for
+from aos_runtime.processes.lifecycle import Service
 
 MIDDLEWARE_AWAY_S = 2.0
 """A motion is stopped when nobody could hear of it for this long."""

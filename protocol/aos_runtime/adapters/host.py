@@ -26,9 +26,9 @@ from aos_runtime.adapters.calls import Calls
 from aos_runtime.adapters.outbox import Outbox
 from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.adapters.settings import AdapterSettings, Binding
-from aos_runtime.asking import ask_until_answered
-from aos_runtime.lifecycle import Service
-from aos_runtime.subscription import together
+from aos_runtime.bus.subscription import together
+from aos_runtime.parties.asking import ask_until_answered
+from aos_runtime.processes.lifecycle import Service
 
 _ASK_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 2.0

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from aos_protocol.errors import AosError, SkillError, error_from_code
 from aos_protocol.messages import ActivationId, Fault, Message, SkillCall, SkillResult
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import is_before
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import is_before
 
 
 class _Failure(Message, frozen=True):

@@ -12,7 +12,7 @@ from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
 from aos_runtime.adapters.sendable import sendable
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 MAX_UNSENT_MESSAGES = 10_000
 """The oldest topic messages give way where more than these wait to be sent."""

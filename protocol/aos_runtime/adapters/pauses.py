@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
-from aos_runtime.bus_config import ADAPTER_LEASE_S
+from aos_runtime.bus.config import ADAPTER_LEASE_S
 
 _TURN_S = 0.1
 _PAUSE_S = ADAPTER_LEASE_S / 2

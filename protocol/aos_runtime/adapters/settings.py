@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from aos_protocol.access import ADAPTER, Party
-from aos_runtime.service_settings import ServiceSettings
+from aos_runtime.processes.settings import ServiceSettings
 
 
 class Binding(msgspec.Struct, frozen=True, kw_only=True):

@@ -14,7 +14,7 @@ import msgspec
 
 from aos_protocol.codec import UNREADABLE
 from aos_runtime.adapters.settings import AdapterSettings
-from aos_runtime.credentials import PASSWORD_FILE_VARIABLE
+from aos_runtime.bus.credentials import PASSWORD_FILE_VARIABLE
 
 USAGE = """usage: python -m aos_runtime.adapters MODULE:CLASS [NAME=VALUE]...
 

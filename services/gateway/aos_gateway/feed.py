@@ -17,7 +17,7 @@ from aos_gateway.runs import Run
 from aos_gateway.trace import Step, Steps
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
-from aos_runtime.subscription import merged
+from aos_runtime.bus.subscription import merged
 
 _QUEUE_FRAMES = 2000
 _LINGER_S = 5.0

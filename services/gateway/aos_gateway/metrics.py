@@ -18,7 +18,7 @@ from aos_gateway.runs import KeptRun, Run, RunEntry
 from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
 from aos_protocol.mission_rows import STATE
-from aos_runtime.journal import Journal
+from aos_runtime.disk.journal import Journal
 from aos_solver.mission.logbook import JOURNAL
 
 _log = logging.getLogger("aos.gateway")

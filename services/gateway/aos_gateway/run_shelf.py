@@ -10,7 +10,7 @@ from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import living_runs
 from aos_gateway.runs import KeptRun, RemoteRun, Run, RunEntry
 from aos_protocol.errors import DeployError, GatewayError
-from aos_runtime.mission_folders import number_of
+from aos_runtime.disk.mission_folders import number_of
 
 LATEST = "latest"
 _FRESH_S = 0.8

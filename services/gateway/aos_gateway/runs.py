@@ -18,8 +18,8 @@ from aos_protocol.errors import AosError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
 from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.client import AosClient
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import mission_folder, mission_folders, mission_name, number_in, stays
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import mission_folder, mission_folders, mission_name, number_in, stays
 from aos_solver.mission.history import history_page
 from aos_solver.mission.logbook import JOURNAL, entries_of
 

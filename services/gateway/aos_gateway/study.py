@@ -15,7 +15,7 @@ from aos_protocol.errors import GatewayError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.client import STUDY_TIMEOUT_S
-from aos_runtime.mission_folders import number_in
+from aos_runtime.disk.mission_folders import number_in
 from aos_solver.study.study import Study
 
 A = TypeVar("A", Why, DecisionTree, WhatIf)

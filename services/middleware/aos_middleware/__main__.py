@@ -2,7 +2,7 @@
 
 from aos_middleware.service import serve
 from aos_middleware.settings import Settings
-from aos_runtime.lifecycle import run_service
+from aos_runtime.processes.lifecycle import run_service
 
 if __name__ == "__main__":
     run_service(Settings, serve)

@@ -24,9 +24,9 @@ from aos_middleware.settings import Settings
 from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.errors import BusError, SkillError
 from aos_protocol.messages import Activate, ActivationId, MappingQuery, MappingState, Outcome, ProjectRevision
-from aos_runtime.fence import Fence, epoch_of_solver
-from aos_runtime.lifecycle import Service
-from aos_runtime.registry_watch import RegistryWatch
+from aos_runtime.parties.fence import Fence, epoch_of_solver
+from aos_runtime.parties.registry_watch import RegistryWatch
+from aos_runtime.processes.lifecycle import Service
 
 FIRST_MAPPINGS_S = 20.0
 """An activation waits this long for the first mappings of a middleware that was started again."""

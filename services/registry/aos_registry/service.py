@@ -28,7 +28,7 @@ from aos_registry.catalogue import Catalogue
 from aos_registry.drops import DroppedBundles
 from aos_registry.intake import Intake
 from aos_registry.settings import Settings
-from aos_runtime.lifecycle import Service
+from aos_runtime.processes.lifecycle import Service
 
 _log = logging.getLogger("aos.registry")
 

@@ -4,8 +4,8 @@ import asyncio
 import contextlib
 
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionState, Outcome
-from aos_runtime.asking import ask_until_answered
-from aos_runtime.lifecycle import Service
+from aos_runtime.parties.asking import ask_until_answered
+from aos_runtime.processes.lifecycle import Service
 from aos_solver.mapping_watch import MappingWatch
 from aos_solver.mission.endings import Ending
 from aos_solver.mission.logbook import Logbooks

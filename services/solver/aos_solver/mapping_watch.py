@@ -7,9 +7,9 @@ from contextlib import suppress
 from aos_protocol.errors import AosError, BusError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MappingQuery, MappingState
-from aos_runtime.bus import Bus
-from aos_runtime.reported_state import state_when
-from aos_runtime.subscription import merged
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.subscription import merged
+from aos_runtime.parties.reported_state import state_when
 
 log = logging.getLogger(__name__)
 

@@ -11,7 +11,7 @@ import msgspec
 from aos_protocol.errors import AosError, MissionRunsError
 from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartMission
 from aos_protocol.mission_rows import BEGUN
-from aos_runtime.registry_watch import RegistryWatch
+from aos_runtime.parties.registry_watch import RegistryWatch
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import earlier_models

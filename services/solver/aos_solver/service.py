@@ -27,8 +27,8 @@ from aos_protocol.messages import (
     StopMission,
 )
 from aos_runtime.failpoints import reach
-from aos_runtime.lifecycle import Service
-from aos_runtime.registry_watch import RegistryWatch
+from aos_runtime.parties.registry_watch import RegistryWatch
+from aos_runtime.processes.lifecycle import Service
 from aos_solver.building.build import BuiltModel
 from aos_solver.bus_ports import BusPorts
 from aos_solver.child.answers import Progress

@@ -5,7 +5,7 @@ from typing import Literal
 import msgspec
 
 from aos_protocol.documents import Constraint, MissionValue
-from aos_runtime.lifecycle import ServiceSettings
+from aos_runtime.processes.lifecycle import ServiceSettings
 from aos_solver.child.mission_questions import DEFAULT_PLANNER, Planner
 from aos_solver.mission.failures import SkillRule
 

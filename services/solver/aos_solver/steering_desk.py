@@ -8,7 +8,7 @@ import msgspec
 from aos_protocol.errors import SteeringError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MissionState, Steer
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_solver.mission_runner import MissionRunner
 from aos_solver.stopping import until_stopped
 

@@ -6,8 +6,8 @@ from contextlib import suppress
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Cancel, Cancelled
-from aos_runtime.bus import Bus
-from aos_runtime.served import served
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.served import served
 from aos_solver.mission.loop import Mission
 
 CANCEL_AGAIN_S = 0.2

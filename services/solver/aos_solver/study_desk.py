@@ -6,9 +6,9 @@ from pathlib import Path
 from aos_protocol.documents import Project
 from aos_protocol.keys import Keys
 from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
-from aos_runtime.bus import Bus
-from aos_runtime.journal import Journal
-from aos_runtime.registry_watch import RegistryWatch
+from aos_runtime.bus.bus import Bus
+from aos_runtime.disk.journal import Journal
+from aos_runtime.parties.registry_watch import RegistryWatch
 from aos_solver.mission.logbook import Logbooks
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded

@@ -12,7 +12,7 @@ from typing import Any
 import zenoh
 
 from aos_deploy.runs.directory import RunDirectory
-from aos_runtime.credentials import credential_of_run
+from aos_runtime.bus.credentials import credential_of_run
 
 from ..counters import counting
 from .routed import opened

@@ -23,8 +23,8 @@ from aos_protocol.messages import (
     StartMission,
     StopMission,
 )
-from aos_runtime.bus_config import client_config
-from aos_runtime.credentials import Credential
+from aos_runtime.bus.config import client_config
+from aos_runtime.bus.credentials import Credential
 
 from .cell import ROBOT, Cell
 from .routed import round_trip

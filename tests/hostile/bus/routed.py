@@ -16,10 +16,10 @@ from zenoh.handlers import Callback
 from aos_deploy.processes.passes import Passes
 from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.access import ROUND_TRIP, Party
-from aos_runtime.bus_config import client_config
-from aos_runtime.credentials import Credential
-from aos_runtime.parent import PARENT_VARIABLE
-from aos_runtime.router import RouterSettings
+from aos_runtime.bus.config import client_config
+from aos_runtime.bus.credentials import Credential
+from aos_runtime.processes.parent import PARENT_VARIABLE
+from aos_runtime.router.routing import RouterSettings
 
 ROBOT = "test"
 _PATIENCE_S = 30.0

@@ -26,7 +26,7 @@ from aos_protocol.documents import AbstractionMapping
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Activate, Fault, Outcome, SkillResult, TopicMessage
 from aos_protocol.spelling import shortened
-from aos_runtime.subscription import merged
+from aos_runtime.bus.subscription import merged
 
 _LONGEST_RESPONSE = 1000
 """A longer one is none that a document knows."""

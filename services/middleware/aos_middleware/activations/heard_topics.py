@@ -10,7 +10,7 @@ from aos_middleware.workers.evaluator import Evaluator
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.messages import SkillResult, TopicMessage
-from aos_runtime.bus import Subscription
+from aos_runtime.bus.bus import Subscription
 
 CATCH_UP_S = 0.5
 """An activation waits so long, after the call, for topic messages that were sent during it.

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Self
 
 from aos_protocol.messages import Activate, ActivationId, Outcome, Stray
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import is_before
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import is_before
 
 _STARTED = "started"
 _ENDED = "ended"

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 
-from aos_runtime.bus_config import LEASE_S
+from aos_runtime.bus.config import LEASE_S
 from aos_runtime.clock import Clock
 
 _LOOK_S = 0.25

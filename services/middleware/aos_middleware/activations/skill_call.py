@@ -16,8 +16,8 @@ from aos_protocol.codec import TooLargeError
 from aos_protocol.documents import Activation
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.messages import Activate, Cancel, Cancelled, SkillCall, SkillResult, Stray
-from aos_runtime.asking import AWAY_S
 from aos_runtime.failpoints import reach
+from aos_runtime.parties.asking import AWAY_S
 
 _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25

@@ -10,7 +10,7 @@ from aos_middleware.robot.served_paths import ServedPaths
 from aos_middleware.robot.silent_topics import SilentTopics
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Stray
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_runtime.clock import Clock
 
 

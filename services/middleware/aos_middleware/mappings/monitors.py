@@ -15,8 +15,8 @@ from aos_protocol.documents import LocalSource
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import TopicMessage
-from aos_runtime.bus import Bus
-from aos_runtime.subscription import merged
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.subscription import merged
 
 LISTEN_S = 5.0
 """An activation waits this long for new monitors to be at work."""

@@ -9,7 +9,7 @@ from aos_middleware.robot.served_paths import ServedPaths
 from aos_protocol.errors import AosError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId, Cancel, Cancelled
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 CONFIRM_S = 3.0
 """A motion waits this long for word that an earlier skill has stopped."""

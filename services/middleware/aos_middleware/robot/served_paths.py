@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys, Serving
-from aos_runtime.bus import Bus
-from aos_runtime.subscription import merged
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.subscription import merged
 
 _log = logging.getLogger("aos.middleware")
 

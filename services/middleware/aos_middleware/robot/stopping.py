@@ -6,7 +6,7 @@ import logging
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, Cancel, Cancelled
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 STOP_S = 3.0
 """An adapter has this long to answer that what it is to stop has stopped, before it is asked again."""

@@ -22,8 +22,8 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import MappingError, StorageError
-from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.failpoints import reach
+from aos_runtime.processes.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
 A = TypeVar("A", frames.Begun, frames.Done, frames.Observed, frames.Taken)

@@ -16,7 +16,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
 from aos_protocol.messages import BeliefSummary, Marginal
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 
 __all__ = ["Drawn", "draw", "likeliest_state"]
 

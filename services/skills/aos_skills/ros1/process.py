@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError, BusError, SkillError, error_from_code
-from aos_runtime.children import PIPE, Child, guarded
+from aos_runtime.processes.children import PIPE, Child, guarded
 from aos_skills.ros.definitions import interface_name, missing_interface
 
 LONGEST_REASON = 200

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from aos_runtime.foreign_bus import ForeignBus
+from aos_runtime.bus.foreign_bus import ForeignBus
 from aos_skills.ros2.wire import Endpoint, Kind, endpoint_of
 
 

@@ -8,7 +8,7 @@ from collections.abc import Awaitable, Callable
 from typing import Self
 
 from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError, SkillError
-from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
+from aos_runtime.bus.foreign_bus import ForeignBus, Packet, Undo
 from aos_skills.ros.faults import check_type, node_lost, not_answered, not_served
 from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
 from aos_skills.ros.ros2_node import Ros2Node

@@ -16,8 +16,8 @@ from collections.abc import Iterator, Mapping
 import msgspec
 
 from aos_protocol.errors import DeployError, ModelError
-from aos_runtime.children import PIPE, Child
 from aos_runtime.distribution import pip_install
+from aos_runtime.processes.children import PIPE, Child
 
 Family = str
 """`gcc`, `clang`, or `zig`, which is clang inside."""

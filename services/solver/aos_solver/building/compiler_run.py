@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
 from aos_protocol.errors import AosError, ModelError, StorageError
-from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
+from aos_runtime.processes.children import PIPE, Child, Confinement, Limits, guarded
 from aos_runtime.sandbox.places import SYSTEM, folders_of_tool, python_folders
 from aos_solver.building.compiler import Compiler
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from aos_runtime.children import Confinement
+from aos_runtime.processes.children import Confinement
 from aos_runtime.sandbox.places import library_folders, loader_of
 
 

@@ -22,7 +22,7 @@ from aos_protocol.errors import (
     ModelError,
     error_from_code,
 )
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault, Progress
 from aos_solver.child.belief_draws import draws_of

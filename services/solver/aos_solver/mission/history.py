@@ -10,7 +10,7 @@ import msgspec
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery
 from aos_protocol.mission_rows import DECISION
-from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.disk.journal import Journal, JournalRow
 
 PAGE_BYTES = 2**20
 """A page ends with the record that exceeds it. As objects it takes some ten times the memory."""

@@ -7,8 +7,8 @@ import msgspec
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Message, MissionBegun, MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import BEGUN, STATE
-from aos_runtime.journal import Journal
-from aos_runtime.mission_folders import (
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import (
     make_mission_folder,
     mission_folder,
     mission_folders,

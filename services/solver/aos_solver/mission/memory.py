@@ -22,7 +22,7 @@ from aos_protocol.messages import (
     Steer,
 )
 from aos_protocol.mission_rows import MESSAGES
-from aos_runtime.journal import JournalRow
+from aos_runtime.disk.journal import JournalRow
 from aos_solver.mission.drift import after_use
 from aos_solver.mission.steering import LIFTS, Steering
 from aos_solver.mission.stretches import Stretch, after

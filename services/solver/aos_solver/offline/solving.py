@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import ModelError, PlanningError
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 from aos_solver.child.confinement import confinement_of
 from aos_solver.offline.alpha_vectors import AlphaVectors, RegionSize
 from aos_solver.offline.explicit_model import ExplicitModel

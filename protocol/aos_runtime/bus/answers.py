@@ -14,8 +14,8 @@ from aos_protocol.codec import decode, encode, encode_fault
 from aos_protocol.errors import AosError, BusError, LostAnswerError
 from aos_protocol.messages import Message
 from aos_runtime.background import Background
+from aos_runtime.bus.question import RECEIPT
 from aos_runtime.clock import Clock
-from aos_runtime.question import RECEIPT
 
 M = TypeVar("M", bound=Message)
 

@@ -22,7 +22,7 @@ from aos_protocol.errors import StorageError
 from aos_protocol.messages import Message
 from aos_runtime import failpoints
 from aos_runtime.clock import Clock, SystemClock
-from aos_runtime.plain_tables import require_plain_tables
+from aos_runtime.disk.plain_tables import require_plain_tables
 
 if TYPE_CHECKING:
     from typing import Self  # not in Python 3.10

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 
-from aos_runtime.children import Confinement, Limits, guarded
+from aos_runtime.processes.children import Confinement, Limits, guarded
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
 _TRIAL_S = 20.0

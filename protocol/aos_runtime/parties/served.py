@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from aos_protocol.keys import Keys, Serving
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 
 async def served(bus: Bus, keys: Keys) -> list[Serving]:

@@ -15,7 +15,7 @@ from typing import Any
 import zenoh
 
 from aos_protocol.errors import BusError
-from aos_runtime.credentials import Credential
+from aos_runtime.bus.credentials import Credential
 
 LEASE_S = 2.0
 """A process that is silent for this long is taken for gone. One that ends is noticed at once."""

@@ -7,9 +7,9 @@ from typing import TypeVar
 
 from aos_protocol.errors import LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
+from aos_runtime.bus.subscription import Subscription
 from aos_runtime.older_python import timeout
-from aos_runtime.subscription import Subscription
 
 AWAY_S = 30.0
 """A service may be away for so long before whoever asks it gives up."""

@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
-from aos_runtime.recurring import Recurring
+from aos_runtime.bus.recurring import Recurring
 
 _TRACE = (
     "error,zenoh::net::routing::interceptor=trace,zenoh::net::routing::interceptor::access_control=trace,"

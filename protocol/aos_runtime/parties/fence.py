@@ -15,8 +15,8 @@ import msgspec
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId, Cancel, MissionQuery, MissionState, SkillCall
-from aos_runtime.bus import Bus
-from aos_runtime.mission_folders import is_before, number_of
+from aos_runtime.bus.bus import Bus
+from aos_runtime.disk.mission_folders import is_before, number_of
 
 _ASK_TIMEOUT_S = 5.0
 _LINK_S = 0.2

@@ -7,8 +7,8 @@ from functools import partial
 import zenoh
 from zenoh.handlers import Callback
 
-from aos_runtime.inbox import Inbox
-from aos_runtime.subscription import Subscription
+from aos_runtime.bus.inbox import Inbox
+from aos_runtime.bus.subscription import Subscription
 
 Changes = Subscription[tuple[str, bool]]
 

@@ -18,7 +18,7 @@ from typing import IO, Any, Literal, Self, TypedDict, TypeVar, Unpack
 import msgspec
 
 from aos_protocol.errors import DeployError
-from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.processes.parent import PARENT_VARIABLE
 from aos_runtime.sandbox.support import require_sandbox, sandbox_support
 
 PIPE = asyncio.subprocess.PIPE
@@ -32,7 +32,8 @@ _LEAST_STARVED = 0.05
 """A child that waited for a processor for less than this share of its deadline has had its time."""
 
 _LAUNCH_GUARD = (
-    "import sys; sys.path.insert(0, sys.argv[1]); from aos_runtime.guard import main; main(sys.argv[2:])"
+    "import sys; sys.path.insert(0, sys.argv[1]); "
+    "from aos_runtime.processes.guard import main; main(sys.argv[2:])"
 )
 
 
@@ -74,7 +75,7 @@ class Confinement(msgspec.Struct, frozen=True, kw_only=True):
 def guarded(
     command: list[str], limits: Limits | None = None, confinement: Confinement | None = None
 ) -> list[str]:
-    """The command line that runs `command` under `aos_runtime.guard`, so that nothing of it stays behind.
+    """The command line that runs `command` under `guard`, so that nothing of it stays behind.
 
     DeployError AOS805 if it is to be confined, and cannot be, unless documents are trusted.
     """
@@ -84,7 +85,7 @@ def guarded(
     for name, value in msgspec.structs.asdict(limits or Limits()).items():
         if value is not None:
             options += [f"--{name.replace('_', '-')}", str(value)]
-    packages = str(Path(__file__).parent.parent)
+    packages = str(Path(__file__).parents[2])
     return [sys.executable, "-I", "-S", "-c", _LAUNCH_GUARD, packages, *options, "--", *command]
 
 

@@ -1,4 +1,4 @@
-"""The bus router as a process: `python -m aos_runtime.router SETTINGS.json`.
+"""The bus router as a service.
 
 The settings are those of every service; `endpoint` is where it listens.
 """
@@ -14,10 +14,10 @@ import zenoh
 
 from aos_protocol.access import Party
 from aos_protocol.errors import BusError
-from aos_runtime.bus_config import router_config
-from aos_runtime.lifecycle import ServiceSettings, run_process
-from aos_runtime.router_access import access_control
-from aos_runtime.router_log import refusals_logged
+from aos_runtime.bus.config import router_config
+from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.router.access import access_control
+from aos_runtime.router.log import refusals_logged
 
 _log = logging.getLogger("aos.router")
 
@@ -65,7 +65,3 @@ def _listening(config: zenoh.Config, endpoint: str) -> zenoh.Session:
         ) from error
     _log.info("listening at %s", endpoint)
     return session
-
-
-if __name__ == "__main__":
-    run_process(RouterSettings, route)

@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 
 from aos_protocol.access import ROLES, SERVER, Party
-from aos_runtime.credentials import Credential
+from aos_runtime.bus.credentials import Credential
 
 
 class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,8 +1,8 @@
 r"""A small process around a command that must leave nothing behind: compilers, engines, mapping workers.
 
-    python -m aos_runtime.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] [--niceness N] \
-        [--grace-s S] [--profile NAME [--read PATH]... [--execute PATH]... [--write PATH]... [--trust YES]] \
-        -- command...
+    python -m aos_runtime.processes.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] \
+        [--niceness N] [--grace-s S] [--profile NAME [--read PATH]... [--execute PATH]... [--write PATH]... \
+        [--trust YES]] -- command...
 
 The command runs in a process group of its own, under the limits, on the guard's own stdin, stdout and
 stderr. When it ends, when the guard is told to stop (SIGTERM, SIGINT, SIGHUP), or when the guard's parent
@@ -28,7 +28,7 @@ import resource
 import sys
 import time
 
-from aos_runtime.parent import adopt_orphans, die_with_parent, request_death_signal
+from aos_runtime.processes.parent import adopt_orphans, die_with_parent, request_death_signal
 from aos_runtime.sandbox.confine import ACCESS, Sandbox, become_confined
 from aos_runtime.sandbox.profiles import ALONE
 

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 from aos_runtime.older_python import timeout
 
 M = TypeVar("M", bound=Message)

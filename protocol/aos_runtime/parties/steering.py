@@ -11,8 +11,8 @@ import msgspec
 
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MissionState, StartMission, Steer, SteeringVerb
-from aos_runtime.asking import ask_until_answered
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.asking import ask_until_answered
 
 START_TIMEOUT_S = 600.0
 """A mission starts once its model is compiled, and the engine where set-up has not done that."""

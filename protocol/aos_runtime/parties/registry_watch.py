@@ -10,7 +10,7 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, LateAnswerError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import ProjectQuery, ProjectRevision
-from aos_runtime.bus import Bus
+from aos_runtime.bus.bus import Bus
 
 log = logging.getLogger(__name__)
 

@@ -26,13 +26,13 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, DeployError, StorageError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
-from aos_runtime.bus import Access, Bus
-from aos_runtime.bus_config import LEASE_S
+from aos_runtime.bus.bus import Access, Bus
+from aos_runtime.bus.config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.code_places import place_of
 from aos_runtime.older_python import BaseExceptionGroup
-from aos_runtime.parent import die_with_parent
-from aos_runtime.service_settings import ServiceSettings, fault_path
+from aos_runtime.processes.parent import die_with_parent
+from aos_runtime.processes.settings import ServiceSettings, fault_path
 
 __all__ = [
     "ROUTER_S",

@@ -1,0 +1,1 @@
+"""The bus router: who may do what, and what it refused."""
