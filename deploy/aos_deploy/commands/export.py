@@ -58,8 +58,9 @@ def export(
 
 
 def _send_spans(runs: list[Path], address: str, *, as_json: bool) -> None:
+    from aos_deploy.deployment.hosts import is_collector_address
     from aos_deploy.runs.directory import RunDirectory
-    from aos_deploy.spans.otlp import Collector, is_collector_address
+    from aos_deploy.spans.otlp import Collector
     from aos_deploy.spans.sending import Sender
 
     if not is_collector_address(address):

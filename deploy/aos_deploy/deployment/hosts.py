@@ -1,7 +1,8 @@
-"""The other hosts that a deploy file names: `host:` and `folder:` of an adapter or a program."""
+"""The other hosts of a deploy file: `host:` and `folder:` of an adapter or a program, and a collector."""
 
 import re
 from typing import Any
+from urllib.parse import urlsplit
 
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
@@ -19,3 +20,12 @@ def check_host(path: str, host: Any, folder: Any, where: Span, findings: Finding
     if not isinstance(folder, str) or (folder and host is None):
         hint = "It is a folder on the other host; without a host the deploy file's folder is meant"
         findings.error("AOS106", f"{path}.folder is given without a host", where, hint)
+
+
+def is_collector_address(address: str) -> bool:
+    """Says whether spans can be sent there: an address with http or https and a host."""
+    try:
+        parts = urlsplit(address)
+        return parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        return False

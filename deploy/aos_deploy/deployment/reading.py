@@ -13,13 +13,13 @@ import msgspec
 from aos_deploy.deployment.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
 from aos_deploy.deployment.constraints import snippet_of
 from aos_deploy.deployment.folder import deploy_file_at
+from aos_deploy.deployment.hosts import is_collector_address
 from aos_deploy.deployment.mission_values import values_of_node
 from aos_deploy.deployment.named_paths import absolute, is_file, is_folder, is_there, named
 from aos_deploy.deployment.own_programs import check_programs
 from aos_deploy.deployment.parts import DeployFile
 from aos_deploy.deployment.typed import known_names, read_structure
 from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
-from aos_deploy.spans.otlp import is_collector_address
 from aos_language.archive import is_archive_name
 from aos_language.findings import Findings
 from aos_language.load import read_bundle_files

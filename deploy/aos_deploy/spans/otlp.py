@@ -43,15 +43,6 @@ def _is_there(module: str) -> bool:
         return False
 
 
-def is_collector_address(address: str) -> bool:
-    """Says whether spans can be sent there: an address with http or https and a host."""
-    try:
-        parts = urlsplit(address)
-        return parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
-    except ValueError:
-        return False
-
-
 class Collector:
     """A collector that takes OTLP over HTTP, at `address`: without a path that is `/v1/traces` of it.
 
