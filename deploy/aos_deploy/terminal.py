@@ -1,4 +1,9 @@
-"""The terminal: a console that does without styles where NO_COLOR is set, and progress of long work."""
+"""The terminal: a console that does without styles where NO_COLOR is set, and progress of long work.
+
+rich is imported where something is drawn: that takes an eighth of a command that prints lines alone.
+"""
+
+from __future__ import annotations
 
 import io
 import os
@@ -6,20 +11,15 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import typer
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    ProgressColumn,
-    SpinnerColumn,
-    TextColumn,
-    TimeElapsedColumn,
-)
 
 from aos_deploy.exit_codes import ExitCode
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress, ProgressColumn
 
 LINE_EVERY_S = 20.0
 _PIPED_COLUMNS = 1000
@@ -30,6 +30,8 @@ def console(*, stderr: bool = False, is_wide: bool = False) -> Console:
 
     What `is_wide` is cut nowhere where nobody has said how wide it may be: in a pipe or a file.
     """
+    from rich.console import Console
+
     shown = Console(stderr=stderr, color_system=None if os.environ.get("NO_COLOR") else "auto")
     if is_wide and not shown.is_terminal and not os.environ.get("COLUMNS"):
         shown.width = _PIPED_COLUMNS
@@ -46,6 +48,8 @@ def write_what_fits(stream: object) -> None:
 
 def progress(*columns: ProgressColumn) -> Progress:
     """A bar on standard error that goes away in the end; nothing at all where that is no terminal."""
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
     usual = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     shown = console(stderr=True)
     return Progress(*(columns or usual), console=shown, transient=True, disable=not shown.is_terminal)
@@ -68,10 +72,12 @@ def waiting(what: str) -> Iterator[Callable[[str], None]]:
     What is yielded takes how far the work is, as text. Where standard error is no terminal, it is written
     there as a line, every LINE_EVERY_S at most.
     """
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield _Lines(what).tell
+        return
+    from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
+
     with progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()) as shown:
-        if shown.disable:
-            yield _Lines(what).tell
-            return
         task = shown.add_task(what, total=None)
         yield lambda text: shown.update(task, description=f"{what}: {text}")
 

@@ -16,7 +16,7 @@ def test_builds_that_are_ended_twice_leave_no_process_behind(tmp_path: Path) -> 
 
 
 async def _ended_twice(cache_dir: Path, turns: int) -> None:
-    builds = ThoroughBuilds(cache_dir)
+    builds = ThoroughBuilds(cache_dir, after_s=0.0)
     builds.begin(emitted_skill(""))
     await _turn(turns)
     builds.end()

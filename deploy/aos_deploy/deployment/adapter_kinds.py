@@ -4,7 +4,6 @@ A package adds a kind by an entry point of the group `aos.adapters`, whose objec
 """
 
 from functools import cache
-from importlib.metadata import entry_points
 from importlib.util import find_spec
 
 import msgspec
@@ -39,7 +38,7 @@ EXTERNAL = "external"
 MODEL = "model"
 PYTHON = "python"
 
-_KINDS = {
+OURS = {
     "pybullet": Kind(
         adapter="aos_skills.pybullet.adapter:PybulletAdapter",
         value="world",
@@ -81,14 +80,21 @@ _KINDS = {
 }
 
 
+def kind_of(name: str) -> Kind | None:
+    """The kind of that name. Only for one that is not ours is looked through what is installed."""
+    return OURS.get(name) or adapter_kinds().get(name)
+
+
 @cache
 def adapter_kinds() -> dict[str, Kind]:
     """All kinds by name, ours and installed ones; ours count where names collide."""
+    from importlib.metadata import entry_points  # It reads the names of all packages.
+
     installed = {
         point.name: Kind(adapter=point.value, value="value", options=None)
         for point in entry_points(group="aos.adapters")
     }
-    return installed | _KINDS
+    return installed | OURS
 
 
 def check_installed(adapter: str, kind: Kind) -> None:

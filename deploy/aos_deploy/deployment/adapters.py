@@ -6,7 +6,16 @@ from typing import Any
 
 import msgspec
 
-from aos_deploy.deployment.adapter_kinds import COMMAND, EXTERNAL, MODEL, PYTHON, Kind, adapter_kinds
+from aos_deploy.deployment.adapter_kinds import (
+    COMMAND,
+    EXTERNAL,
+    MODEL,
+    OURS,
+    PYTHON,
+    Kind,
+    adapter_kinds,
+    kind_of,
+)
 from aos_deploy.deployment.hosts import check_host
 from aos_deploy.deployment.typed import known_names, plain_value
 from aos_deploy.deployment.yaml_source import YamlMap, YamlNode, YamlScalar
@@ -90,7 +99,10 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
             bound[name][path] = binding
     plans = []
     for name, paths in bound.items():
-        plan = named.get(name) or AdapterPlan(name=name, kind_name=name, kind=adapter_kinds()[name])
+        if (plan := named.get(name)) is None:
+            kind = kind_of(name)
+            assert kind is not None, "_bound has found it"
+            plan = AdapterPlan(name=name, kind_name=name, kind=kind)
         if plan.kind_name == "pybullet" and "world" not in plan.options:
             plan = msgspec.structs.replace(plan, options=plan.options | {"world": world})
         if plan.kind_name == COMMAND and "command" not in plan.options:
@@ -105,8 +117,8 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
 
 def played_by_model(faults: Mapping[str, float] | None = None) -> tuple[AdapterPlan, ...]:
     """Every skill is played by its own document, with these faults (`aos_deploy.played.faults`)."""
-    kind, options = adapter_kinds()[MODEL], {"faults": dict(faults)} if faults else {}
-    return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=kind, options=options, serves_others=True),)
+    options = {"faults": dict(faults)} if faults else {}
+    return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=OURS[MODEL], options=options, serves_others=True),)
 
 
 _HOW_TO_SHARE = "Write it as {external: '', credential: FILE}; the adapter reads its password there"
@@ -129,34 +141,32 @@ def _named(node: YamlNode | None, findings: Findings) -> dict[str, AdapterPlan]:
 
 
 def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> AdapterPlan | None:
-    kinds = adapter_kinds()
     if isinstance(node, YamlScalar) and isinstance(node.value, str):
         node = YamlMap({node.value: YamlScalar(None, node.span)}, {node.value: node.span}, node.span)
     if not isinstance(node, YamlMap):
-        findings.error(
-            "AOS106", f"adapters.{name} is not a mapping", where, f"Name its kind: {', '.join(kinds)}"
-        )
+        hint = f"Name its kind: {', '.join(adapter_kinds())}"
+        findings.error("AOS106", f"adapters.{name} is not a mapping", where, hint)
         return None
-    chosen = [word for word in node.entries if word in kinds]
+    chosen = {word: kind for word in node.entries if (kind := kind_of(word)) is not None}
     if len(chosen) != 1:
         said = " and ".join(chosen) or ", ".join(node.entries) or "nothing"
-        hint = f"Give it one kind of {', '.join(sorted(kinds))}"
+        hint = f"Give it one kind of {', '.join(sorted(adapter_kinds()))}"
         findings.error("AOS106", f"adapters.{name} has no one kind but {said}", where, hint)
         return None
-    kind = kinds[chosen[0]]
+    ((kind_name, kind),) = chosen.items()
     options = {}
     for word, value in node.entries.items():
-        if word == chosen[0]:
+        if word == kind_name:
             given = plain_value(value)
             if given is not None:
                 options[kind.value] = given
         elif kind.options is None or word in kind.options:
             options[word] = plain_value(value)
         else:
-            words = (chosen[0], *kind.options)
+            words = (kind_name, *kind.options)
             message, otherwise = f"unknown key adapters.{name}.{word}", known_names(words)
             findings.unknown(word, words, message, node.keys[word], otherwise, code="AOS102")
-    if chosen[0] == COMMAND:
+    if kind_name == COMMAND:
         command = options.get("command")
         if not (isinstance(command, list) and command and all(isinstance(word, str) for word in command)):
             findings.error("AOS106", f"adapters.{name}.command is not a list of texts", where, _HOW_TO_NAME)
@@ -164,12 +174,12 @@ def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> Adapter
         host, folder = options.get("host"), options.get("folder", "")
         check_host(f"adapters.{name}", host, folder, where, findings)
     credential = options.get("credential")
-    if chosen[0] == EXTERNAL and "credential" in options and not (isinstance(credential, str) and credential):
+    if kind_name == EXTERNAL and "credential" in options and not (isinstance(credential, str) and credential):
         findings.error("AOS106", f"adapters.{name}.credential is no file", where, _HOW_TO_SHARE)
         return None
-    if chosen[0] == "class":
+    if kind_name == "class":
         kind = msgspec.structs.replace(kind, adapter=str(options.pop("class", "")))
-    return AdapterPlan(name=name, kind_name=chosen[0], kind=kind, options=options)
+    return AdapterPlan(name=name, kind_name=kind_name, kind=kind, options=options)
 
 
 def _bound(
@@ -181,10 +191,10 @@ def _bound(
             "AOS106", f"{path!r} is not an activation path", where, 'Write it as /pick, or "*" for all others'
         )
         return None
-    known = {**adapter_kinds(), **named}
     if isinstance(node, YamlScalar) and isinstance(node.value, str):
-        if node.value in known:
+        if _is_known(node.value, named):
             return node.value, Binding()
+        known = {**adapter_kinds(), **named}
         message = f"bind.{path} names an unknown adapter, {node.value}"
         findings.unknown(node.value, known, message, node.span, known_names(known))
         return None
@@ -196,7 +206,8 @@ def _bound(
         hint = "Write it as {ADAPTER: what the adapter calls it}"
         findings.error("AOS106", f"bind.{path} does not name one adapter", node.span, hint)
         return None
-    if words[0] not in known:
+    if not _is_known(words[0], named):
+        known = {**adapter_kinds(), **named}
         names = [*known, *_BINDING_KEYS]
         message = f"bind.{path} names an unknown adapter, {words[0]}"
         findings.unknown(words[0], names, message, node.keys[words[0]], known_names(names))
@@ -207,6 +218,10 @@ def _bound(
         result=_expressions(node, "result", path, findings),
     )
     return words[0], binding
+
+
+def _is_known(name: str, named: Mapping[str, AdapterPlan]) -> bool:
+    return name in named or kind_of(name) is not None
 
 
 def _adapter_word(node: YamlNode) -> object:

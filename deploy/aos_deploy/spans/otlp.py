@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
-from urllib.request import getproxies, proxy_bypass
 
 from aos_deploy.spans.spans import Span
 from aos_protocol import __version__
@@ -64,6 +63,8 @@ class Collector:
 
         Behind a proxy nobody knows before something is sent.
         """
+        from urllib.request import getproxies, proxy_bypass
+
         parts = urlsplit(self.address)
         host = parts.hostname or ""
         if parts.scheme in getproxies() and not proxy_bypass(host):

@@ -7,7 +7,8 @@ include are precompiled with it: to read them is a quarter of a model's build.
 import asyncio
 import os
 import resource
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import lru_cache
 from pathlib import Path
 
 from aos_solver.building.build_cache import BuildCache, digest_of
@@ -127,7 +128,24 @@ def engine_seconds(entry: Path | None) -> float:
 
 def circumstances(compiler: Compiler) -> str:
     """The digest of what decides about a result besides the model's text."""
-    files = sorted(path for path in SOURCES.rglob("*") if path.suffix in (".hpp", ".cpp"))
+    return _digest_of_sources(compiler, tuple(_stamps(SOURCES)))
+
+
+def _stamps(folder: str | Path) -> Iterator[tuple[str, int, int]]:
+    """Yields the path of each source below a folder, the time of its last change, and its size."""
+    with os.scandir(folder) as found:
+        for each in found:
+            if each.is_dir():
+                yield from _stamps(each.path)
+            elif each.name.endswith((".hpp", ".cpp")):
+                status = each.stat()
+                yield each.path, status.st_mtime_ns, status.st_size
+
+
+@lru_cache
+def _digest_of_sources(compiler: Compiler, stamps: tuple[tuple[str, int, int], ...]) -> str:
+    """Each model that is built or looked for asks. Who changes sources meanwhile changes their stamps."""
+    files = sorted(Path(path) for path, *_ in stamps)
     texts = [part for path in files for part in (str(path.relative_to(SOURCES)), path.read_text())]
     return digest_of([compiler.version, *compiler.compilation("", "", ""), *texts])
 

@@ -20,12 +20,16 @@ _LAST = 19
 
 _UNHURRIED_DEADLINE_S = 1800.0
 
+_AFTER_S = 5.0
+"""A mission that ends before that has the processors to itself: its build would be killed half-way."""
+
 
 class ThoroughBuilds:
     """Builds beside everything else."""
 
-    def __init__(self, cache_dir: Path) -> None:
+    def __init__(self, cache_dir: Path, after_s: float = _AFTER_S) -> None:
         self._cache_dir = cache_dir
+        self._after_s = after_s
         self._builds = Background()
 
     @property
@@ -34,7 +38,7 @@ class ThoroughBuilds:
         return self._builds.tasks
 
     def begin(self, emitted: EmittedModel) -> None:
-        """Begins a build."""
+        """Begins a build when the time has gone by."""
         self._builds.begin(self._build(emitted))
 
     def end(self) -> None:
@@ -46,6 +50,7 @@ class ThoroughBuilds:
 
     async def _build(self, emitted: EmittedModel) -> None:
         """Builds into the cache. Nobody waits for it: all other work goes first, and a fault is logged."""
+        await asyncio.sleep(self._after_s)
         try:
             await build(
                 emitted,
