@@ -12,6 +12,7 @@ import msgspec
 from aos_language.archive import is_archive_name, read_archive
 from aos_language.assembly import Assembly, assemble
 from aos_language.check import check
+from aos_language.check.bare_names import check_bare_names
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind
 from aos_language.reading.files import (
@@ -82,6 +83,8 @@ def load_files(
     errors = [found for found in findings.sorted() if found.is_error]
     project = None if errors else assembly.project()
     draft = _draft(documents, assembly, errors) if errors else None
+    if errors:
+        check_bare_names(assembly, draft, findings)
     kept = [*documents, *([PICTURE] if PICTURE in files else [])]
     digests = {file: hashlib.sha256(files[file]).hexdigest() for file in kept}
     versions = {

@@ -146,3 +146,12 @@ def test_names_to_import_that_are_no_list_are_one_error() -> None:
 def test_a_misspelt_truth_of_a_source_is_one_error() -> None:
     mapping = MAPPING + "\nlocal_variable: ok\nfrom_ros_service_response: ture\ncode:\nok = __input.ok\n"
     assert [told.split(" ", 2)[1] for told in finding_texts(mapping=mapping)] == ["AOS106"]
+
+
+def test_a_bare_name_is_told_beside_a_wrong_declaration_of_the_environment() -> None:
+    environment = ENVIRONMENT.replace("horizon: 4", "horizon: four")
+    skill = SKILL.replace(
+        "dynamic_model:\n", "dynamic_model:\nint lenght = steps;\nif (length > 1) __reward = 1;\n"
+    )
+    lines = finding_texts(environment=environment, skill=skill)
+    assert any("unknown name `length`. Did you mean `lenght`?" in line for line in lines), lines

@@ -92,6 +92,8 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
             continue  # Said of the same name.
+        if named and "<expression error>" in diagnostic.message:
+            continue  # It follows from another.
         first.setdefault((diagnostic.span.file, diagnostic.span.line, diagnostic.message), diagnostic)
     return list(first.values())
 
