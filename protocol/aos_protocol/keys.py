@@ -41,6 +41,7 @@ from aos_protocol.errors import BusError
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _VERSION = re.compile(r"[A-Za-z0-9._+-]{1,64}")
+_INSTANCE = re.compile(r"(.+)-([0-9]+)-[0-9a-f]{1,8}")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 
 
@@ -51,6 +52,18 @@ class Serving(NamedTuple):
     version: str
     instance: str
     path: str
+
+    @property
+    def who(self) -> str:
+        """The adapter and its process, for people."""
+        told = _INSTANCE.fullmatch(self.instance)
+        process = f"process {told[2]} on {told[1]}" if told else f"instance {self.instance}"
+        return f"{self.adapter} {self.version} ({process})"
+
+
+def instance_name(host: str, pid: int, session: str) -> str:
+    """The instance of a process, by which people find it: host, process id, and its own session."""
+    return f"{re.sub('[^A-Za-z0-9_-]', '-', host)[:40]}-{pid}-{session[:8]}"
 
 
 class Keys:

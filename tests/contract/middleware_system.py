@@ -108,8 +108,13 @@ class Adapter:
         """Says that they no longer are."""
         self._bus.withdraw(self._token(path, adapter))
 
+    @property
+    def instance(self) -> str:
+        """The instance in its tokens: that of a program which tells no process."""
+        return self._bus.instance
+
     def _token(self, path: str, adapter: str) -> str:
-        return self._keys.serve(Serving(adapter, "1", self._bus.instance, path))
+        return self._keys.serve(Serving(adapter, "1", self.instance, path))
 
     async def serve_cancel(self, path: str, is_still: asyncio.Event | None = None) -> None:
         """Answers cancellations, once the robot stands still."""

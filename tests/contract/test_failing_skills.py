@@ -71,7 +71,8 @@ async def test_two_adapters_of_one_path_are_an_error_until_one_of_them_leaves(sy
     await system.adapter.announce("/sense", "other")
     await system.state_when(lambda state: "is served by" in state.unavailable.get("sense", ""))
     outcome = await system.activate("sense", 1)
-    assert_refused(outcome, "AOS511", "/sense is served by scripted 1 and other 1")
+    both = " and ".join(f"{name} 1 (instance {system.adapter.instance})" for name in ("scripted", "other"))
+    assert_refused(outcome, "AOS511", f"/sense is served by {both}")
     system.adapter.withdraw("/sense", "other")
     await system.state_when(lambda state: "sense" not in state.unavailable)
     assert (await system.activate("sense", 2)).status == "observed"

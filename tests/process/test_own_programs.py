@@ -417,3 +417,24 @@ def test_what_a_program_has_started_ends_with_a_killed_aos_up(project: Path) -> 
         running.send_signal(signal.SIGKILL)
     assert len(pids) > 5
     asyncio.run(until_ended(pids))
+
+
+def test_two_processes_that_serve_one_path_are_told_at_the_start_each_with_its_process(project: Path) -> None:
+    twice = "python fetch_robot.py & exec python fetch_robot.py"
+    (project / "twice.sh").write_text(twice.replace("python", sys.executable))
+    deploy = project / "fetch.yaml"
+    text = deploy.read_text().replace(PROGRAMS, "")
+    deploy.write_text(re.sub(r"\{command: [^}]*\}", "{command: [sh, twice.sh]}", text))
+    robot = project / "fetch_robot.py"
+    robot.write_text("".join(robot.read_text().splitlines(keepends=True)[2:]))
+    command = [BIN / "aos-up", "fetch.yaml", "--plain"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            told = next(line for line in process.stdout if "is served by" in line)
+            pids = {int(pid) for pid in re.findall(r"\(process (\d+) on [^)]+\)", told)}
+            assert len(pids) == 2
+            assert pids <= set(descendants(process.pid))
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=HANG_S)

@@ -90,10 +90,12 @@ def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running
     held = mission.until(event="mission", phase="holding")
     assert "look: failed, AOS510: /look failed: RuntimeError: the lens is dirty" in held["remark"]
 
-    assert re.search(r"^take +/take +python 1$", mission.aos("skill", "list"), re.MULTILINE)
+    assert re.search(
+        r"^take +/take +python 1 \(process \d+ on .+\)$", mission.aos("skill", "list"), re.MULTILINE
+    )
     info = json.loads(mission.aos("skill", "info", "take", "--json"))
     assert info["fields"] == {"side": "side"}
-    assert info["served_by"] == ["python 1"]
+    assert [by.partition(" (process ")[0] for by in info["served_by"]] == ["python 1"]
     called = mission.aos("skill", "call", "/take", "side=Right")
     assert '"success": true' in called
     assert "executing   50%  reaching out" in called

@@ -106,7 +106,9 @@ def stop(system: System, as_json: AsJson = False) -> None:
     if as_json:
         print_json(after)
     elif after.phase != "ended":
-        typer.echo("no mission has begun")
+        typer.echo(
+            f"{after.mission} does not begin: {after.remark}" if after.remark else "no mission has begun"
+        )
     elif before.phase == "ended":
         typer.echo(f"no mission runs: {after.mission} has ended, {after.ending}")
     else:

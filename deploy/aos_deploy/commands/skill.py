@@ -220,7 +220,7 @@ def _row(skill: str, path: str, state: MappingState, servers: list[Serving]) -> 
     return {
         "skill": skill,
         "path": path,
-        "served_by": [f"{server.adapter} {server.version}" for server in servers if server.path == path],
+        "served_by": [server.who for server in servers if server.path == path],
         "unavailable": state.unavailable.get(skill, ""),
     }
 

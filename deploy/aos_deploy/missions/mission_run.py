@@ -165,8 +165,9 @@ class MissionRun:
                     self._report(Told(f"page {await asyncio.to_thread(page_address, run.path)}"))
                 self._write_again = partial(self._write_record, run, endpoint, supervisor)
                 async with asyncio.TaskGroup() as tasks:
-                    tasks.create_task(self._follow(supervisor))
-                    await self._start_mission(supervisor)
+                    starting = tasks.create_task(self._start_mission(supervisor))
+                    await self._follow(supervisor)
+                    starting.cancel()  # Somebody may have stopped the mission before it began.
                 if not self._heard.has_ended:
                     # The solver's process ends in a moment, and the supervision with the reason.
                     await supervisor.until_one_ended(timeout_s=_END_NOTICE_S)
@@ -190,7 +191,7 @@ class MissionRun:
             await supervisor.until_ready()
             self._write_again()  # Now all processes have an id.
             self._services_ready_s = self._elapsed_s()
-        for remark in await until_skills_can_run(supervisor, self._deployment):
+        for remark in await until_skills_can_run(supervisor, self._deployment, self._report):
             self._report(Told(remark))
         await self._ask_to_start(supervisor)
 

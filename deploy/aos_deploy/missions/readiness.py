@@ -11,6 +11,7 @@ from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, Proj
 from aos_protocol.spelling import nearest
 from aos_runtime.bus.subscription import merged
 from aos_runtime.parties.reported_state import state_when
+from aos_runtime.parties.served import served
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0
@@ -19,11 +20,13 @@ _SETTLED_S = 2.0
 """An absence this short is not told."""
 
 
-async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> tuple[str, ...]:
+async def until_skills_can_run(
+    supervisor: Supervisor, deployment: Deployment, report: Report
+) -> tuple[str, ...]:
     """Returns when all skills of the newest revision can be run, with `misspelt_paths` of these.
 
-    DeployError AOS807 names the paths that nobody serves, or two adapters serve, after the time that adapters
-    may take to start.
+    A path that two serve is reported soon: no wait for adapters mends it. DeployError AOS807 names the paths
+    that nobody serves, or two adapters serve, after the time that adapters may take to start.
     """
     bus, keys = supervisor.bus, supervisor.keys
     project = await bus.ask(keys.project, ProjectQuery(deployment.project), ProjectRevision, timeout_s=_ASK_S)
@@ -42,10 +45,19 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
         bus, keys.mapping_state, MappingQuery(), MappingState, has_revision, timeout_s=MAPPINGS_S
     )
     longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_NOBODY_S)
-    try:
+
+    async def complete_within(timeout_s: float) -> None:
         await state_when(
-            bus, keys.mapping_state, MappingQuery(), MappingState, is_complete, timeout_s=longest_s
+            bus, keys.mapping_state, MappingQuery(), MappingState, is_complete, timeout_s=timeout_s
         )
+
+    try:
+        try:
+            await complete_within(min(longest_s, _SETTLED_S))
+        except BusError:
+            for text in await _served_by_several(supervisor):
+                report(Told(text))
+            await complete_within(max(longest_s - _SETTLED_S, _NOBODY_S))
     except BusError as error:
         if newest is None or not newest.unavailable:
             raise
@@ -55,6 +67,18 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
             hint=_hint(supervisor, deployment),
         ) from error
     return misspelt_paths(deployment, {skill.mapping.activation.path for skill in project.project.skills})
+
+
+async def _served_by_several(supervisor: Supervisor) -> list[str]:
+    """A remark for each path that several processes serve."""
+    by_path: dict[str, list[str]] = {}
+    for server in await served(supervisor.bus, supervisor.keys):
+        by_path.setdefault(server.path, []).append(server.who)
+    return [
+        f"{path} is served by {' and '.join(sorted(who))}: end all but one of them"
+        for path, who in sorted(by_path.items())
+        if len(who) > 1
+    ]
 
 
 async def tell_lost_skills(supervisor: Supervisor, report: Report) -> None:

@@ -14,7 +14,7 @@ from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.end import settled
 from aos_deploy.runs.summary import Summary, SystemSummary
 from aos_deploy.runs.verdict import Account, Verdict
-from aos_protocol.errors import AosError, MissionRunsError, StorageError
+from aos_protocol.errors import AosError, MissionRunsError, SteeringError, StorageError
 from aos_protocol.messages import MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import DECISION
 from aos_runtime.disk.journal import Journal
@@ -39,10 +39,15 @@ class SystemRun(MissionRun):
 
     async def _ask_to_start(self, supervisor: Supervisor) -> None:
         if self._taken_up is None or not self._taken_up.has_begun:
-            # Somebody else may have been quicker, as soon as the services could be asked.
-            with suppress(MissionRunsError):
-                start = StartMission(request=self._run.path.name)
-                await start_mission(supervisor.bus, supervisor.keys, start)
+            start = StartMission(request=self._run.path.name)
+            try:
+                # Somebody else may have been quicker, as soon as the services could be asked.
+                with suppress(MissionRunsError):
+                    await start_mission(supervisor.bus, supervisor.keys, start)
+            except SteeringError as error:
+                self._report(
+                    Told(f"{error.message}; `aos mission start` begins one, Ctrl-C stops the system")
+                )
 
     def _take(self, event: Event) -> None:
         if isinstance(event, MissionState) and event.mission != self._mission:

@@ -47,7 +47,9 @@ class StartMission(Message, frozen=True):
 class StopMission(Message, frozen=True):
     """Cancels what moves and ends the mission as `cancelled`. Answered by its MissionState when it has ended.
 
-    Where no mission runs, nothing changes. An empty `mission` is the one that runs. `by` is who asks.
+    One that waits for its model does not begin, which SteeringError tells whoever has started it. The only
+    mission of a system is `cancelled` then. Where no mission runs or waits, nothing changes. An empty
+    `mission` is the one that does. `by` is who asks.
     """
 
     mission: str = ""

@@ -10,6 +10,7 @@ import importlib
 import inspect
 import logging
 import os
+import socket
 import sys
 import threading
 from collections.abc import AsyncIterator, Awaitable, Iterable
@@ -18,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError, DeployError, LateAnswerError
-from aos_protocol.keys import Serving
+from aos_protocol.keys import Serving, instance_name
 from aos_protocol.messages import Cancel, Missions, MissionsQuery, ProjectQuery, ProjectRevision, SkillCall
 from aos_protocol.spelling import did_you_mean
 from aos_runtime.adapters.adapter import Adapter
@@ -114,7 +115,8 @@ class Host:
                 declared.append(bus.answer(keys.cancel(path), Cancel, self._calls.cancel))
             if path not in self._serving:
                 assert self._adapter is not None
-                serving = Serving(self.name, self._adapter.version, bus.instance, path)
+                instance = instance_name(socket.gethostname(), os.getpid(), bus.instance)
+                serving = Serving(self.name, self._adapter.version, instance, path)
                 self._serving[path] = keys.serve(serving)
                 declared.append(bus.announce(self._serving[path]))
         await asyncio.gather(*declared)

@@ -3,12 +3,13 @@
 import asyncio
 import contextlib
 import logging
+from collections.abc import Coroutine
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
-from aos_protocol.errors import AosError, MissionRunsError
+from aos_protocol.errors import AosError, MissionRunsError, SteeringError
 from aos_protocol.messages import DriftTests, MissionBegun, MissionState, StartMission
 from aos_protocol.mission_rows import BEGUN
 from aos_runtime.parties.registry_watch import RegistryWatch
@@ -16,7 +17,8 @@ from aos_solver.bus_ports import BusPorts
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import earlier_models
 from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.abandoning import Abandoning
+from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.logbook import Logbook, Logbooks
 from aos_solver.mission.loop import Mission
@@ -58,6 +60,8 @@ class MissionRunner:
         self._registry = registry
         self._ports = ports
         self._starting = asyncio.Lock()
+        self._waiting = Abandoning()
+        self._unwanted = ""
         self._started = asyncio.Event()
         self._has_begun = asyncio.Event()
         self._succession = Succession(
@@ -78,8 +82,8 @@ class MissionRunner:
         book = self._books.newest
         if book is not None and book.memory.has_ended and book.memory.state is not None:
             return book.memory.state
-        phase = "compiling" if self.compiling else "waiting"
-        return MissionState(self._books.name, phase, 0, 0.0, remark=self.compiling)
+        phase = "compiling" if self.compiling and not self._unwanted else "waiting"
+        return MissionState(self._books.name, phase, 0, 0.0, remark=self._unwanted or self.compiling)
 
     async def start(self, start: StartMission) -> None:
         """Starts a mission once its model runs; AosError that says why if it cannot."""
@@ -88,6 +92,7 @@ class MissionRunner:
         if (self._runs or self._starting.locked()) and (start.request or self._settings.stay):
             raise self._busy()
         async with self._starting:
+            self._want(start)
             if self._settings.stay:
                 await self._begin_next(start)
             elif start.request:
@@ -96,7 +101,29 @@ class MissionRunner:
                     hint="Start the system with `aos-up --stay`",
                 )
             elif self.mission is None and not self._has_ended:
-                await self._begin_only()
+                with contextlib.suppress(SteeringError):  # It has ended then.
+                    await self._begin_only()
+
+    async def give_up_start(self, why: str) -> None:
+        """Keeps the mission from beginning that waits for its model or is to be started; one that has begun
+        goes on.
+
+        The only mission of a system has ended then, as `cancelled`. Whoever starts one of several is told.
+        """
+        is_first = self.mission is None and not self._has_ended
+        if self.is_interrupted or not (is_first or self._starting.locked()):
+            return
+        self._unwanted = why
+        if not self._settings.stay:
+            book = self._books.newest
+            assert book is not None
+            book.end(
+                MissionState(book.name, "ended", 0, 0.0, Ending.CANCELLED.value, f"{why} before it began")
+            )
+        self._ports.publish_state(self.state)
+        self._waiting.begin()
+        async with self._starting:
+            pass
 
     async def go_on(self) -> None:
         """Takes up the mission that had begun when the solver before this one ended."""
@@ -156,11 +183,26 @@ class MissionRunner:
         hint = "Wait for its end, or end it with `aos mission stop`"
         return MissionRunsError(f"the mission {self._books.name} runs", hint=hint)
 
+    def _want(self, start: StartMission) -> None:
+        """Takes a start: SteeringError where it is the one that the system begins with, and was given up."""
+        if self._unwanted and start.request == Path(self._settings.run_dir).name:
+            raise self._given_up()
+        self._waiting, self._unwanted = Abandoning(), ""
+
+    async def _unless_given_up(self, work: Coroutine[Any, Any, T]) -> T:
+        result = await self._waiting.unless_given_up(work)
+        if result is None:
+            raise self._given_up()
+        return result
+
+    def _given_up(self) -> AosError:
+        return SteeringError(f"the mission does not begin: {self._unwanted}", hint="Start it once more")
+
     async def _begin_only(self) -> None:
         """Begins the only mission of a system that ends with it, or takes it up."""
         book = self._books.newest
         assert book is not None
-        running = await self._first_model()
+        running = await self._unless_given_up(self._first_model())
         self._begin(book, running, None, earlier=await self._earlier(book, running))
 
     async def _earlier(self, book: Logbook, running: RunningModel) -> tuple[Earlier, ...]:
@@ -190,24 +232,25 @@ class MissionRunner:
 
     async def _begin_next(self, start: StartMission) -> None:
         """Begins the next mission of a system that stays; nothing has changed where that fails."""
-        await self._first_model()
-        await self._until_accepted_documents_are_ready()
+        await self._unless_given_up(self._first_model())
+        await self._unless_given_up(self._until_accepted_documents_are_ready())
         running = await self._succession.model(self._shelf, await self._first_model(), start, self.mission)
-        begun = await self._succession.next(running, start, self.mission)
+        begun = await self._unless_given_up(self._succession.next(running, start, self.mission))
         running = RunningModel(running.revision, begun.engine)
         await self._shelf.turn_to(running, self._succession.values(start))
         drift = self._last_drift()
         self._begin(self._books.open_next(), running, start, begun.past, drift)
 
-    async def _until_accepted_documents_are_ready(self) -> None:
+    async def _until_accepted_documents_are_ready(self) -> bool:
         """Waits for what the registry has accepted before the start of a mission, here and in the
-        middleware."""
+        middleware; True once it has waited."""
         await self._registry.adopt_current()
         await self._shelf.made()
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(MAPPING_DEADLINE_S):
                 while self._shelf.is_unmapped:
                     await self._ports.until_changed(1.0)
+        return True
 
     async def _first_model(self) -> RunningModel:
         return self._shelf.running or await self._shelf.first()

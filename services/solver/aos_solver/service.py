@@ -123,13 +123,7 @@ class _Solver:
         return self._missions.state
 
     async def _stop(self, stop: StopMission, _: str) -> MissionState:
-        """Ends the mission that runs, and returns when it has ended."""
-        mission = self._missions.mission
-        if mission is None or stop.mission not in ("", mission.state.mission):
-            return self._missions.state
-        if mission.state.phase != "ended":
-            await self._steering.take(Steer("stop", by=stop.by, reason=stop.reason))
-        return mission.state
+        return await self._steering.stop(stop)
 
     async def _answer_missions(self, _: MissionsQuery, __: str) -> Missions:
         return Missions(await asyncio.to_thread(self._books.entries), self._settings.stay)

@@ -7,7 +7,7 @@ import msgspec
 
 from aos_protocol.errors import SteeringError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import MissionState, Steer
+from aos_protocol.messages import MissionState, Steer, StopMission
 from aos_runtime.bus.bus import Bus
 from aos_solver.mission_runner import MissionRunner
 from aos_solver.stopping import until_stopped
@@ -24,9 +24,23 @@ class SteeringDesk:
         self._bus = bus
         self._keys = keys
 
+    async def stop(self, stop: StopMission) -> MissionState:
+        """Ends the mission that runs, or keeps the one from beginning that is about to; returns when that is
+        so."""
+        if stop.mission in ("", self._missions.state.mission):
+            await self._missions.give_up_start(stop.reason)
+        mission = await self._missions.running()
+        if mission is None or stop.mission not in ("", mission.state.mission):
+            return self._missions.state
+        return await self.take(Steer("stop", by=stop.by, reason=stop.reason))
+
     async def take(self, steer: Steer) -> MissionState:
         """Steers the mission that runs; the answer is as in Steer. SteeringError where it cannot be done."""
         mission = await self._missions.running()
+        if mission is None and steer.verb == "stop":
+            return await self.stop(
+                StopMission(steer.mission, steer.reason or f"stopped by {steer.by}", steer.by)
+            )
         if mission is None:
             is_first_to_come = self._missions.state.phase in ("waiting", "compiling")
             text = "no mission has begun" if is_first_to_come else "no mission runs"

@@ -10,6 +10,7 @@ const busy = signal("");
 
 const MAY_NOT = ["waiting", "compiling", "ended"]; // No mission has begun, or none runs any more.
 const isUnderWay = () => mission.value?.is_running && state.value && !MAY_NOT.includes(state.value.phase);
+const isToBegin = () => mission.value?.is_running && ["waiting", "compiling"].includes(state.value?.phase);
 export const canSteer = () => hasToken() && isUnderWay();
 const isHeld = () => Boolean(state.value?.held_by) || state.value?.phase === "holding";
 
@@ -28,15 +29,17 @@ export async function steer(verb, more = {}) {
 
 export function Controls() {
   if (successor.value) return html`<a class="button primary" href=${addressOf(successor.value)}>To the next mission</a>`;
-  if (!isUnderWay()) return null;
+  if (!isUnderWay() && !isToBegin()) return null;
   if (!hasToken()) return html`<p class="controls note">Read only</p>`;
   const is = Boolean(busy.value);
+  const stop = html`<button class="stop" disabled=${busy.value === "stop"} onClick=${() => steer("stop")}>${busy.value === "stop" ? "Stopping…" : "Stop"}</button>`;
+  if (isToBegin()) return html`<div class="controls" role="group" aria-label="Steering">${stop}<${Findings} problem=${failed.value} /></div>`;
   return html`<div class="controls" role="group" aria-label="Steering">
     ${isHeld()
       ? html`<button class="primary" disabled=${is} onClick=${() => steer("resume")}>Go on</button>`
       : html`<button disabled=${is} onClick=${() => steer("hold")}>Hold</button>`}
     <button disabled=${is} onClick=${() => steer("step")} title="One more decision, then hold">Step</button>
-    <button class="stop" disabled=${busy.value === "stop"} onClick=${() => steer("stop")}>${busy.value === "stop" ? "Stopping…" : "Stop"}</button>
+    ${stop}
     <${Findings} problem=${failed.value} />
   </div>`;
 }

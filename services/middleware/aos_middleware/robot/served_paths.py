@@ -72,7 +72,7 @@ class ServedPaths:
         if not servers:
             return no_adapter(path)
         if len(servers) > 1:
-            names = " and ".join(f"{server.adapter} {server.version}" for server in servers)
+            names = " and ".join(server.who for server in servers)
             return SkillError(
                 f"{path} is served by {names}",
                 code="AOS511",

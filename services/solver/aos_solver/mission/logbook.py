@@ -38,6 +38,11 @@ class Logbook:
         if isinstance(payload, MissionBegun):
             self.start = payload.start
 
+    def end(self, state: MissionState) -> None:
+        """Writes the end of a mission that has not begun."""
+        self.append(STATE, state)
+        self.memory = msgspec.structs.replace(self.memory, state=state)
+
     def forget_steps(self) -> None:
         """Lets go of what is needed once: a long mission has many steps."""
         self.memory = msgspec.structs.replace(self.memory, steps=(), pending=None)
