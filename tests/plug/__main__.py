@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import faults, load, missions, modelled, monitored, presence, stopping, takeovers
+from . import faults, missions, modelled, stopping, takeovers
 
 
 class Part(NamedTuple):
@@ -24,8 +24,6 @@ class Part(NamedTuple):
 
 PARTS: Mapping[str, Part] = {
     "faults": Part("adapters that do everything wrong", faults.add_options, faults.measure),
-    "load": Part("many skills, topics at a high rate", load.add_options, load.measure),
-    "presence": Part("adapters that leave and come back", presence.add_options, presence.measure),
     "modelled": Part(
         "missions that the model plays, and simulated ones", modelled.add_options, modelled.measure
     ),
@@ -34,7 +32,6 @@ PARTS: Mapping[str, Part] = {
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),
     "shelf": Part("the shelf of models", takeovers.add_shelf_options, takeovers.measure_shelf),
     "pushes": Part("pushes into missions", takeovers.add_push_options, takeovers.measure_pushes),
-    "monitored": Part("what monitors say in beliefs", monitored.add_options, monitored.measure),
 }
 
 
