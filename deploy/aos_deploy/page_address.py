@@ -2,7 +2,6 @@
 it.
 """
 
-import os
 import subprocess
 import sys
 import time
@@ -13,7 +12,7 @@ from urllib.request import Request, urlopen
 
 import msgspec
 
-from aos_deploy.places import cache_dir
+from aos_deploy.places import gateway_folder
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 
@@ -27,15 +26,6 @@ class GatewayNote(msgspec.Struct, frozen=True):
 
     address: str
     pid: int
-
-
-def gateway_folder() -> Path:
-    """Returns the folder of the gateway's note, its token, and the projects that it keeps.
-
-    It is $AOS_GATEWAY_DIR, or `gateway` in the cache directory.
-    """
-    named = os.environ.get("AOS_GATEWAY_DIR")
-    return Path(named).absolute() if named else cache_dir() / "gateway"
 
 
 def page_address(run: Path) -> str:

@@ -20,7 +20,23 @@ def deploy_files() -> dict[str, Path]:
 
 def cache_dir() -> Path:
     """Returns the folder of compiled models: $AOS_CACHE_DIR, or `aos` in the user's cache directory."""
-    if named := os.environ.get("AOS_CACHE_DIR"):
-        return Path(named).absolute()
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "aos"
+    return _named("AOS_CACHE_DIR") or Path(base) / "aos"
+
+
+def gateway_folder() -> Path:
+    """Returns the folder of the gateway's note, its token, and the projects that it keeps.
+
+    It is $AOS_GATEWAY_DIR, or `gateway` in the cache directory.
+    """
+    return _named("AOS_GATEWAY_DIR") or cache_dir() / "gateway"
+
+
+def running_folder() -> Path:
+    """Returns the folder with links to the runs that go on: $AOS_RUNNING_DIR, or `running` in the cache."""
+    return _named("AOS_RUNNING_DIR") or cache_dir() / "running"
+
+
+def _named(variable: str) -> Path | None:
+    named = os.environ.get(variable)
+    return Path(named).absolute() if named else None

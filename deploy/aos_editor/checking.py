@@ -14,6 +14,14 @@ from aos_solver.emission.lower import lower
 _TOKEN = re.compile(r"\w+|\S")
 
 
+def shown_files(folder: Path, open_texts: Mapping[str, str]) -> tuple[dict[str, bytes], list[Diagnostic]]:
+    """Returns the files of a bundle's folder, and remarks on what is left out. `open_texts` are unsaved texts
+    by file name."""
+    files, remarks = read_bundle_files(folder)
+    files.update((name, text.encode("utf-8", "replace")) for name, text in open_texts.items())
+    return files, remarks
+
+
 def check_folder(
     folder: Path, open_texts: Mapping[str, str]
 ) -> dict[str, tuple[list[str], list[Diagnostic]]]:
@@ -23,8 +31,7 @@ def check_folder(
     are left out which are no documents, at none. Empty where the folder holds no AOS documents; the C++
     compiler is not asked, for it takes seconds.
     """
-    files, remarks = read_bundle_files(folder)
-    files.update((name, text.encode("utf-8", "replace")) for name, text in open_texts.items())
+    files, remarks = shown_files(folder, open_texts)
     loaded = load_files(files, name=folder.name, remarks=remarks)
     if not loaded.files and not any(Path(name).suffix.lower() in GRAMMARS for name in files):
         return {}

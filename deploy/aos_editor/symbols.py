@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 
+from aos_editor.checking import shown_files
 from aos_language.assembly import Assembly, assemble
 from aos_language.check.blocks import (
     DYNAMIC,
@@ -22,7 +23,6 @@ from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Extent, FaultKind, Mention
 from aos_language.document_code import shared_code_of
 from aos_language.findings import Findings
-from aos_language.load import read_bundle_files
 from aos_language.local_types import reported_variables
 from aos_language.reading.document import array_type
 from aos_language.reading.files import read_documents
@@ -108,8 +108,7 @@ class Bundle(msgspec.Struct, frozen=True):
 
 def read_bundle(folder: Path, open_texts: Mapping[str, str]) -> Bundle:
     """The bundle in a folder; `open_texts` are unsaved texts by file name."""
-    files, _ = read_bundle_files(folder)
-    files.update((name, text.encode("utf-8", "replace")) for name, text in open_texts.items())
+    files, _ = shown_files(folder, open_texts)
     findings = Findings()
     assembly = assemble(
         read_documents(files, findings), findings, bundle=folder.name, has_unread_files=findings.has_errors

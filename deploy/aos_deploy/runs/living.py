@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from aos_deploy.export.run_bundle import opened_bundle
-from aos_deploy.places import cache_dir
+from aos_deploy.places import running_folder
 from aos_deploy.runs.directory import LATEST, RunDirectory
 from aos_protocol.errors import BusError, DeployError
 
@@ -21,9 +21,9 @@ RUNS = Path("runs")
 @contextmanager
 def noted(run: RunDirectory) -> Iterator[None]:
     """Others find the run until the block ends, unless the cache directory cannot be written."""
-    link = _folder() / f"{run.path.name}-{os.getpid()}"
+    link = running_folder() / f"{run.path.name}-{os.getpid()}"
     with suppress(OSError):
-        _folder().mkdir(parents=True, exist_ok=True)
+        running_folder().mkdir(parents=True, exist_ok=True)
         link.symlink_to(run.path)
     try:
         yield
@@ -38,7 +38,7 @@ def living_runs() -> list[RunDirectory]:
     A run whose aos-up was killed and that was taken up has two notes.
     """
     found: dict[Path, RunDirectory] = {}
-    notes = sorted(_folder().iterdir()) if _folder().is_dir() else []
+    notes = sorted(running_folder().iterdir()) if running_folder().is_dir() else []
     for link in (note for note in notes if note.is_symlink()):
         run = RunDirectory(link.resolve())
         if run.is_running:
@@ -130,8 +130,3 @@ def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
 def _several(runs: list[RunDirectory]) -> DeployError:
     names = ", ".join(str(run.path) for run in runs)
     return DeployError(f"{len(runs)} missions run: {names}", code="AOS801", hint="Name one with --run")
-
-
-def _folder() -> Path:
-    named = os.environ.get("AOS_RUNNING_DIR")
-    return Path(named).absolute() if named else cache_dir() / "running"

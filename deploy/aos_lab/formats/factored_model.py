@@ -177,7 +177,7 @@ class _Flattening:
             states=self._before.names(codes),
             actions=self._choice.names(np.arange(len(self._actions))),
             observations=self._sight.names(sight_codes),
-            rewards=self._rewards(steps, codes),
+            rewards=self._rewards(codes),
             outcomes=Ragged(
                 np.searchsorted(rows[order], np.arange(len(codes) * len(steps) + 1)),
                 np.searchsorted(codes, joined.after[order]),
@@ -253,7 +253,7 @@ class _Flattening:
         first = np.searchsorted(np.concatenate(rows), np.arange(count + 1))
         return Ragged(first, numbers, np.concatenate(chances)), firsts, codes
 
-    def _rewards(self, steps: list[list[_Steps]], codes: Integers) -> Floats:
+    def _rewards(self, codes: Integers) -> Floats:
         rewards = np.zeros((len(codes), len(self._actions)))
         before = _Frame(self._before.decode(codes), len(codes))
         for number, action in enumerate(self._actions):

@@ -128,17 +128,17 @@ def _pomdpx(sensing: SensingByState) -> Iterator[str]:
     )
     yield "</InitialStateBelief>"
     yield "<StateTransitionFunction>"
-    transitions = ((" ".join(where), p) for *where, p in _transitions(model, names))
+    transitions = _by_place(_transitions(model, names))
     yield from _table("CondProb", "state_1", "action state_0", "ProbTable", transitions)
     if is_reported:
         yield from _table("CondProb", "reported_1", "null", "ProbTable", [(_LATER, 1.0)])
     yield "</StateTransitionFunction>"
     yield "<ObsFunction>"
-    observations = ((" ".join(where), p) for *where, p in _observations(sensing, names))
+    observations = _by_place(_observations(sensing, names))
     yield from _table("CondProb", "observation", "action state_1", "ProbTable", observations)
     yield "</ObsFunction>"
     yield "<RewardFunction>"
-    rewards = ((" ".join(where), reward) for *where, reward in _rewards(model, names))
+    rewards = _by_place(_rewards(model, names))
     yield from _table("Func", "reward", "action state_0", "ValueTable", rewards)
     yield "</RewardFunction>"
     yield "</pomdpx>"
@@ -148,6 +148,10 @@ def _variable(tag: str, attributes: str, values: Iterable[str]) -> Iterator[str]
     yield f"<{tag} {attributes}>"
     yield f"<ValueEnum>{' '.join(values)}</ValueEnum>"
     yield f"</{tag}>"
+
+
+def _by_place(entries: Iterable[tuple[*tuple[str, ...], float]]) -> Iterator[tuple[str, float]]:
+    return ((" ".join(where), number) for *where, number in entries)
 
 
 def _table(

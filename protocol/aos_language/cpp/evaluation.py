@@ -4,7 +4,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import CHANGING_METHODS, HANDLE_METHODS, READING_FUNCTIONS, READING_METHODS
 from aos_language.cpp.flow import is_draw, names_in
-from aos_language.cpp.nodes import text_of
+from aos_language.cpp.nodes import below, operator_of, text_of
 from aos_language.cpp.ways import State
 
 _READING_METHODS = (CHANGING_METHODS | HANDLE_METHODS | READING_METHODS) - {"swap"}
@@ -100,7 +100,7 @@ class Evaluation:
         return node is not None and node.type == "identifier" and text_of(node) not in self.declared
 
     def may_be_set(self, node: tree_sitter.Node | None, state: State) -> None:
-        for part in below(node) if node is not None else ():
+        for part in below(node):
             if part.type == "identifier":
                 state.set(text_of(part))
 
@@ -116,17 +116,3 @@ class Evaluation:
 
 def _is_address(node: tree_sitter.Node) -> bool:
     return node.children[0].type == "&"
-
-
-def operator_of(node: tree_sitter.Node) -> str:
-    operator = node.child_by_field_name("operator")
-    return text_of(operator) if operator is not None else ""
-
-
-def below(node: tree_sitter.Node) -> list[tree_sitter.Node]:
-    found, waiting = [], [node]
-    while waiting:
-        part = waiting.pop()
-        found.append(part)
-        waiting += part.children
-    return found

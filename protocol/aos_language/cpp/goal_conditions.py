@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 import tree_sitter
 
 from aos_language.cpp.facts import Cpp
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, field_text, operator_of, text_of
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
 
@@ -85,7 +85,7 @@ class _Reading:
             if node.type != "assignment_expression" or left is None or right is None:
                 continue
             is_goal = text_of(left) == "__isGoalState" and not _is_punished(node)
-            if not is_goal and (text_of(left) != "__reward" or _operator(node) not in ("=", "+=")):
+            if not is_goal and (text_of(left) != "__reward" or operator_of(node) not in ("=", "+=")):
                 continue
             if right.type == "conditional_expression":
                 self._want_choice(right, True)
@@ -99,9 +99,9 @@ class _Reading:
         left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
         if node.type == "parenthesized_expression":
             self.want(node.named_children[0], truth)
-        elif node.type == "unary_expression" and _operator(node) == "!":
+        elif node.type == "unary_expression" and operator_of(node) == "!":
             self.want(node.named_children[-1], not truth)
-        elif node.type == "binary_expression" and _operator(node) == ("&&" if truth else "||"):
+        elif node.type == "binary_expression" and operator_of(node) == ("&&" if truth else "||"):
             assert left is not None
             assert right is not None
             self.want(left, truth)
@@ -138,15 +138,17 @@ class _Reading:
     def _want_number(self, node: tree_sitter.Node, truth: bool) -> bool:
         """Counts what a number is made of that is compared, as `closed == 5`; returns whether it is one."""
         left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
-        operator = _operator(node)
+        operator = operator_of(node)
         if left is None or right is None or operator not in _OPPOSITE or left.type != "identifier":
             return False
         name, operator = text_of(left), operator if truth else _OPPOSITE[operator]
-        steps = [n for _, n in self._nodes if n.type == "update_expression" and _name(n) == name]
+        steps = [
+            n for _, n in self._nodes if n.type == "update_expression" and field_text(n, "argument") == name
+        ]
         sums = [
             (n, value)
             for n, value in self._set(name)
-            if value.type != "number_literal" or "+" in _operator(n)
+            if value.type != "number_literal" or "+" in operator_of(n)
         ]
         if name not in self._locals or not (steps or sums) or operator == "!=":
             return False
@@ -157,7 +159,7 @@ class _Reading:
         for step in steps:
             self._want_place(step, has_more == ("++" in text_of(step)))
         for assignment, value in sums:
-            is_more = has_more != ("-" in _operator(assignment))
+            is_more = has_more != ("-" in operator_of(assignment))
             if value.type == "number_literal":
                 self._want_place(assignment, is_more)
             else:
@@ -167,7 +169,7 @@ class _Reading:
     def _want_sum(self, node: tree_sitter.Node, more: bool) -> None:
         if node.type == "parenthesized_expression":
             self._want_sum(node.named_children[0], more)
-        elif node.type == "binary_expression" and _operator(node) == "+":
+        elif node.type == "binary_expression" and operator_of(node) == "+":
             for part in node.named_children:
                 self._want_sum(part, more)
         elif node.type == "conditional_expression":
@@ -270,17 +272,7 @@ def _cannot_fail(node: tree_sitter.Node) -> bool:
     return not any(
         part.type in _MAY_FAIL
         or (part.type == "field_expression" and "->" in text_of(part))
-        or _operator(part) in ("/", "%")
+        or operator_of(part) in ("/", "%")
         or (part.type == "subscript_expression" and not re.match(r"state_*\.", text_of(part)))
         for part in below(node)
     )
-
-
-def _operator(node: tree_sitter.Node) -> str:
-    operator = node.child_by_field_name("operator")
-    return text_of(operator) if operator is not None else ""
-
-
-def _name(node: tree_sitter.Node) -> str:
-    argument = node.child_by_field_name("argument")
-    return text_of(argument) if argument is not None else ""

@@ -10,7 +10,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, operator_of, text_of
 from aos_language.cpp.tree import tree_of
 
 _CONTINUOUS = ("SampleNormal", "SampleUniform")
@@ -50,7 +50,7 @@ def _is_added_to(node: tree_sitter.Node) -> bool:
         parent is not None
         and parent.type == "assignment_expression"
         and parent.child_by_field_name("left") == node
-        and _operator(parent) in ("=", "+=", "-=")
+        and operator_of(parent) in ("=", "+=", "-=")
         and parent.parent is not None
         and parent.parent.type == "expression_statement"
     )
@@ -88,13 +88,13 @@ class _Linear:
         if parent.type == "parenthesized_expression":
             return True
         if parent.type == "unary_expression":
-            return _operator(parent) in ("-", "+")
+            return operator_of(parent) in ("-", "+")
         if parent.type == "conditional_expression":
             return node != parent.child_by_field_name("condition")
         if parent.type != "binary_expression":
             return False
         left, right = parent.child_by_field_name("left"), parent.child_by_field_name("right")
-        operator = _operator(parent)
+        operator = operator_of(parent)
         if left is None or right is None:
             return False
         if operator == "*" or (operator == "/" and node == left):
@@ -134,8 +134,3 @@ def _function(draw: tree_sitter.Node) -> str:
     """The last name of what is called."""
     function = draw.child_by_field_name("function")
     return re.findall(r"\w+", text_of(function))[-1] if function is not None else ""
-
-
-def _operator(node: tree_sitter.Node) -> str:
-    operator = node.child_by_field_name("operator")
-    return text_of(operator) if operator is not None else ""

@@ -13,7 +13,7 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import READING_FUNCTIONS
-from aos_language.cpp.nodes import below, text_of
+from aos_language.cpp.nodes import below, field_text, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
@@ -302,8 +302,7 @@ def _is_function(node: tree_sitter.Node) -> bool:
 def _declared(node: tree_sitter.Node) -> str:
     for part in below(node):
         if part.type == "function_declarator":
-            name = part.child_by_field_name("declarator")
-            return text_of(name) if name is not None else ""
+            return field_text(part, "declarator")
     return ""
 
 

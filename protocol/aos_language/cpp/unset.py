@@ -9,10 +9,10 @@ other, so a variable that was set under a condition counts as set under another 
 import msgspec
 import tree_sitter
 
-from aos_language.cpp.evaluation import Evaluation, below, operator_of
+from aos_language.cpp.evaluation import Evaluation
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
-from aos_language.cpp.nodes import text_of
+from aos_language.cpp.nodes import below, field_text, operator_of, text_of
 from aos_language.cpp.reader import TreeReader
 from aos_language.cpp.tokens import Extent, Tokens
 from aos_language.cpp.tree import tree_of
@@ -292,8 +292,7 @@ def _asked(node: tree_sitter.Node) -> str:
         condition = condition.named_children[0] if condition.named_child_count == 1 else None
     if condition is None or condition.type != "binary_expression" or operator_of(condition) != "==":
         return ""
-    left = condition.child_by_field_name("left")
-    return text_of(left) if left is not None else ""
+    return field_text(condition, "left")
 
 
 def _is_true(node: tree_sitter.Node | None) -> bool:

@@ -10,7 +10,8 @@ from pathlib import Path
 import msgspec
 import uvicorn
 
-from aos_deploy.page_address import GatewayNote, gateway_folder
+from aos_deploy.page_address import GatewayNote
+from aos_deploy.places import gateway_folder
 from aos_gateway.access import access_of, kept_token
 from aos_gateway.app import make_app
 from aos_gateway.drawings import Drawings

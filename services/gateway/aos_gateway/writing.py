@@ -12,7 +12,7 @@ from aos_gateway.runs import Run
 from aos_gateway.shared import Gateway
 from aos_gateway.starting import StartedRun, start_system
 from aos_gateway.uploads import ProjectEntry, files_of_upload, keep_project, kept_projects
-from aos_language.load import load_files, with_excerpts
+from aos_language.load import LoadedBundle, load_files, with_excerpts
 from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import DocumentError, GatewayError
@@ -86,8 +86,7 @@ async def upload(gateway: Gateway, query: Named, body: bytes) -> ProjectEntry:
 
     The body is an archive of documents. A deploy file in it is left out: adapters own hardware.
     """
-    files, remarks = await asyncio.to_thread(files_of_upload, query.name, body)
-    loaded = await asyncio.to_thread(load_files, files, name=query.name, remarks=remarks)
+    files, loaded = await _loaded(query.name, body)
     if loaded.project is None:
         raise _refused(query.name, with_excerpts(loaded.diagnostics, files))
     return await asyncio.to_thread(keep_project, gateway.folder, loaded.project.name, files)
@@ -97,8 +96,7 @@ async def check(gateway: Gateway, query: Named, body: bytes) -> Report:
     """Check a bundle, as `aos lint --no-compile` does. The body is an archive of documents, or one
     document.
     """
-    files, remarks = await asyncio.to_thread(files_of_upload, query.name, body)
-    loaded = await asyncio.to_thread(load_files, files, name=query.name, remarks=remarks)
+    files, loaded = await _loaded(query.name, body)
     found = with_excerpts(loaded.diagnostics, files)
     project = loaded.project
     skills = tuple(skill.name for skill in project.skills) if project is not None else ()
@@ -177,6 +175,12 @@ def _projects(gateway: Gateway) -> tuple[ProjectEntry, ...]:
                 files = (file for file, _ in deploy_files_in(inside))
                 found += [ProjectEntry(file.stem, str(file), is_uploaded=False) for file in files]
     return tuple({entry.deploy_file: entry for entry in found}.values())
+
+
+async def _loaded(name: str, body: bytes) -> tuple[dict[str, bytes], LoadedBundle]:
+    """Returns the files of an upload, and the bundle that they are."""
+    files, remarks = await asyncio.to_thread(files_of_upload, name, body)
+    return files, await asyncio.to_thread(load_files, files, name=name, remarks=remarks)
 
 
 def _refused(name: str, found: tuple[Diagnostic, ...]) -> DocumentError:

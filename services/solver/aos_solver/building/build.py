@@ -77,8 +77,6 @@ class BuiltModel(msgspec.Struct, frozen=True):
 
     emitted: EmittedModel
     executable: Path
-    is_from_cache: bool
-    compile_s: float = 0.0
     mission_values: dict[str, str] = {}
 
     @property
@@ -118,7 +116,7 @@ async def build(
     }
     for known in ("thorough", "quick") if kind == "quick" else (kind,):
         if (entry := cache.find(names[known])) is not None:
-            return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
+            return BuiltModel(emitted, entry / _EXECUTABLE)
     deadline_s = deadline_s or compiler.deadline_s
     work = _Build(emitted, cache, compiler, on_progress, deadline_s, kind, niceness)
     started_s = time.monotonic()
@@ -134,10 +132,9 @@ async def build(
         patience_s=_patience_s(compiler, deadline_s),
         on_wait=lambda: on_progress(f"waiting for {emitted.project}, which another process compiles"),
     )
-    seconds = time.monotonic() - started_s
     by_whom = "compiled" if made_here else "another process compiled"
-    on_progress(f"{by_whom} {emitted.project} in {seconds:.1f} s")
-    return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=not made_here, compile_s=seconds)
+    on_progress(f"{by_whom} {emitted.project} in {time.monotonic() - started_s:.1f} s")
+    return BuiltModel(emitted, entry / _EXECUTABLE)
 
 
 def _patience_s(compiler: Compiler, deadline_s: float) -> float:

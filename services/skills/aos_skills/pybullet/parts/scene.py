@@ -55,7 +55,7 @@ class Scene:
         turned = self.client.getBasePositionAndOrientation(body)[1]
         return float(self.client.getMatrixFromQuaternion(turned)[8])
 
-    def box(self, half: Vector, at: Vector, color: Color, *, yaw: float = 0.0, friction: float = 0.9) -> int:
+    def box(self, half: Vector, at: Vector, color: Color, *, yaw: float = 0.0) -> int:
         """A box that never moves, by half its sides."""
         client = self.client
         body: int = client.createMultiBody(
@@ -65,7 +65,7 @@ class Scene:
             at,
             client.getQuaternionFromEuler((0, 0, yaw)),
         )
-        client.changeDynamics(body, -1, lateralFriction=friction)
+        client.changeDynamics(body, -1, lateralFriction=0.9)
         return body
 
     def cylinder(self, radius: float, height: float, at: Vector, color: Color, mass: float = 0.0) -> int:

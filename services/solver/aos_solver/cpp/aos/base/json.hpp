@@ -48,9 +48,6 @@ class JsonWriter {
     text_ += '"';
     return *this;
   }
-  // Writes text that is JSON already.
-  JsonWriter& raw(std::string_view json) { return put(json); }
-
   const std::string& text() const { return text_; }
   void clear() { text_.clear(); }
 
