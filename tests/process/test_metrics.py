@@ -77,3 +77,29 @@ def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path
         with resumed(run, cache_dir):
             assert served.ask(f"/v1/runs/{run.name}").json["is_running"] is True
             assert samples(served)['aos_missions_running{robot="tiger"}'] == 1
+
+
+def test_a_run_that_was_taken_up_and_stopped_between_two_questions_is_counted_once(
+    tmp_path: Path, cache_dir: Path
+) -> None:
+    killed, cancelled = (
+        f'aos_missions_total{{robot="tiger",ending="{end}"}}' for end in ("killed", "cancelled")
+    )
+    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir, "--metrics") as served:
+        os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
+        while served.ask(f"/v1/runs/{run.name}").json["is_running"]:
+            pass
+        assert samples(served)[killed] == 1
+        with gateway(tmp_path, cache_dir, "--metrics") as later:
+            assert killed not in samples(later)
+            with resumed(run, cache_dir):
+                pass
+            assert served.ask(f"/v1/runs/{run.name}").json["ending"] == "cancelled"
+            assert {name: samples(served).get(name) for name in (killed, cancelled)} == {
+                killed: 1,
+                cancelled: 1,
+            }
+            assert {name: samples(later).get(name) for name in (killed, cancelled)} == {
+                killed: None,
+                cancelled: 1,
+            }

@@ -1,14 +1,16 @@
 """Metrics of missions, for Prometheus: counted out of their records whenever somebody asks.
 
-Sums begin with 0 when the gateway begins, and missions that had ended before are in none. A mission that ran
-at that moment is counted from its first step. Nothing is read while nobody asks; what a mission has
-recorded between two scrapes is counted with the second, so that none is lost.
+Sums begin with 0 when the gateway begins, and missions that had ended before are in none; of a system
+elsewhere those that had ended at the first question. A mission that ran at that moment is counted from its
+first step. Nothing is read while nobody asks; what a mission has recorded between two scrapes is counted with
+the second, so that none is lost.
 """
 
 import asyncio
 import logging
-import time
 from collections import Counter as Multiset
+from collections.abc import Iterable
+from contextlib import suppress
 
 from aos_deploy.processes.consequence import STARTED_AGAIN
 from aos_gateway.exposition import exposition
@@ -19,7 +21,7 @@ from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
 from aos_protocol.mission_rows import STATE
 from aos_runtime.disk.journal import Journal
-from aos_solver.mission.logbook import JOURNAL
+from aos_solver.mission.logbook import JOURNAL, entries_of
 
 _log = logging.getLogger("aos.gateway")
 
@@ -44,6 +46,8 @@ class _Counted:
         self.engine_starts: dict[str, int] = {}
         self.pids: dict[str, int] = {}
         self.restarts: Multiset[str] = Multiset()
+        self.ended_before: frozenset[str] | None = None
+        self.was_killed = False
         self.is_over = False
 
 
@@ -54,11 +58,10 @@ class Metrics:
         self._shelf = shelf
         self._families = Families()
         self._counted: dict[str, _Counted] = {}
-        self._begun_ns = time.time_ns()
         self._asked = asyncio.Lock()
         for name, run in shelf.runs().items():
-            if not run.is_running:
-                self._of(name).is_over = True
+            if isinstance(run, KeptRun):
+                self._begin(run, self._of(name))
 
     async def text(self) -> bytes:
         """The metrics now, in Prometheus' text format."""
@@ -74,20 +77,35 @@ class Metrics:
     def _of(self, run: str) -> _Counted:
         return self._counted.setdefault(run, _Counted())
 
+    @staticmethod
+    def _begin(run: KeptRun, counted: _Counted) -> None:
+        """Takes note of what was before the gateway. A run without a summary may be taken up."""
+        counted.was_killed = not run.is_running and run.directory.read_summary() is None
+        counted.is_over = not run.is_running and not counted.was_killed
+        if not counted.is_over:
+            with suppress(AosError):
+                counted.ended_before = _ended(entries_of(run.directory.path))
+
     async def _count(self, run: Run, counted: _Counted) -> None:
         try:
             # First whether it is over: whatever is read after that is all that there will be.
             entry = await run.entry()
-            known = {each.mission: each for each in await run.missions()}
+            if counted.was_killed and entry.ending == "killed":
+                return  # Nobody has taken it up.
+            counted.was_killed = entry.ending == "killed"
+            missions = await run.missions()
+            if counted.ended_before is None:
+                counted.ended_before = frozenset() if isinstance(run, KeptRun) else _ended(missions)
+            known = {each.mission: each for each in missions}
             for mission in entry.missions:
                 place = counted.missions.setdefault(mission, _Mission())
-                if place.was_killed and entry.is_running:
+                if place.was_killed and not counted.was_killed:
                     place.has_ended = place.was_killed = False  # It was taken up.
                 if not place.has_ended:
                     await self._count_mission(run, entry, known.get(mission), mission)
             if isinstance(run, KeptRun):
                 await asyncio.to_thread(self._count_restarts, run, counted)
-            counted.is_over = not entry.is_running and isinstance(run, KeptRun)
+            counted.is_over = not entry.is_running and isinstance(run, KeptRun) and not counted.was_killed
         except AosError as error:
             _log.warning("the metrics of %s are not whole: %s", run.name, error)
             self._families.unreadable.add(robot=run.robot)
@@ -98,7 +116,7 @@ class Metrics:
     ) -> None:
         counted = self._of(run.name)
         place = counted.missions[mission]
-        if known is not None and 0 < known.ended_ns < self._begun_ns:
+        if counted.ended_before and mission in counted.ended_before:
             place.has_ended = True
             return
         has_more = True
@@ -159,3 +177,7 @@ class Metrics:
                     families.holding.add(float(place.is_holding), robot=run.robot)
                 if place.goal_probability is not None:
                     families.goal.set(place.goal_probability, robot=run.robot, mission=mission)
+
+
+def _ended(missions: Iterable[MissionEntry]) -> frozenset[str]:
+    return frozenset(each.mission for each in missions if each.ended_ns)

@@ -158,8 +158,10 @@ class KeptRun(Run):
         return self._last
 
     def _goes_on_again(self) -> bool:
-        """Says whether a run whose aos-up was killed was taken up."""
-        return self._last is not None and not self._has_summary and self.directory.is_held
+        """Says whether a run whose aos-up was killed was taken up, and may be over again."""
+        if self._last is None or self._has_summary:
+            return False
+        return self.directory.is_held or self.directory.read_summary() is not None
 
     def _entry(self) -> RunEntry:
         path, record = self.directory.path, self.record
