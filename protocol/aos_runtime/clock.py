@@ -29,3 +29,11 @@ class SystemClock:
 
     def monotonic_s(self) -> float:
         return time.monotonic()
+
+
+def moment_s(clock: Clock, stamp_ns: int) -> float:
+    """The monotonic time of a moment in the past, for what lasts for a while after it.
+
+    Journals have the wall clock alone. Where that was set back since, the moment counts as now.
+    """
+    return clock.monotonic_s() - max(clock.now_ns() - stamp_ns, 0) / 1e9

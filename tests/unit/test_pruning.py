@@ -37,6 +37,14 @@ def test_the_newest_runs_stay_and_the_space_of_the_others_is_told(tmp_path: Path
     assert RunDirectory.latest(tmp_path).path == again.path
 
 
+def test_the_latest_run_stays_although_the_clock_was_set_back_before_it(tmp_path: Path) -> None:
+    for day in (3, 4):
+        run_of_day(tmp_path, day)
+    latest = run_of_day(tmp_path, 1)
+    pruned(tmp_path, keep=1)
+    assert names(tmp_path) == [latest.path.name]
+
+
 def test_a_run_that_goes_on_stays_however_old_it_is(tmp_path: Path) -> None:
     old = run_of_day(tmp_path, 1, is_over=False)
     over = run_of_day(tmp_path, 2)

@@ -15,7 +15,7 @@ from aos_deploy.runs.end import settled
 from aos_deploy.runs.summary import Summary, SystemSummary
 from aos_deploy.runs.verdict import Account, Verdict
 from aos_protocol.errors import AosError, MissionRunsError, SteeringError, StorageError
-from aos_protocol.messages import MissionEntry, MissionState, StartMission
+from aos_protocol.messages import DecisionRecord, MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import DECISION
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import make_folder_of_missions, mission_folder
@@ -31,6 +31,8 @@ class SystemRun(MissionRun):
 
     stays = True
     _mission = ""
+    _mission_begun_s: float | None = None
+    _decided_s: float | None = None
 
     def _run_directory(self) -> RunDirectory:
         run = super()._run_directory()
@@ -52,6 +54,12 @@ class SystemRun(MissionRun):
     def _take(self, event: Event) -> None:
         if isinstance(event, MissionState) and event.mission != self._mission:
             self._mission, self._heard = event.mission, Account()
+            self._mission_begun_s = self._decided_s = None
+        now_s = self._clock.monotonic_s()
+        if isinstance(event, MissionState) and event.epoch == 1 and event.step == 0:
+            self._mission_begun_s = self._mission_begun_s or now_s
+        if isinstance(event, DecisionRecord) and event.step == 1:
+            self._decided_s = self._decided_s or now_s
         super()._take(event)
 
     def _has_journaled(self, state: MissionState) -> bool:
@@ -84,7 +92,7 @@ class SystemRun(MissionRun):
             seed=entry.seed,
             started=time_text(entry.begun_ns),
             services_ready_s=None,
-            **_durations(folder / JOURNAL, entry.begun_ns),
+            **(self._measured(entry) or _durations(folder / JOURNAL, entry.begun_ns)),
             process_ends=(),
         )
         try:
@@ -92,6 +100,17 @@ class SystemRun(MissionRun):
         except StorageError as error:
             self.error = self.error or error
         return summary
+
+    def _measured(self, entry: MissionEntry) -> dict[str, float | None] | None:
+        """The seconds to the first decision and to now of the mission that has just ended; None for others.
+
+        The journal has the wall clock alone, which may have been set meanwhile.
+        """
+        if entry.mission != self._mission or self._mission_begun_s is None:
+            return None
+        first_s = None if self._decided_s is None else round(self._decided_s - self._mission_begun_s, 3)
+        duration_s = round(self._clock.monotonic_s() - self._mission_begun_s, 3)
+        return {"first_decision_s": first_s, "duration_s": duration_s}
 
     def _settled(self, run: RunDirectory, *, was_interrupted: bool) -> Summary:
         """The summary of the system, once each mission has its own."""
@@ -127,6 +146,6 @@ def _durations(journal: Path, begun_ns: int) -> dict[str, float | None]:
     with Journal.read(journal) as rows:
         first = next(rows.walk(DECISION), None)
         last = next(rows.walk(since=rows.last), None)
-    first_s = None if first is None else round((first.stamp_ns - begun_ns) / 1e9, 3)
-    duration_s = 0.0 if last is None else round((last.stamp_ns - begun_ns) / 1e9, 3)
+    first_s = None if first is None else round(max(first.stamp_ns - begun_ns, 0) / 1e9, 3)
+    duration_s = 0.0 if last is None else round(max(last.stamp_ns - begun_ns, 0) / 1e9, 3)
     return {"first_decision_s": first_s, "duration_s": duration_s}

@@ -3,9 +3,8 @@
 import asyncio
 import os
 import re
-import stat
-import time
 from pathlib import Path
+from typing import NamedTuple
 
 from aos_deploy.deployment.own_programs import ReadyPart
 from aos_deploy.processes.program import words_of
@@ -15,17 +14,27 @@ from aos_runtime.processes.children import Child, guarded
 _LOOK_EVERY_S = 0.1
 _CONNECT_S = 2.0
 _COMMAND_S = 10.0
-_CLOCK_NS = 20_000_000
-"""The times of files can be this much coarser than the clock."""
 
 
-async def until_seen_ready(ready: ReadyPart, log: Path, log_start: int, folder: Path) -> None:
-    """Returns when it is as `ready` says, from now on. What the program prints is in `log` from `log_start`.
+class Before(NamedTuple):
+    """The surroundings of a program just before its start: the length of its log, its file of `ready`."""
+
+    log_size: int
+    file: tuple[int, ...]
+
+
+def before_start(ready: ReadyPart | None, log: Path, folder: Path) -> Before:
+    """The surroundings now."""
+    size = log.stat().st_size if log.exists() else 0
+    return Before(size, _mark(folder / ready.file) if ready is not None and ready.file is not None else ())
+
+
+async def until_seen_ready(ready: ReadyPart, log: Path, before: Before, folder: Path) -> None:
+    """Returns when it is as `ready` says, counted from `before`. What the program prints is in `log`.
 
     Paths are relative to `folder`, where commands run, too. An exit is not awaited here.
     """
-    began_ns = time.time_ns()
-    printed = _Printed(log, log_start, ready.line or "")
+    printed = _Printed(log, before.log_size, ready.line or "")
     if ready.seconds is not None:
         await asyncio.sleep(ready.seconds)
         return
@@ -34,7 +43,7 @@ async def until_seen_ready(ready: ReadyPart, log: Path, log_start: int, folder: 
             return
         if ready.line is not None and printed.has_line():
             return
-        if ready.file is not None and _was_written(folder / ready.file, began_ns):
+        if ready.file is not None and _was_written(folder / ready.file, before.file):
             return
         if ready.command and await _succeeds(ready.command, folder):
             return
@@ -75,14 +84,20 @@ class _Printed:
         return any(self._pattern.search(line) for line in lines)
 
 
-def _was_written(path: Path, began_ns: int) -> bool:
+def _was_written(path: Path, before: tuple[int, ...]) -> bool:
     """Returns whether a file was made or written since; a device that is there counts as it is."""
+    mark = _mark(path)
+    return bool(mark) and (mark != before or path.is_char_device() or path.is_block_device())
+
+
+def _mark(path: Path) -> tuple[int, ...]:
+    """The file as it is now, empty where there is none: that it was written is seen by a change alone, for
+    the clock by which it was written may have been set."""
     try:
         found = path.stat()
     except OSError:
-        return False
-    is_device = stat.S_ISCHR(found.st_mode) or stat.S_ISBLK(found.st_mode)
-    return is_device or max(found.st_mtime_ns, found.st_ctime_ns) >= began_ns - _CLOCK_NS
+        return ()
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
 
 
 async def _is_served(address: str, port: int) -> bool:

@@ -33,7 +33,7 @@ from aos_deploy.processes.end import look_at_log, status_text
 from aos_deploy.processes.log_sizes import keep_logs_short, shorten_all
 from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.processes.program import Program
-from aos_deploy.processes.ready import check_port_is_free, until_seen_ready
+from aos_deploy.processes.ready import Before, before_start, check_port_is_free, until_seen_ready
 from aos_deploy.processes.remote import is_lost, was_frozen
 from aos_deploy.processes.start import ROUTER_MODULE, start_process
 from aos_deploy.runs.directory import RunDirectory
@@ -217,8 +217,7 @@ class Supervisor:
         program = running.program
         running.started_s = self._clock.monotonic_s()
         running.restarts.start(running.started_s)
-        log = self._run.log(program.name)
-        log_start = log.stat().st_size if log.exists() else 0
+        before = before_start(program.ready, self._run.log(program.name), _folder_of(program))
         if program.name == ROUTER.name:
             self._passes.write_dictionary()  # The router before it, if there was one, has removed its own.
         running.child = await start_process(program, self._base, self._run, self._passes)
@@ -226,9 +225,9 @@ class Supervisor:
         self._running[program.name] = running
         reach("up.start.after")
         if program.on_exit:
-            running.seeking = self._beside(self._seek_ready(running, log_start))
+            running.seeking = self._beside(self._seek_ready(running, before))
 
-    async def _seek_ready(self, running: RunningProgram, log_start: int) -> None:
+    async def _seek_ready(self, running: RunningProgram, before: Before) -> None:
         """Looks whether a program of the user's own is ready; DeployError AOS802 if it takes too long."""
         program, ready = running.program, running.program.ready
         try:
@@ -237,8 +236,8 @@ class Supervisor:
                     await running.ready.wait()  # Its end is seen by `_watch`.
                     return
                 if ready is not None:
-                    folder = Path() if program.host else Path(program.folder or "")
-                    await until_seen_ready(ready, self._run.log(program.name), log_start, folder)
+                    log = self._run.log(program.name)
+                    await until_seen_ready(ready, log, before, _folder_of(program))
         except TimeoutError:
             raise DeployError(
                 f"{program.name} was not ready within {program.start_s:g} s: {ready}",
@@ -415,3 +414,8 @@ class Supervisor:
 
 def _end_at_once(running: RunningProgram) -> None:
     (running.child.end_at_once if running.program.is_guarded else running.child.kill)()
+
+
+def _folder_of(program: Program) -> Path:
+    """The folder of this machine that paths of a program's `ready` are relative to."""
+    return Path() if program.host else Path(program.folder or "")

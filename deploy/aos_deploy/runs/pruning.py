@@ -36,12 +36,14 @@ class Pruned(msgspec.Struct, frozen=True):
 def pruned(folder: Path, keep: int) -> Pruned:
     """Removes all runs of a folder but the `keep` newest; StorageError AOS701 if one cannot be removed.
 
-    A run that goes on stays, however old it is. Nothing else in the folder is touched. The sockets of runs
+    A run that goes on stays, however old it is. The run that `latest` names is the newest, also where the
+    clock has been set back since the others. Nothing else in the folder is touched. The sockets of runs
     that were killed are removed as well, where they had a folder of their own.
     """
     remove_left_sockets()
     runs = sorted(_runs_in(folder), key=lambda path: path.stat().st_mtime)
-    runs.sort(key=lambda path: path.name[: path.name.index("-")])
+    newest = (folder / LATEST).resolve().name
+    runs.sort(key=lambda path: (path.name == newest, path.name[: path.name.index("-")]))
     removed = []
     for path in runs[: max(len(runs) - keep, 0)]:
         run = RunDirectory(path)

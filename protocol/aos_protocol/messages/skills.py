@@ -88,8 +88,9 @@ class MappingState(Message, frozen=True):
 
     `unavailable` are the skills that cannot be run now, each with the reason. `announced` says of each skill
     how often an adapter has announced that it serves the skill's path. `revisions` are those whose mappings
-    are kept: skills of each of them can be run by them. `stamp_ns` is when the middleware said so, and later
-    each time: an answer that is read after a newer state is known to be old by it.
+    are kept: skills of each of them can be run by them. `stamp_ns` is when the middleware said so by the
+    machine's monotonic clock, which also its successors go by, and later each time: an answer that is read
+    after a newer state is known to be old by it.
     """
 
     revision: int

@@ -115,7 +115,7 @@ class _Middleware:
         why = {skill: self._served.why_unavailable(path) or shut for skill, path in paths.items()}
         unavailable = {skill: reason for skill, reason in why.items() if reason}
         announced = {skill: self._served.announced(path) for skill, path in paths.items()}
-        self._stamp_ns = max(self._stamp_ns + 1, self._service.clock.now_ns())
+        self._stamp_ns = max(self._stamp_ns + 1, round(self._service.clock.monotonic_s() * 1e9))
         return msgspec.structs.replace(
             self._mappings.state, unavailable=unavailable, announced=announced, stamp_ns=self._stamp_ns
         )

@@ -63,7 +63,7 @@ class MappingWatch:
                     with suppress(BusError):
                         self._take(await self._ask())
                 else:
-                    self._stamp_ns = 0  # The clock of the next one may have been set back.
+                    self._stamp_ns = 0  # The next one may run on a machine that was started again.
 
     async def _ask(self) -> MappingState:
         return await self._bus.ask(

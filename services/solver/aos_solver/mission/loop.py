@@ -22,6 +22,7 @@ from aos_protocol.messages import (
     Steer,
 )
 from aos_protocol.mission_rows import ADOPTED, DRIFT, INTENDED, OUTCOME
+from aos_runtime.clock import moment_s
 from aos_solver.child.belief_answers import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
@@ -191,7 +192,7 @@ class Mission:
         async for update in retraced(self._earlier, self._model, self.past, known):
             decision, observed, observed_ns = next(steps)
             self._budget.take_up(decision.constraints)
-            self._take_failure(decision, observed, update, self._s_of(observed_ns))
+            self._take_failure(decision, observed, update, moment_s(self._ports.clock, observed_ns))
             self.belief = update.summary
             self._reports.stand_at(decision.step)
         if self._earlier:
@@ -257,11 +258,6 @@ class Mission:
             self.drift = takeover.model.drift_tests()
             self._ports.journal(DRIFT, self.drift)
         return True
-
-    def _s_of(self, stamp_ns: int) -> float:
-        """The monotonic time of a moment in the past."""
-        clock = self._ports.clock
-        return clock.monotonic_s() - (clock.now_ns() - stamp_ns) / 1e9
 
     def _ending(self) -> Ending | None:
         """The ending that the belief calls for, or else the one that the world has come to."""
