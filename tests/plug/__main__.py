@@ -1,7 +1,7 @@
 """Figures about what changes and what happens while a mission runs, each part measured by a command.
 
   python -m tests.plug                    all parts, as `make plug` does
-  python -m tests.plug stopping --runs 5  one part; `--help` names them and their options
+  python -m tests.plug faults --runs 5    one part; `--help` names them and their options
 
 Exit code 1: a target was missed.
 """
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import faults, missions, modelled, stopping, takeovers
+from . import faults, missions, modelled, takeovers
 
 
 class Part(NamedTuple):
@@ -27,7 +27,6 @@ PARTS: Mapping[str, Part] = {
     "modelled": Part(
         "missions that the model plays, and simulated ones", modelled.add_options, modelled.measure
     ),
-    "stopping": Part("skills that are stopped while they run", stopping.add_options, stopping.measure),
     "missions": Part("missions one after the other", missions.add_options, missions.measure),
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),
     "shelf": Part("the shelf of models", takeovers.add_shelf_options, takeovers.measure_shelf),

@@ -1,4 +1,4 @@
-"""What is told by the time, where somebody has set the clock meanwhile."""
+"""Waits and moments where somebody has set the clock meanwhile."""
 
 import asyncio
 import os

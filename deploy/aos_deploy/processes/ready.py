@@ -91,8 +91,10 @@ def _was_written(path: Path, before: tuple[int, ...]) -> bool:
 
 
 def _mark(path: Path) -> tuple[int, ...]:
-    """The file as it is now, empty where there is none: that it was written is seen by a change alone, for
-    the clock by which it was written may have been set."""
+    """The file as it is now, empty where there is none.
+
+    That it was written is seen by a change alone: the clock may have been set meanwhile.
+    """
     try:
         found = path.stat()
     except OSError:
