@@ -7,12 +7,12 @@ from pathlib import Path
 import typer
 
 from aos_deploy.bundles.endless import endless_findings
-from aos_deploy.bundles.files import planned_of, with_mission
+from aos_deploy.bundles.files import project_at, with_mission
 from aos_deploy.places import cache_dir
-from aos_language.load import load_files, with_excerpts
+from aos_language.load import with_excerpts
 from aos_protocol.diagnostics import Severity, render
 from aos_protocol.documents import Constraint, MissionValue
-from aos_protocol.errors import DocumentError, ModelError
+from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuildKind
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
@@ -33,22 +33,14 @@ async def engine_of_bundle(
     as one DocumentError; faults of the model show the line of the document. Loops that no draw ended are told
     in the end.
     """
-    planned = planned_of(bundle)
-    loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
-    if loaded.project is None:
-        raise DocumentError(
-            f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
-        )
+    planned, project, found = project_at(bundle)
     # Remarks are for `aos lint`: here they would be told with every run.
-    for diagnostic in (finding for finding in loaded.diagnostics if finding.severity is not Severity.REMARK):
+    for diagnostic in (finding for finding in found if finding.severity is not Severity.REMARK):
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(
             with_mission(
-                loaded.project,
-                (*planned.constraints, *constraints),
-                (*planned.values, *values),
-                planned.sources,
+                project, (*planned.constraints, *constraints), (*planned.values, *values), planned.sources
             ),
             cache_dir(),
             lambda remark: typer.echo(f"aos: {remark}", err=True),

@@ -18,6 +18,8 @@ from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import DeployError, DocumentError
 
+MEND = "Mend the places named above"
+
 
 class BundledFiles(msgspec.Struct, frozen=True):
     """The documents that several bundles make together, by file name, and the bundle of each."""
@@ -94,6 +96,21 @@ def planned_of(path: Path) -> Planned:
     )
 
 
+def project_at(path: Path, *, hint: str = MEND) -> tuple[Planned, Project, tuple[Diagnostic, ...]]:
+    """Reads the project of what `planned_of` reads, with warnings and remarks; DocumentError with all that is
+    wrong with its documents."""
+    planned = planned_of(path)
+    loaded = load_files(planned.files, name=path.name or str(path), remarks=planned.remarks)
+    if loaded.project is None:
+        raise refusal(path, loaded.diagnostics, hint)
+    return planned, loaded.project, loaded.diagnostics
+
+
+def refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...], hint: str = MEND) -> DocumentError:
+    """Returns the error that is raised for a bundle with errors."""
+    return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=diagnostics)
+
+
 def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
     """Reads the project that all bundles make together, with the mission's constraints and values.
 
@@ -107,7 +124,7 @@ def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
         raise DocumentError(
             f"the bundles {named} are refused" if "," in named else f"the bundle {named} is refused",
             code="AOS120",
-            hint="Mend the places named above",
+            hint=MEND,
             diagnostics=tuple(together.located(diagnostic) for diagnostic in loaded.diagnostics),
         )
     values = deployment.mission_values

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from aos_deploy.commands.documents import Folder, refusal
+from aos_deploy.bundles.files import refusal
+from aos_deploy.commands.documents import Folder
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_diagnostics, print_json, time_text

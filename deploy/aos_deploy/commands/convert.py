@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.bundles.files import planned_of
-from aos_deploy.commands.documents import FolderOrDeployFile, refusal
+from aos_deploy.bundles.files import planned_of, refusal
+from aos_deploy.commands.documents import FolderOrDeployFile
 from aos_deploy.printing import count, print_diagnostics
 from aos_language.convert import Dialect, convert
 from aos_protocol.diagnostics import has_errors

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.bundles.files import planned_of, with_mission
+from aos_deploy.bundles.files import planned_of, project_at, refusal, with_mission
 from aos_deploy.bundles.sarif import sarif_log
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson, TrustDocuments
@@ -19,7 +19,7 @@ from aos_language.reading.picture_file import PICTURE
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
-from aos_protocol.errors import AosError, DeployError, DocumentError
+from aos_protocol.errors import AosError, DeployError
 
 
 class Format(StrEnum):
@@ -167,11 +167,8 @@ def inspect(
     The typed documents, the lowered model, the C++ or the Python. A deploy file's constraints and values are
     in the model. With --json it is an object with the stage as its key.
     """
-    planned = planned_of(bundle)
-    loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
-    if loaded.project is None:
-        raise refusal(bundle, loaded.diagnostics)
-    project = with_mission(loaded.project, planned.constraints, planned.values, planned.sources)
+    planned, project, _ = project_at(bundle)
+    project = with_mission(project, planned.constraints, planned.values, planned.sources)
     found: object = project
     if stage is Stage.PYTHON:
         found = _python_modules(project, skill)
@@ -213,9 +210,3 @@ def _solver_stage(project: Project, stage: Stage, bundle: Path) -> object:
     if program is None:
         raise refusal(bundle, diagnostics)
     return emit(program).cpp if stage is Stage.CPP else program
-
-
-def refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...]) -> DocumentError:
-    """Returns the error that is raised for a bundle with errors."""
-    hint = "Mend the places named above"
-    return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=diagnostics)

@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from aos_deploy.adapter_templates import KINDS, ROS_KINDS, adapter_files
+from aos_deploy.bundles.files import refusal
 from aos_deploy.deployment.reading import read_deploy_file
 from aos_deploy.places import deploy_files, shipped
 from aos_deploy.systemd_unit import unit_name, unit_of
@@ -99,9 +100,7 @@ def adapter(
         raise DocumentError(f"there is no template for the adapter {kind}", code="AOS126", hint=hint)
     loaded = load_bundle(bundle)
     if loaded.project is None:
-        raise DocumentError(
-            f"{bundle} has errors", hint=f"See aos lint {bundle}", diagnostics=loaded.diagnostics
-        )
+        raise refusal(bundle, loaded.diagnostics, f"See aos lint {bundle}")
     way = os.path.relpath(bundle.resolve(), folder.resolve())
     _write(folder, adapter_files(kind, loaded.project, way))
     deploy = folder / f"{loaded.project.name}.yaml"

@@ -9,13 +9,11 @@ import numpy as np
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from numpy.typing import NDArray
 
-from aos_deploy.bundles.files import planned_of
+from aos_deploy.bundles.files import project_at
 from aos_deploy.deployment.mission_values import values_of_mapping, with_values
 from aos_deploy.places import cache_dir
 from aos_lab.gym.number_columns import NumberColumns, Numbers
-from aos_language.load import load_files
 from aos_protocol.diagnostics import Span
-from aos_protocol.errors import DocumentError
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 
@@ -125,14 +123,9 @@ class HiddenWorlds:
 
 
 async def _start(bundle: Path, mission_values: Mapping[str, Any]) -> Engine:
-    planned = planned_of(bundle)
-    loaded = load_files(planned.files, name=bundle.name or str(bundle), remarks=planned.remarks)
-    if loaded.project is None:
-        raise DocumentError(
-            f"{bundle} has errors", hint=f"See aos lint {bundle}", diagnostics=loaded.diagnostics
-        )
+    planned, project, _ = project_at(bundle, hint=f"See aos lint {bundle}")
     values = (*planned.values, *values_of_mapping(mission_values, Span("mission_values")))
-    project = with_values(loaded.project, values, planned.sources)
+    project = with_values(project, values, planned.sources)
     built = await build_project(project, cache_dir())
     return await Engine.start(built, seed=1)
 

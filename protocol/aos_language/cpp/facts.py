@@ -115,6 +115,11 @@ class Cpp(msgspec.Struct, frozen=True):
     idle_operators: tuple[Extent, ...] = ()
     set_in_conditions: tuple[tuple[Extent, Extent], ...] = ()
 
+    @property
+    def complete(self) -> str:
+        """The code with the semicolons that it lacks."""
+        return self.replace((offset, ";") for offset in self.missing_semicolons)
+
     def writes(self) -> Iterator[Mention]:
         """The mentions through which something changes or may change."""
         changing = (Access.WRITE, Access.UPDATE, Access.BIND)

@@ -55,8 +55,7 @@ def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset(), shared: frozenset[
     those that change at most what they are given."""
     if cpp.is_empty:
         return Flows()
-    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
-    root = tree_of(f"void f() {{{complete}\n}}")
+    root = tree_of(f"void f() {{{cpp.complete}\n}}")
     if cpp.faults or root.has_error:
         return Flows(is_opaque=True)
     own = {declaration.name for declaration in cpp.declarations}

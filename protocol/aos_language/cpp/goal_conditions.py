@@ -53,8 +53,7 @@ def counted_conditions(parts: Sequence[Cpp], *, is_expression: bool = False) -> 
 def _root(cpp: Cpp, is_expression: bool) -> tree_sitter.Node | None:
     if cpp.faults or not cpp.code.isascii() or len(cpp.missing_semicolons) > 1:
         return None
-    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
-    root = tree_of(_BEFORE[is_expression] + complete + ("\n);" if is_expression else "\n}"))
+    root = tree_of(_BEFORE[is_expression] + cpp.complete + ("\n);" if is_expression else "\n}"))
     return None if root.has_error else root
 
 

@@ -121,8 +121,7 @@ def _root(cpp: Cpp) -> tree_sitter.Node | None:
     """The tree of a function with the snippet in it; None where it cannot be read."""
     if cpp.faults:
         return None
-    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
-    root = tree_of(f"void f() {{{complete}\n}}")
+    root = tree_of(f"void f() {{{cpp.complete}\n}}")
     return None if root.has_error else root
 
 

@@ -64,7 +64,7 @@ def loops_of(cpp: Cpp, scope: Scope, *, are_declarations: bool = False) -> Loops
     """The drawing loops of a snippet that is a part of a function body, or functions among declarations."""
     if cpp.is_empty or cpp.faults:
         return Loops((), (), scope)
-    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    complete = cpp.complete
     before = "namespace f {" if are_declarations else "void f() {"
     root = tree_of(f"{before}{complete}\n}}")
     if root.has_error:

@@ -129,8 +129,7 @@ def shared_code(code: str, compounds: frozenset[str] = frozenset()) -> SharedCod
     cpp = read_cpp_declarations(code)
     if cpp.is_empty or cpp.faults:
         return SharedCode(cpp)
-    complete = Cpp(code).replace((offset, ";") for offset in cpp.missing_semicolons)
-    return _Reading(code, cpp, compounds).read(tree_of(complete))
+    return _Reading(code, cpp, compounds).read(tree_of(cpp.complete))
 
 
 class _Reading:

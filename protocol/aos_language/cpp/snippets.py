@@ -71,7 +71,7 @@ def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
     is_empty = not _without(tokens.comments, code).strip()
     if tokens.faults or is_empty:
         return Cpp(code, literals=tokens.literals, faults=tokens.faults, is_empty=is_empty)
-    complete = Cpp(code).replace((offset, ";") for offset in tokens.missing_semicolons)
+    complete = Cpp(code, missing_semicolons=tokens.missing_semicolons).complete
     root = tree_soon(before + complete + after)
     if root is None:
         whole = Extent(0, len(code), 1, 1)

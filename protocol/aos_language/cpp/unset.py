@@ -32,7 +32,7 @@ def unset_reads(cpp: Cpp, enums: frozenset[str] = frozenset()) -> tuple[Unset, .
     """The first such read of each variable of the statements of a function body, in text order."""
     if cpp.is_empty or cpp.faults:
         return ()
-    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    complete = cpp.complete
     root = tree_of(f"{_BEFORE}{complete}\n}}")
     if root.has_error or any(part.type in _JUMPS for part in below(root)):
         return ()

@@ -28,11 +28,10 @@ def values_meant(cpp: Cpp, names: frozenset[str]) -> tuple[Extent, ...]:
     variables = {
         d.name for d in cpp.declarations if d.kind is DeclarationKind.VARIABLE and _NUMBERS.search(d.type)
     }
-    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
     lines = Lines(cpp.code)
     return tuple(
         lines.extent(node.start_byte - len(_BEFORE), node.end_byte - len(_BEFORE))
-        for node in below(tree_of(_BEFORE + complete + "\n}"))
+        for node in below(tree_of(_BEFORE + cpp.complete + "\n}"))
         if node.type == "identifier" and text_of(node) in names and _is_value(node, variables)
     )
 
