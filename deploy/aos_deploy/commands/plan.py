@@ -25,7 +25,6 @@ from aos_deploy.planning_options import (
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text
-from aos_deploy.views.tables import print_values
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.child.engine import Engine
@@ -151,6 +150,8 @@ async def _searched_decision(engine: Engine, search: Search) -> Decision:
 
 
 def _print_decision(decision: Decision, title: str) -> None:
+    from aos_deploy.views.tables import print_values  # Numbers as JSON need no rich.
+
     print_values(decision.actions, decision.simulations, title)
     if decision.planner:
         print(f"{decision.planner}: {decision.why}")

@@ -27,7 +27,6 @@ from aos_deploy.planning_options import (
 )
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress
-from aos_deploy.views.tables import print_runs
 from aos_lab.formats import PROBLEM_ENDINGS
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
@@ -120,6 +119,8 @@ def simulate(
     if done and as_json:
         print_json(Campaign(done, _summary(done)))
     elif done:
+        from aos_deploy.views.tables import print_runs  # It imports rich.
+
         print_runs(done, _summary(done), has_goals=not is_problem)
     if was_stopped:
         typer.echo(f"aos: stopped after {len(done)} of {count(runs, 'mission')}", err=True)

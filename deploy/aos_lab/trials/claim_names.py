@@ -14,7 +14,6 @@ from aos_deploy.bundles.files import project_of
 from aos_deploy.deployment.reading import read_deploy_file
 from aos_deploy.deployment.typed import known_names
 from aos_lab.trials.claims import Claim, When
-from aos_lab.trials.setting import Setting
 from aos_lab.trials.trial import NOTHING_OBSERVED
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
@@ -27,19 +26,20 @@ _BRACES = re.compile(r"\{[^{}]*\}")
 _STATE = re.compile(r"([A-Za-z_]\w*)(?:\[[^\]]*\]|\.\w+)*=(\w*)")
 
 
-def project_of_setting(setting: Setting, folder: Path) -> Project | None:
-    """The documents that missions of a setting may have, also those that are left out at first.
+def project_of_setting(deploy: str, bundles: tuple[str, ...], folder: Path) -> Project | None:
+    """The documents that missions of a setting may have, also those that are left out at first. Without
+    `bundles` they are the deploy file's.
 
     It is None where others may come, and where they have mistakes, which whoever plays them tells.
     """
     try:
-        deployment = read_deploy_file(folder / setting.deploy)
+        deployment = read_deploy_file(folder / deploy)
         if deployment.watch is not None:
             return None
-        bundles = tuple(folder / bundle for bundle in setting.bundles) or deployment.bundles
+        paths = tuple(folder / bundle for bundle in bundles) or deployment.bundles
         file = msgspec.structs.replace(deployment.file, leave_out=())
         return project_of(
-            msgspec.structs.replace(deployment, bundles=bundles, file=file, constraints=(), mission_values=())
+            msgspec.structs.replace(deployment, bundles=paths, file=file, constraints=(), mission_values=())
         )
     except (AosError, OSError):
         return None

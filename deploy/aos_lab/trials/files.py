@@ -1,5 +1,6 @@
 """Files of claims: mission tests of users, and experiments. Everything wrong with one is found in one run."""
 
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Literal, TypeVar
 
@@ -12,6 +13,7 @@ from aos_lab.trials.claims import Claim, has_check
 from aos_lab.trials.setting import Setting
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Project
 from aos_protocol.errors import DeployError
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
@@ -98,11 +100,13 @@ def _read(path: Path, kind: type[F], entries: str) -> F:
     file = read_structure(node, kind, findings) if node is not None else None
     if node is not None and file is not None:
         parts: dict[str, Part | ScriptedPart] = {**getattr(file, entries)}
+        folder = path.resolve().parent
+        project = cache(lambda deploy, bundles: project_of_setting(deploy, bundles, folder))
         for name, part in parts.items():
             where, label = _entry(_entry(node, entries), name), f"{entries}.{name}"
             if isinstance(part, Part):
                 _check(part, where, findings, label)
-                _check_names(part, where, findings, path.resolve().parent)
+                _check_names(part, where, findings, project(part.deploy, part.bundles))
             elif not part.script:
                 span = where.span if where is not None else Span(label)
                 findings.error("AOS105", f"{label} has no script", span, "Give it a list of actions")
@@ -125,8 +129,7 @@ def _check(part: Part, node: YamlNode | None, findings: Findings, path: str) -> 
             findings.error("AOS105", f"nothing is checked by the claim {claim.says!r}", where, hint)
 
 
-def _check_names(part: Part, node: YamlNode | None, findings: Findings, folder: Path) -> None:
-    project = project_of_setting(part, folder)
+def _check_names(part: Part, node: YamlNode | None, findings: Findings, project: Project | None) -> None:
     listed = _entry(node, "claims")
     if project is not None and isinstance(listed, YamlList):
         names = ClaimNames(project, part.by, findings)
