@@ -1,6 +1,5 @@
 """Reads `.pomdp`, the text format of A. Cassandra's solvers."""
 
-import contextlib
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -9,8 +8,8 @@ import numpy as np
 from aos_lab.formats.pomdp_rewards import RewardRules
 from aos_lab.formats.pomdp_statements import KEYWORDS, Statement, statements_of
 from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_model
-from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
-from aos_protocol.errors import DocumentError, IntractableError
+from aos_lab.formats.problem_text import ProblemFindings, Word
+from aos_protocol.errors import IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel
 
 _SUM_TOLERANCE = 1e-4
@@ -27,13 +26,7 @@ def read_pomdp(name: str, data: bytes) -> ExplicitModel:
         text = data.decode("latin-1")
     text = text.replace("\r\n", "\n")
     findings = ProblemFindings(name, text)
-    model = None
-    with contextlib.suppress(TooManyFindingsError):
-        model = _Reader(name, findings).read(list(statements_of(text, findings)))
-    findings.raise_if_any()
-    if model is None:
-        raise DocumentError(f"{name} holds no model", code="AOS107")
-    return model
+    return findings.model_of(lambda: _Reader(name, findings).read(list(statements_of(text, findings))))
 
 
 class _Reader:

@@ -4,30 +4,25 @@ Tables (`TBL`) and decision diagrams (`DD`), `*`, `-`, `identity` and `uniform`,
 kind, parents within the same step.
 """
 
-import contextlib
 from collections.abc import Iterable, Mapping
 
 from aos_lab.formats.factored_model import FactoredModel, StateVariable
 from aos_lab.formats.factors import Table, Variable
 from aos_lab.formats.pomdpx_tables import read_table
-from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError
+from aos_lab.formats.problem_text import ProblemFindings
 from aos_lab.formats.xml_text import Element, read_xml
-from aos_protocol.errors import DocumentError
 
 
 def read_pomdpx(name: str, data: bytes) -> FactoredModel:
     """The model in a file; DocumentError with all findings, at their line and column, if it has mistakes."""
     text = data.decode("latin-1")
     findings = ProblemFindings(name, text)
-    model = None
-    with contextlib.suppress(TooManyFindingsError):
+
+    def read() -> FactoredModel | None:
         root = read_xml(data, findings)
-        if root is not None:
-            model = _Reader(name, root, findings).model()
-    findings.raise_if_any()
-    if model is None:
-        raise DocumentError(f"{name} holds no model", code="AOS107")
-    return model
+        return _Reader(name, root, findings).model() if root is not None else None
+
+    return findings.model_of(read)
 
 
 class _Reader:

@@ -1,12 +1,16 @@
 """The text of a problem file: where its words stand, and what is wrong with them."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from typing import TypeVar
 
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
+
+M = TypeVar("M")
 
 _WORD = re.compile(r"\S+")
 _MAX_FINDINGS = 50
@@ -68,9 +72,15 @@ class ProblemFindings:
     def has_any(self) -> bool:
         return bool(self._found)
 
-    def raise_if_any(self) -> None:
-        """Raises DocumentError with everything found."""
+    def model_of(self, read: Callable[[], M | None]) -> M:
+        """Reads the file's model; DocumentError with everything found, or where there is no model."""
+        model = None
+        with suppress(TooManyFindingsError):
+            model = read()
         if self._found:
             found = tuple(sorted(self._found, key=lambda finding: finding.span))
             message, hint = f"{self._name} has mistakes", "Mend the places named above"
             raise DocumentError(message, code=found[0].code, hint=hint, diagnostics=found)
+        if model is None:
+            raise DocumentError(f"{self._name} holds no model", code="AOS107")
+        return model

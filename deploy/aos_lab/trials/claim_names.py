@@ -134,7 +134,7 @@ class ClaimNames:
                 self._findings.unknown(value, values, message, where, known_names(values))
 
 
-def _patterns(said: Claim | When) -> Iterator[str]:
+def _patterns(said: When) -> Iterator[str]:
     """The patterns of steps."""
     for name in ("first", "last", "some", "never"):
         yield from [pattern] if (pattern := getattr(said, name, None)) is not None else []

@@ -57,7 +57,7 @@ class When(msgspec.Struct, frozen=True, kw_only=True):
     endings: tuple[str, ...] = ()
 
 
-class Claim(msgspec.Struct, frozen=True, kw_only=True):
+class Claim(When, frozen=True, kw_only=True):
     """Says something of a mission; all its checks have to hold in at least `share` of the missions.
 
     `only` says by whom those missions are played. Without a share, 0.95 is wanted where the model plays and
@@ -80,15 +80,10 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     when: When | None = None
     first: str | None = None
     last: str | None = None
-    starts: tuple[str, ...] = ()
-    some: str | None = None
-    never: str | None = None
-    order: tuple[str, ...] = ()
     never_order: tuple[str, ...] = ()
     before: Before | None = None
     count: Count | None = None
     actions: tuple[str, ...] = ()
-    endings: tuple[str, ...] = ()
     goal: bool | None = None
     never_state: str | None = None
     some_state: str | None = None
@@ -162,7 +157,7 @@ def _is_about(claim: Claim, trial: Trial) -> bool:
     return claim.when is None or _all_hold(claim.when, trial)
 
 
-def _all_hold(said: Claim | When, trial: Trial) -> bool:
+def _all_hold(said: When, trial: Trial) -> bool:
     given = {name: getattr(said, name, None) for name in _CHECKS}
     return all(_CHECKS[name](said, trial) for name, value in given.items() if value not in (None, ()))
 
