@@ -17,7 +17,6 @@ import errno
 import os
 import signal
 
-ACTIONS = ("kill", "exit", "freeze", "full", "readonly")
 EXIT_STATUS = 70
 
 FAILPOINTS = {

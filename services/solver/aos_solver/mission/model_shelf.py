@@ -20,7 +20,7 @@ from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import AosError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.background import Background
-from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.building.thorough_builds import ThoroughBuilds
@@ -31,8 +31,6 @@ from aos_solver.mission.push_trial import faults_in_trial
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover
 
 log = logging.getLogger(__name__)
-
-SYSTEM_CLOCK = SystemClock()
 
 
 class ModelShelf:
@@ -50,8 +48,6 @@ class ModelShelf:
         is_mapped: Callable[[int], bool],
         constraints: tuple[Constraint, ...] = (),
         mission_values: tuple[MissionValue, ...] = (),
-        *,
-        clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         """The models are those of the documents with the mission's `constraints`, and run with its values.
 
@@ -63,7 +59,7 @@ class ModelShelf:
         self._is_mapped = is_mapped
         self._constraints = constraints
         self.values = MissionValues(mission_values)
-        self._clock = clock
+        self._clock = SystemClock()
         self._running: RunningModel | None = None
         self._past = Past()
         self._ready: Successor | None = None

@@ -50,7 +50,7 @@ class Board:
             self._line((x, y + side * CELL_M / 2), (1.5 * CELL_M, LINE_HALF_M), 0.0, _BLACK)
         self._pen_at: tuple[float, float] | None = None
 
-    def ink(self, point: tuple[float, float], color: Color = BLUE) -> None:
+    def ink(self, point: tuple[float, float]) -> None:
         """The pen touches the board there: draws on from where it touched before, unless that is far."""
         last = self._pen_at
         if last is None or math.dist(last, point) > 3 * INK_EVERY_M:
@@ -58,7 +58,7 @@ class Board:
         elif math.dist(last, point) >= INK_EVERY_M:
             middle = ((last[0] + point[0]) / 2, (last[1] + point[1]) / 2)
             half = (math.dist(last, point) / 2 + INK_HALF_M / 2, INK_HALF_M)
-            self._line(middle, half, math.atan2(point[1] - last[1], point[0] - last[0]), color)
+            self._line(middle, half, math.atan2(point[1] - last[1], point[0] - last[0]), BLUE)
             self._pen_at = point
 
     def lift(self) -> None:
