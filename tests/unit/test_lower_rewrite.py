@@ -9,7 +9,10 @@ from aos_solver.emission.program import Piece
 from aos_solver.emission.rewrite import Rewriting, rewrite
 
 NAMES = Rewriting(
-    frozenset({"tBox"}), {"tColour": None, "Odd": ("Odd::three", "Odd::seven")}, frozenset({"eRed"})
+    frozenset({"tBox"}),
+    {"tColour": None, "Odd": ("Odd::three", "Odd::seven")},
+    frozenset({"eRed"}),
+    frozenset({"slips"}),
 )
 
 
@@ -74,6 +77,7 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
          "if (a && aos::at(row, i)) n = aos::filled(aos::at(grid.rows, y)).back();"),
         ("all.pop_back(); end = &row[2][9]; n = f(x)[k];",
          "aos::filled(all).pop_back(); end = &aos::at(row, 2)[9]; n = aos::at(f(x), k);"),
+        ("b = slips(odds[i][0]);", "b = slips(AOS, aos::at(aos::at(odds, i), 0));"),
         ("std::vector<tBox*> a = state__.tBoxObjects; n = state.tBoxObjects.size();",
          "std::vector<tBox*> a = state__.tBoxObjects(); n = state.tBoxObjects().size();"),
         ("for (tBox* box : state.tBoxObjects) n++;", "for (auto* box : state.tBoxObjects()) n++;"),

@@ -84,6 +84,7 @@ def rewrite(
     reported = [report.draw for report in reports_in(cpp)]
     edits: list[tuple[Extent | int, str]] = list(_before_loops(of_loops))
     edits += _of_mentions(cpp, rewriting, reported)
+    edits += _of_drawing_calls(cpp, rewriting.drawing)  # Before what begins at the first argument.
     for draw in reported:
         edits += _of_reported(draw)
     unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
@@ -96,11 +97,7 @@ def rewrite(
         (found.end(), " aos::let_paths_end();") for found in _CATCH_ALL.finditer(strip_comments(cpp.code))
     ]
     edits += rewriting.counted.get(cpp.code, ())
-    own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:
-        if len(call.name) == 1 and call.name[0] in rewriting.drawing - own:
-            at = cpp.code.index("(", call.function.end) + 1
-            edits.append((at, "AOS, " if call.arguments else "AOS"))
         if call not in reported:
             edits += _of_call(call, cpp.code, rewriting)
             if kind := told_apart.get(call.function.start):
@@ -112,6 +109,14 @@ def rewrite(
     edits += _after_loops(of_loops.loops)
     unique = list(dict.fromkeys(edits))
     return cpp.replace(unique), tuple(sorted(_placed(unique, cpp.code), key=lambda e: (e.line, e.column)))
+
+
+def _of_drawing_calls(cpp: Cpp, drawing: frozenset[str]) -> Iterator[tuple[Extent | int, str]]:
+    own = {declaration.name for declaration in cpp.declarations}
+    for call in cpp.calls:
+        if len(call.name) == 1 and call.name[0] in drawing - own:
+            at = cpp.code.index("(", call.function.end) + 1
+            yield at, "AOS, " if call.arguments else "AOS"
 
 
 def _of_definitions(cpp: Cpp, functions: Iterable[SharedFunction]) -> Iterator[tuple[Extent | int, str]]:
