@@ -172,6 +172,12 @@ async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) ->
     )
 
 
+async def test_a_number_with_a_unit_is_told_without_the_compilers_words(cache_dir: Path) -> None:
+    error = await build_error(emitted_skill("int length = 5m;"), cache_dir)
+    (only,) = error.diagnostics
+    assert only.message == "a number cannot have `m` behind it"
+
+
 async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path) -> None:
     document: dict[str, Any] = {
         "Preconditions": {"GlobalVariablePreconditionAssignments": [

@@ -64,6 +64,10 @@ def test_a_condition_that_sets_what_may_only_be_read_is_one_error() -> None:
             "9 AOS149 the number behind this comma does nothing. A decimal is written with a point",
         ),
         (
+            "if (state.second.x > 0,5 * steps) __reward = -1;",
+            "9 AOS149 the number behind this comma does nothing. A decimal is written with a point",
+        ),
+        (
             "if (AOS.Bernoulli(0,3)) __reward = 1;",
             "9 AOS110 `AOS.Bernoulli` takes a probability, not 2 values. A decimal is written with a point",
         ),

@@ -87,6 +87,8 @@ ACCEPTED = [
 ]  # fmt: skip
 
 WARNED = [
+    Rule("go.am", "ok = __input.success«→§,»", "AOS149"),
+    Rule("go.am", "response_rule: ok«→§,»\n", "AOS149"),
     Rule("go.am", "ok = __input.success«→\n§return»", "AOS121"),
     Rule("room.json", '"Discount": 0.9§«→,»}', "AOS127"),
     Rule("room.json", 'false};"}§«→,»\n', "AOS127"),

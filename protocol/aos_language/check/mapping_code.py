@@ -3,7 +3,6 @@
 import ast
 import keyword
 import re
-import warnings
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.enum_texts import check_enum_texts
@@ -14,6 +13,7 @@ from aos_language.check.python_names import (
     column_of,
     top_level_names,
 )
+from aos_language.check.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
@@ -31,7 +31,6 @@ from aos_protocol.documents import (
 )
 from aos_protocol.spelling import nearest, quoted
 
-_CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 
 
@@ -191,30 +190,6 @@ def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings:
     elif not returns:
         hint = f"Without it {variable.name} stays as it was, whatever the message says"
         findings.warning("AOS121", "this code returns nothing", code.span, hint)
-
-
-def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
-    """The syntax tree; None, with an error at its place, where it is not Python."""
-    code = snippet.code
-    is_long = mode == "eval" and "\n" in code  # An expression may go on in the next line.
-    # What closes one kind of brackets and opens it again does not pass in the other.
-    texts = (f"(\n{code}\n)", f"[\n{code}\n]") if is_long else (code,)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree, *_ = [tree_of(text, mode) for text in texts]
-            return ast.increment_lineno(tree, -1) if is_long else tree
-    except SyntaxError as error:
-        # Python gives no column where the code ends too early.
-        end = len(code) - (code.rfind("\n") + 1) + 1
-        span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
-        hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(code) else ""
-        if mode == "eval" and (error.text or "")[(error.offset or end) - 1 :].startswith("= "):
-            hint = hint or "To compare, write `==`"
-        findings.error("AOS121", f"this is not Python: {error.msg}", span, hint)
-    except (ValueError, RecursionError, MemoryError) as error:
-        findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
-    return None
 
 
 # --- rules ---

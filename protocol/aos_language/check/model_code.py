@@ -137,9 +137,10 @@ class _BlockCheck:
         if self._block.is_declarations:
             for body in self._scope.shared.bodies():
                 self._check_unset(read_cpp(body))
-        elif not self._block.is_expression:
+        else:
             self._check_idle_operators()
-            self._check_unset(self._cpp)
+            if not self._block.is_expression:
+                self._check_unset(self._cpp)
 
     def _check_idle_operators(self) -> None:
         for operator in self._cpp.idle_operators:

@@ -3,8 +3,8 @@
 import ast
 import re
 
-from aos_language.check.mapping_code import parsed
 from aos_language.check.python_names import PythonNames, check_names, column_of
+from aos_language.check.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Severity

@@ -94,10 +94,16 @@ class TreeReader:
             condition, *branches = whole.named_children
             whole = condition if all(branch.type in _PLAIN for branch in branches) else None
         parts = whole.children if whole is not None else []
-        for part in parts:
-            is_decimal = part.type == "," and parts[-1].type == "number_literal"
-            if part.type == "==" or is_decimal:
-                self.idle_operators.append(self.extent(part))
+        self.idle_operators += [self.extent(part) for part in parts if part.type == "=="]
+        self._push(node.children)
+
+    def _comma(self, node: tree_sitter.Node, access: Access) -> None:
+        """A comma that drops what stands before it; between two digits it was meant as a point."""
+        left, comma, right = (text_of(child) for child in node.children[:3])
+        follows = node.children[0].end_byte == node.children[1].start_byte == node.children[2].start_byte - 1
+        is_lone = node.children[2].type == "number_literal"
+        if comma == "," and right[:1].isdigit() and (is_lone or (follows and left[-1:].isdigit())):
+            self.idle_operators.append(self.extent(node.children[1]))
         self._push(node.children)
 
     def _missing(self, node: tree_sitter.Node) -> None:
@@ -343,6 +349,7 @@ class TreeReader:
 _HANDLERS = {
     "assignment_expression": TreeReader._assignment,
     "call_expression": TreeReader._call,
+    "comma_expression": TreeReader._comma,
     "comment": TreeReader._skip,
     "conditional_expression": TreeReader._conditional,
     "declaration": TreeReader._declaration,

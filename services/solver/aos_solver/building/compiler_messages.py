@@ -27,6 +27,9 @@ _WITHIN = re.compile(r"(?:\b\w+::)?\b\w+<aos::[^>]*>\((?:[^()]|\([^()]*\))*\)(?:
 """The function of ours in which a struct or a lambda of a document's code stands."""
 _OF_STREAMS = re.compile(r".*`std::(\w+)` from `std::ios_base&.*")
 """A name without an enum is found in C++'s library: `left`, `right`, `fixed`, `internal` and their like."""
+_SUFFIX = re.compile(
+    r"unable to find numeric literal operator `operator\"\"\s*(\w+)`.*|invalid suffix [`\"](\w+)[`\"] on .*"
+)
 _FAULTS = ("error", "fatal error", "Error")
 
 
@@ -136,6 +139,11 @@ def _plain(text: str) -> tuple[str, str]:
         return (
             "this array is indexed by another enum",
             "Use a value of its own enum, or a number: `int(value)`",
+        )
+    if (suffix := _SUFFIX.fullmatch(text)) is not None:
+        return (
+            f"a number cannot have `{suffix[1] or suffix[2]}` behind it",
+            "Write the number alone; a unit belongs into a name, as `size_ml`",
         )
     if (name := _OF_STREAMS.fullmatch(text)) is not None:
         return f"`{name[1]}` was not declared", ""

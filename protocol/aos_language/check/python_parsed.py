@@ -1,0 +1,65 @@
+"""The Python of documents as trees, and what parses although it was meant otherwise."""
+
+import ast
+import re
+import warnings
+
+from aos_language.check.python_names import column_of
+from aos_language.findings import Findings
+from aos_language.python_syntax import tree_of
+from aos_protocol.diagnostics import Mend
+from aos_protocol.documents import Snippet
+
+_CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
+_LINE = re.compile(r"(?<=on line )\d+")
+_TEXT = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"|#.*")
+
+
+def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
+    """The syntax tree; None, with an error at its place, where it is not Python."""
+    code = snippet.code
+    is_long = mode == "eval" and "\n" in code  # An expression may go on in the next line.
+    # What closes one kind of brackets and opens it again does not pass in the other.
+    texts = (f"(\n{code}\n)", f"[\n{code}\n]") if is_long else (code,)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree, *_ = [tree_of(text, mode) for text in texts]
+            tree = ast.increment_lineno(tree, -1) if is_long else tree
+    except SyntaxError as error:
+        # Python gives no column where the code ends too early.
+        end = len(code) - (code.rfind("\n") + 1) + 1
+        span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
+        hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(_TEXT.sub("", code)) else ""
+        if mode == "eval" and (error.text or "")[(error.offset or end) - 1 :].startswith("= "):
+            hint = hint or "To compare, write `==`"
+        lines = re.sub(
+            r"(?<=on line )\d+", lambda n: str(snippet.locate(int(n[0]) - is_long, 1).line), error.msg
+        )
+        findings.error("AOS121", f"this is not Python: {lines}", span, hint)
+    except (ValueError, RecursionError, MemoryError) as error:
+        findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
+    else:
+        _check_lone_commas(snippet, tree, findings)
+        return tree
+    return None
+
+
+def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:
+    """Warns where a comma at the end makes a value a tuple of one, which is always true."""
+    for node in ast.walk(tree):
+        match node:
+            case (
+                ast.Expression(body=ast.Tuple(elts=[only]) as value)
+                | ast.Assign(value=ast.Tuple(elts=[only]) as value)
+                | ast.Return(value=ast.Tuple(elts=[only]) as value)
+            ) if value.lineno < 1 or value.col_offset == only.col_offset:
+                line = only.end_lineno or only.lineno
+                comma = snippet.code.split("\n")[line - 1].find(
+                    ",", column_of(snippet, line, only.end_col_offset or 0) - 1
+                )
+                span = snippet.locate(line, comma + 1)
+                message = "the comma at the end makes this a tuple, which is always true"
+                findings.warning(
+                    "AOS149", message, span, "Leave it out", Mend(span, 1, "") if comma >= 0 else None
+                )
