@@ -73,6 +73,7 @@ TABLE: tuple[Row, ...] = (
         announces=(ADAPTER,),
         watches=(MIDDLEWARE, SOLVER, SERVER, OPERATOR, WATCHER),
     ),
+    Row("lack/<adapter>/<reason>/<path>", announces=(ADAPTER,), watches=(MIDDLEWARE, OPERATOR)),
     Row("call/<path>", asks=_MOVERS, answers=(ADAPTER,)),
     Row("cancel/<path>", asks=(*_MOVERS, SOLVER), answers=(ADAPTER,)),
     Row("progress/<path>", tells=(ADAPTER,), hears=(MIDDLEWARE, SERVER, OPERATOR, WATCHER)),
@@ -159,10 +160,12 @@ def _keys(key: str, act: Act, party: Party) -> list[tuple[str, bool]]:
     """The expressions that a row's key stands for, each with whether it is denied."""
     is_own = act in ("answers", "tells", "announces")
     if not is_own:
-        key = key.replace("<adapter>/<version>/<instance>/<path>", "**").replace("<service>", "*")
+        for name in ("<adapter>/<version>/<instance>/<path>", "<adapter>/<reason>/<path>"):
+            key = key.replace(name, "**")
+        key = key.replace("<service>", "*")
     for name, filling in (("<service>", party.name), ("<adapter>", party.name), ("<topic>", "**")):
         key = key.replace(name, filling)
-    for name in ("<skill>", "<version>", "<instance>"):
+    for name in ("<skill>", "<version>", "<instance>", "<reason>"):
         key = key.replace(name, "*")
     if "<path>" not in key:
         return [(key, False)]

@@ -11,6 +11,7 @@
     aos/<robot>/activate/<skill>    query   run a grounded action                         Activate -> Outcome
     aos/<robot>/middleware/ready    stream and query: which mappings run         MappingQuery -> MappingState
     aos/<robot>/serve/<adapter>/<version>/<instance>/<path>   token   an adapter answers calls of the path
+    aos/<robot>/lack/<adapter>/<reason>/<path>   token   why an adapter that is there does not serve the path
     aos/<robot>/call/<path>         query   the adapter runs a skill's code          SkillCall -> SkillResult
     aos/<robot>/cancel/<path>       query   stop what runs on the path                    Cancel -> Cancelled
     aos/<robot>/progress/<path>     stream  how far a call is                                   SkillProgress
@@ -36,6 +37,7 @@ from __future__ import annotations
 
 import re
 from typing import NamedTuple
+from urllib.parse import quote, unquote
 
 from aos_protocol.errors import BusError
 
@@ -59,6 +61,14 @@ class Serving(NamedTuple):
         told = _INSTANCE.fullmatch(self.instance)
         process = f"process {told[2]} on {told[1]}" if told else f"instance {self.instance}"
         return f"{self.adapter} {self.version} ({process})"
+
+
+class Lack(NamedTuple):
+    """The contents of a token that says why an adapter, which is there, does not serve a path."""
+
+    adapter: str
+    reason: str
+    path: str
 
 
 def instance_name(host: str, pid: int, session: str) -> str:
@@ -150,6 +160,22 @@ class Keys:
             return None
         adapter, version, instance, path = parts
         return Serving(adapter, version, instance, "/" + path)
+
+    def lack(self, lack: Lack) -> str:
+        adapter, reason = _checked(_NAME, lack.adapter, "adapter name"), quote(lack.reason, safe="") or "-"
+        return f"{self._root}/lack/{adapter}/{reason}/{_path(lack.path)}"
+
+    @property
+    def all_lacks(self) -> str:
+        return f"{self._root}/lack/**"
+
+    def lack_of(self, lack_key: str) -> Lack | None:
+        """Returns the contents of a token; None for one that says nothing."""
+        head = f"{self._root}/lack/"
+        parts = lack_key.removeprefix(head).split("/", 2)
+        if len(parts) != 3 or not lack_key.startswith(head):
+            return None
+        return Lack(parts[0], unquote(parts[1]), "/" + parts[2])
 
     def topic(self, path: str) -> str:
         return f"{self._root}/topic/{_path(path)}"

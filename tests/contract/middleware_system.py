@@ -15,7 +15,7 @@ from starting import until_present
 from aos_middleware.settings import Settings
 from aos_protocol import messages
 from aos_protocol.documents import Project
-from aos_protocol.keys import Keys, Serving
+from aos_protocol.keys import Keys, Lack, Serving
 from aos_runtime.bus.bus import Bus
 from aos_runtime.parties.reported_state import state_when
 from aos_runtime.processes.children import PIPE, Child
@@ -107,6 +107,10 @@ class Adapter:
     def withdraw(self, path: str, adapter: str = "scripted") -> None:
         """Says that they no longer are."""
         self._bus.withdraw(self._token(path, adapter))
+
+    async def lack(self, path: str, reason: str) -> None:
+        """Tells why it does not serve a path."""
+        await self._bus.announce(self._keys.lack(Lack("scripted", reason, path)))
 
     @property
     def instance(self) -> str:

@@ -78,6 +78,14 @@ async def test_two_adapters_of_one_path_are_an_error_until_one_of_them_leaves(sy
     assert (await system.activate("sense", 2)).status == "observed"
 
 
+async def test_an_adapter_that_is_there_tells_why_it_does_not_serve_a_path(system: System) -> None:
+    await system.adapter.lack("/sense", "AOS509: /sense is of type a/B, not c/D")
+    state = await system.state_when(lambda state: "AOS509" in state.unavailable.get("sense", ""))
+    why = "no adapter answers calls of /sense: scripted says: AOS509: /sense is of type a/B, not c/D"
+    assert state.unavailable["sense"] == why
+    assert_refused(await system.activate("sense", 1), "AOS505", why)
+
+
 async def test_an_adapter_that_leaves_makes_its_skills_unavailable(system: System) -> None:
     await system.adapter.serve("/sense", answering({}))
     await system.state_when(lambda state: "sense" not in state.unavailable)

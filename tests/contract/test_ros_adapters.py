@@ -105,6 +105,15 @@ class Lab(AdapterProcess):
                 if key.endswith(path) and is_alive:
                     return
 
+    async def until_lacked(self, path: str, reason: str) -> str:
+        """Returns why the path is not served, once the reason has these words."""
+        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_lacks) as present:
+            async for key, is_there in present:
+                lack = self.keys.lack_of(key)
+                if is_there and lack is not None and lack.path == path and reason in lack.reason:
+                    return lack.reason
+        raise AssertionError
+
     async def call(self, path: str, fields: dict[str, Any], step: int, limit_s: float = 10.0) -> SkillResult:
         return await self.ask(SkillCall(ActivationId("m", step), path, fields, limit_s))
 
@@ -339,3 +348,11 @@ async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
     finally:
         await lab.stop()
         await robot.close()
+
+
+async def test_why_a_path_is_not_served_is_told_with_the_node_that_has_left(lab: Lab) -> None:
+    none = await lab.until_lacked("/wave", "/lab/add, /lab/count")
+    assert none == "no node serves /lab/wave; served are /lab/add, /lab/count"
+    await lab.until_served("/sum")
+    await lab.robot.close()
+    assert await lab.until_lacked("/sum", "look whether it runs, and at its log")

@@ -19,7 +19,7 @@ from aos_protocol.access import (
     may,
 )
 from aos_protocol.errors import BusError
-from aos_protocol.keys import Keys, Serving
+from aos_protocol.keys import Keys, Lack, Serving
 from aos_runtime.bus.access_check import Access
 from aos_runtime.router.access import access_control
 from aos_runtime.router.log import RefusalLog
@@ -60,6 +60,10 @@ def test_an_adapter_has_its_own_paths_and_no_others() -> None:
         assert is_allowed(ARM, "answers", KEYS.call(path))
         assert is_allowed(ARM, "tells", KEYS.progress(path))
         assert is_allowed(ARM, "announces", KEYS.serve(Serving("arm", "1", "i", path)))
+        lack = Lack("arm", "no node/service *here*?", path)
+        assert is_allowed(ARM, "announces", KEYS.lack(lack))
+        assert KEYS.lack_of(KEYS.lack(lack)) == lack
+    assert not is_allowed(ARM, "announces", KEYS.lack(Lack("arm", "none", "/drive")))
     assert not is_allowed(ARM, "answers", KEYS.call("/drive"))
     assert not is_allowed(ARM, "answers", "aos/r/call/**")
     assert not is_allowed(ARM, "announces", KEYS.serve(Serving("rest", "1", "i", "/pick")))

@@ -15,7 +15,7 @@ from packaging.requirements import Requirement
 from aos_deploy.deployment.parts import BusPart, DeployFile, MissionPart, SkillPart, SolverPart
 from aos_protocol import __version__, keys, messages
 from aos_protocol.errors import CODES
-from aos_protocol.keys import Keys, Serving
+from aos_protocol.keys import Keys, Lack, Serving
 
 LOCKS = ("build", "runtime", "dev", "compiler")
 FIRST_SCREEN_LINES = 30
@@ -62,9 +62,15 @@ def test_the_table_of_keys_holds_every_key_that_can_be_built() -> None:
     built = {robot.live("SERVICE"), robot.activate("SKILL"), robot.call("PATH"), robot.topic("PATH")}
     built |= {robot.cancel("PATH"), robot.progress("PATH")}
     built |= {robot.serve(Serving("ADAPTER", "VERSION", "INSTANCE", "PATH"))}
+    built |= {robot.lack(Lack("ADAPTER", "REASON", "PATH"))}
     built |= {getattr(robot, name) for name, kind in vars(Keys).items() if isinstance(kind, property)}
     stand_ins = [("ROBOT", "<robot>"), ("SERVICE", "<service>"), ("SKILL", "<skill>"), ("PATH", "<path>")]
-    stand_ins += [("ADAPTER", "<adapter>"), ("VERSION", "<version>"), ("INSTANCE", "<instance>")]
+    stand_ins += [
+        ("ADAPTER", "<adapter>"),
+        ("VERSION", "<version>"),
+        ("INSTANCE", "<instance>"),
+        ("REASON", "<reason>"),
+    ]
     documented = set(re.findall(r"^ +(aos/\S+)", keys.__doc__ or "", re.MULTILINE))
     for key in built:
         if key.endswith("*"):

@@ -11,7 +11,7 @@ from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, Proj
 from aos_protocol.spelling import nearest
 from aos_runtime.bus.subscription import merged
 from aos_runtime.parties.reported_state import state_when
-from aos_runtime.parties.served import served
+from aos_runtime.parties.served import lacks, served
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0
@@ -25,8 +25,8 @@ async def until_skills_can_run(
 ) -> tuple[str, ...]:
     """Returns when all skills of the newest revision can be run, with `misspelt_paths` of these.
 
-    A path that two serve is reported soon: no wait for adapters mends it. DeployError AOS807 names the paths
-    that nobody serves, or two adapters serve, after the time that adapters may take to start.
+    A path that two serve, and what adapters lack for another, is reported soon. DeployError AOS807 names the
+    paths that nobody serves, or two adapters serve, after the time that adapters may take to start.
     """
     bus, keys = supervisor.bus, supervisor.keys
     project = await bus.ask(keys.project, ProjectQuery(deployment.project), ProjectRevision, timeout_s=_ASK_S)
@@ -55,7 +55,7 @@ async def until_skills_can_run(
         try:
             await complete_within(min(longest_s, _SETTLED_S))
         except BusError:
-            for text in await _served_by_several(supervisor):
+            for text in (*await _served_by_several(supervisor), *await _lacking(supervisor)):
                 report(Told(text))
             await complete_within(max(longest_s - _SETTLED_S, _NOBODY_S))
     except BusError as error:
@@ -79,6 +79,12 @@ async def _served_by_several(supervisor: Supervisor) -> list[str]:
         for path, who in sorted(by_path.items())
         if len(who) > 1
     ]
+
+
+async def _lacking(supervisor: Supervisor) -> list[str]:
+    """A remark for each path of which an adapter tells why it does not serve it."""
+    found = sorted(await lacks(supervisor.bus, supervisor.keys))
+    return [f"{lack.path} is not served yet: {lack.adapter} says: {lack.reason}" for lack in found]
 
 
 async def tell_lost_skills(supervisor: Supervisor, report: Report) -> None:

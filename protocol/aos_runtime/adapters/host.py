@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError, DeployError, LateAnswerError
-from aos_protocol.keys import Serving, instance_name
+from aos_protocol.keys import Lack, Serving, instance_name
 from aos_protocol.messages import Cancel, Missions, MissionsQuery, ProjectQuery, ProjectRevision, SkillCall
 from aos_protocol.spelling import did_you_mean
 from aos_runtime.adapters.adapter import Adapter
@@ -72,6 +72,7 @@ class Host:
         self._pauses = Pauses()
         self._calls = Calls(service, self._outbox, self._pauses, self._serves, self.fail)
         self._serving: dict[str, str] = {}
+        self._lacks: dict[str, str] = {}
         self._answered: set[str] = set()
         self._failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._adapter: Adapter | None = None
@@ -118,6 +119,7 @@ class Host:
                 instance = instance_name(socket.gethostname(), os.getpid(), bus.instance)
                 serving = Serving(self.name, self._adapter.version, instance, path)
                 self._serving[path] = keys.serve(serving)
+                self._forget_lack(path)
                 declared.append(bus.announce(self._serving[path]))
         await asyncio.gather(*declared)
         _log.info("serves %s", ", ".join(sorted(self._serving)))
@@ -130,6 +132,18 @@ class Host:
         for path in paths:
             if path in self._serving:
                 self._service.bus.withdraw(self._serving.pop(path))
+
+    async def lack(self, path: str, reason: str) -> None:
+        """Makes known why a path is not served, until it is: one line, which says what to do."""
+        key = self._service.keys.lack(Lack(self.name, reason, path))
+        if self._lacks.get(path) != key:
+            self._forget_lack(path)
+            self._lacks[path] = key
+            await self._service.bus.announce(key)
+
+    def _forget_lack(self, path: str) -> None:
+        if path in self._lacks:
+            self._service.bus.withdraw(self._lacks.pop(path))
 
     def fail(self, error: AosError) -> None:
         """Ends the process with an error: what the adapter needs is not there, and will not come."""

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 
 from aos_protocol.errors import SkillError
-from aos_protocol.keys import Keys, Serving
+from aos_protocol.keys import Keys, Lack, Serving
 from aos_runtime.bus.bus import Bus
 from aos_runtime.bus.subscription import merged
 
@@ -28,19 +28,22 @@ class ServedPaths:
         self._on_change = on_change
         self._changed = asyncio.Event()
         self._servers: dict[str, list[Serving]] = {}
+        self._lacks: dict[str, dict[str, str]] = {}
         self._announced: Counter[str] = Counter()
         self._is_ready: dict[str, bool] = {}
         self._has_heard = asyncio.Event()
 
     async def follow(self) -> None:
         """Follows the tokens until the bus closes."""
-        all_keys = (self._keys.all_serve, self._keys.all_live)
+        all_keys = (self._keys.all_serve, self._keys.all_live, self._keys.all_lacks)
         async with merged(*(self._bus.presence(keys) for keys in all_keys)) as changes:
             if not changes.has_items:
                 self._has_heard.set()
             async for key, is_alive in changes:
                 if serving := self._keys.serving_of(key):
                     self._take_in(serving, is_alive)
+                elif lack := self._keys.lack_of(key):
+                    self._take_lack(lack, is_alive)
                 else:
                     self._is_ready[self._keys.service_of(key)] = is_alive
                 self._changed.set()
@@ -53,6 +56,13 @@ class ServedPaths:
         servers.append(serving) if is_alive else servers.remove(serving)
         self._announced[serving.path] += is_alive
         _log.info("%s %s %s", serving.adapter, "serves" if is_alive else "has left", serving.path)
+
+    def _take_lack(self, lack: Lack, is_alive: bool) -> None:
+        told = self._lacks.setdefault(lack.path, {})
+        if is_alive:
+            told[lack.adapter] = lack.reason
+        elif told.get(lack.adapter) == lack.reason:
+            del told[lack.adapter]
 
     async def until_heard(self) -> None:
         """Returns once everybody who was there before is known."""
@@ -70,7 +80,8 @@ class ServedPaths:
         """Returns why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""
         servers = self.servers(path)
         if not servers:
-            return no_adapter(path)
+            told = self._lacks.get("/" + path.strip("/"), {})
+            return no_adapter(path, "; ".join(f"{name} says: {why}" for name, why in sorted(told.items())))
         if len(servers) > 1:
             names = " and ".join(server.who for server in servers)
             return SkillError(
@@ -108,8 +119,12 @@ class ServedPaths:
         return True
 
 
-def no_adapter(path: str) -> SkillError:
-    """Nothing was begun."""
+def no_adapter(path: str, lacks: str = "") -> SkillError:
+    """Nothing was begun. Adapters that are there may have told what they lack."""
+    if lacks:
+        return SkillError(
+            f"no adapter answers calls of {path}: {lacks}", code="AOS505", hint="See the adapter's log"
+        )
     return SkillError(
         f"no adapter answers calls of {path}",
         code="AOS505",

@@ -62,6 +62,7 @@ class RosAdapter:
         self._ways = {path: way_to(path, binding.target) for path, binding in host.bound.items()}
         self._topics: dict[str, Callable[[], None] | None] = {}
         self._serving: set[str] = set()
+        self._nodes: dict[str, str] = {}
         self._told_missing = ""
         self._tasks: list[asyncio.Task[None]] = []
         self._has_new_names = asyncio.Event()
@@ -114,6 +115,10 @@ class RosAdapter:
         for path, way in list(self._ways.items()):
             kind = self.node.kind_of(way.name)
             is_there = bool(kind) and way.kind in ("", kind)
+            if is_there:
+                self._nodes[path] = self.node.node_of(way.name)
+            else:
+                await self.host.lack(path, self._why_missing(path, way, kind))
             if is_there and path not in self._serving:
                 try:
                     await self.node.check(way.name, way.type_name)
@@ -123,6 +128,7 @@ class RosAdapter:
                     return
                 except SkillError as error:
                     _log.error("%s is not served: %s", path, error)
+                    await self.host.lack(path, str(error))
                     continue
                 self._serving.add(path)
                 # More may have come meanwhile: who sees the path served finds in the log what still is not.
@@ -131,7 +137,17 @@ class RosAdapter:
             elif not is_there and path in self._serving:
                 self._serving.discard(path)
                 self.host.withdraw(path)
-                _log.warning("nobody serves %s any more", way.name)
+                _log.warning("%s", self._why_missing(path, way, kind))
+
+    def _why_missing(self, path: str, way: Way, kind: str) -> str:
+        """Tells people which node has left or serves something else, or else which services there are."""
+        if kind:
+            return f"{way.name} is a{'n' if kind == 'action' else ''} {kind} and no {way.kind}"
+        if node := self._nodes.get(path):
+            return f"the node {node} serves {way.name} no more: look whether it runs, and at its log"
+        if path in self._nodes:
+            return f"the node that served {way.name} has left: look whether it runs, and at its log"
+        return f"no node serves {way.name}; served are {', '.join(self.node.served()) or 'none'}"
 
     def _say_what_is_missing(self) -> None:
         """Logs once for each change what is missing; `aos-up` shows the end of the log if a path stays
@@ -171,7 +187,7 @@ class RosAdapter:
             return await self._run_action(call, way)
         if kind == "service":
             return await self._call_service(call, way)
-        raise SkillError(f"no node of the robot serves {way.name} now", code="AOS505")
+        raise SkillError(self._why_missing(call.path, way, kind), code="AOS505")
 
     def still_moving(self) -> str:
         return ", ".join(self.node.unended.actions)

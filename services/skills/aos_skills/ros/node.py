@@ -127,6 +127,10 @@ class RosNode(Closing):
     def kind_of(self, name: str) -> str:
         """Returns what some node serves under a name now: "service", "action", or "" for nothing."""
 
+    def node_of(self, name: str) -> str:
+        """Returns the node that serves a name now; empty where that is not known."""
+        return ""
+
     @abstractmethod
     async def check(self, name: str, type_name: str) -> None:
         """Looks whether what is served under a name can be called.

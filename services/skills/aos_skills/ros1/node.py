@@ -47,7 +47,7 @@ class Ros1Node(RosNode):
     def __init__(self) -> None:
         super().__init__()
         self._process: Ros1Process
-        self._names: dict[str, dict[str, str]] = {"services": {}, "actions": {}, "topics": {}}
+        self._names: dict[str, dict[str, str]] = {"services": {}, "actions": {}, "topics": {}, "nodes": {}}
         self._has_changed = asyncio.Event()
         self._takers: dict[str, Callable[[Fields], None]] = {}
         self._feedback: dict[int, Callable[[Fields], None]] = {}
@@ -155,6 +155,9 @@ class Ros1Node(RosNode):
         if name in self._names["services"]:
             return "service"
         return "action" if name in self._names["actions"] else ""
+
+    def node_of(self, name: str) -> str:
+        return self._names["nodes"].get(name, "")
 
     async def check(self, name: str, type_name: str) -> None:
         kind = self.kind_of(name)

@@ -132,6 +132,12 @@ class Node(Ros2Node):
     def serves(self, service: str) -> bool:
         return bool(self.graph.find(Kind.SERVER, service))
 
+    def node_of(self, name: str) -> str:
+        for service in (name, f"{name}/_action/send_goal"):
+            for server in self.graph.find(Kind.SERVER, service):
+                return server.node
+        return ""
+
     def _client(self, server: Endpoint) -> _Client:
         if server.key not in self._clients:
             own = self._endpoint(Kind.CLIENT, server.name, server.type_name, server.type_hash, DEFAULT_QOS)

@@ -24,9 +24,10 @@ class Names:
         self._master = rosgraph.Master("/aos")
         self._types: dict[tuple[str, str], str] = {}
         self._said: dict[str, dict[str, str]] | None = None
+        self._nodes: dict[str, str] = {}
 
     def follow(self) -> None:
-        """Tells every change, for ever: types by the names of services, actions and topics."""
+        """Tells every change, for ever: types by the names of services, actions and topics, and the nodes."""
         while True:
             names = self._names()
             if names != self._said:
@@ -34,28 +35,39 @@ class Names:
                 self._channel.send(event="names", **names)
             time.sleep(POLL_S)
 
+    def advice(self, name: str) -> str:
+        """What to do where the node of a service or an action does not answer."""
+        node = self._nodes.get(name)
+        return f"Look whether the node {node} runs (`rosnode ping {node}`), and at its log" if node else ""
+
     def _names(self) -> dict[str, dict[str, str]]:
         try:
             published, _, served = self._master.getSystemState()
             topic_types = dict(self._master.getTopicTypes())
         except Exception:  # Whatever it is, the master does not answer, and nobody can be found.
-            return {"services": {}, "actions": {}, "topics": {}}
+            return {"services": {}, "actions": {}, "topics": {}, "nodes": {}}
         alive: dict[str, bool] = {}
         topics = {}
+        nodes_of = {}
         for name, nodes in published:
-            if any(self._is_alive(node, alive) for node in nodes):
+            living = [node for node in nodes if self._is_alive(node, alive)]
+            if living:
                 topics[name] = topic_types.get(name, "*")
+                nodes_of[name.rpartition("/")[0] if name.endswith("/result") else name] = living[0]
         services = {}
         for name, nodes in served:
             if any(self._is_alive(node, alive) for node in nodes):
                 services[name] = self._service_type(name, nodes[0])
+                nodes_of[name] = nodes[0]
         actions = {}
         for name in topics:
             goal, _, last = name.rpartition("/")
             goal_type = topic_types.get(goal + "/goal", "")
             if last == "result" and goal_type.endswith("ActionGoal"):
                 actions[goal] = goal_type[: -len("ActionGoal")]
-        return {"services": services, "actions": actions, "topics": topics}
+        self._nodes.update(nodes_of)
+        served = {name: nodes_of[name] for name in (*services, *actions)}
+        return {"services": services, "actions": actions, "topics": topics, "nodes": served}
 
     def _is_alive(self, node: str, known: dict[str, bool]) -> bool:
         """Returns whether the node's own server can be reached."""

@@ -67,8 +67,8 @@ class Robot:
         self._kept: list[Kept] = []
         rosgraph.Master("/aos").getPid()  # Without a master rospy would wait for one, for ever.
         rospy.init_node(settings["node"], anonymous=True, disable_signals=True)
-        names = Names(channel, rospy.get_name())
-        threading.Thread(target=names.follow, daemon=True).start()
+        self._names = Names(channel, rospy.get_name())
+        threading.Thread(target=self._names.follow, daemon=True).start()
 
     def code_of(self, error: Exception) -> tuple[str, str]:
         """The code of AOS for an exception, and what to do."""
@@ -98,7 +98,7 @@ class Robot:
             if "responded with an error" in text:
                 raise Refusal("AOS510", f"{name} failed: {text.partition(': ')[2] or text}")
             if "unable to connect" in text or "unavailable" in text:
-                raise Refusal("AOS505", f"{name} cannot be reached: {text}")
+                raise Refusal("AOS505", f"{name} cannot be reached: {text}", self._names.advice(name))
             raise Refusal("AOS504", f"{name} was lost during the call: {text}")
         return response
 
@@ -106,7 +106,7 @@ class Robot:
         spec = ActionClasses(self._types, type)
         client: ActionClient = actionlib.SimpleActionClient(name, _ActionSpec(spec))
         if not client.wait_for_server(rospy.Duration(SERVER_S)):
-            raise Refusal("AOS505", f"the action {name} does not answer")
+            raise Refusal("AOS505", f"the action {name} does not answer", self._names.advice(name))
         ended = threading.Event()
         goal = self._types.filled(spec.action_goal.goal.__class__(), fields)
         self._clients[number] = client
