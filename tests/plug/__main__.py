@@ -1,7 +1,7 @@
 """Figures about what changes and what happens while a mission runs, each part measured by a command.
 
   python -m tests.plug                    all parts, as `make plug` does
-  python -m tests.plug faults --runs 5    one part; `--help` names them and their options
+  python -m tests.plug missions           one part; `--help` names them and their options
 
 Exit code 1: a target was missed.
 """
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import faults, missions, modelled, takeovers
+from . import missions, modelled, takeovers
 
 
 class Part(NamedTuple):
@@ -23,7 +23,6 @@ class Part(NamedTuple):
 
 
 PARTS: Mapping[str, Part] = {
-    "faults": Part("adapters that do everything wrong", faults.add_options, faults.measure),
     "modelled": Part(
         "missions that the model plays, and simulated ones", modelled.add_options, modelled.measure
     ),
