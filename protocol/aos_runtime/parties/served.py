@@ -18,7 +18,7 @@ async def served(bus: Bus, keys: Keys) -> list[Serving]:
 
 
 async def lacks(bus: Bus, keys: Keys) -> list[Lack]:
-    """Why adapters that are there do not serve paths now."""
+    """Returns why adapters that are there do not serve paths now."""
     found = []
     async with bus.presence(keys.all_lacks) as present:
         while present.has_items:

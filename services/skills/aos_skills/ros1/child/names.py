@@ -36,7 +36,7 @@ class Names:
             time.sleep(POLL_S)
 
     def advice(self, name: str) -> str:
-        """What to do where the node of a service or an action does not answer."""
+        """Returns what to do where the node of a service or an action does not answer."""
         node = self._nodes.get(name)
         return f"Look whether the node {node} runs (`rosnode ping {node}`), and at its log" if node else ""
 
