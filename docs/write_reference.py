@@ -16,7 +16,7 @@ from limits_table import limits_table
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_editor.meanings import SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
-from aos_gateway.table import OPERATIONS
+from aos_gateway.api.table import OPERATIONS
 from aos_protocol import access, errors, keys
 
 DOCS = Path(__file__).resolve().parent

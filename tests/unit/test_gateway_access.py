@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aos_gateway.access import COOKIE, Access, access_of, kept_token
+from aos_gateway.api.access import COOKIE, Access, access_of, kept_token
 from aos_gateway.server import listening
 from aos_protocol.errors import GatewayError
 

@@ -8,10 +8,10 @@ from typing import Any, cast
 import pytest
 from decision_records import decision_record
 
-from aos_gateway.events import place_of, stream
-from aos_gateway.feed import Watches
-from aos_gateway.run_shelf import RunShelf
-from aos_gateway.runs import Run
+from aos_gateway.resources.events import place_of, stream
+from aos_gateway.runs.feed import Watches
+from aos_gateway.runs.run import Run
+from aos_gateway.runs.shelf import RunShelf
 from aos_protocol.messages import History
 
 RECORDS = 200

@@ -5,8 +5,8 @@ from typing import Any
 import msgspec
 from decision_records import decision_record
 
-from aos_gateway.exposition import Counter, Histogram, exposition
-from aos_gateway.metric_families import Families
+from aos_gateway.metrics.exposition import Counter, Histogram, exposition
+from aos_gateway.metrics.families import Families
 from aos_protocol.messages import ActivationId, DecisionRecord, Fault, ModelDrift, Outcome, SearchMade
 
 

@@ -12,8 +12,8 @@ import pytest
 
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.record import RunRecord
-from aos_gateway.run_shelf import RunShelf
-from aos_gateway.runs import RemoteRun
+from aos_gateway.runs.run import RemoteRun
+from aos_gateway.runs.shelf import RunShelf
 from aos_protocol.errors import GatewayError
 from aos_runtime.disk.mission_folders import make_folder_of_missions
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from decision_records import decision_record
 
-from aos_gateway.trace import Step, Steps, steps_of
+from aos_gateway.runs.trace import Step, Steps, steps_of
 from aos_protocol.messages import (
     ActionValue,
     ActivationId,

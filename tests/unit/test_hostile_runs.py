@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from aos_deploy.export.run_bundle import opened_bundle
-from aos_gateway import run_files
-from aos_gateway.run_shelf import RunShelf
+from aos_gateway.resources import run_files
+from aos_gateway.runs.shelf import RunShelf
 from aos_protocol.errors import DeployError, GatewayError, StorageError
 
 PIDS = {"solver": 1, "../../secret": 1}

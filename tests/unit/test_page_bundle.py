@@ -12,8 +12,8 @@ from page_sources import installed_sources
 from processes import COMMAND_S
 from starlette.requests import Request
 
-from aos_gateway import page
-from aos_gateway.page import page_routes
+from aos_gateway.api import page
+from aos_gateway.api.page import page_routes
 
 MADE = "services/gateway/aos_gateway/page"
 SOURCES = "services/gateway/page"

@@ -12,15 +12,15 @@ import uvicorn
 
 from aos_deploy.page_address import GatewayNote
 from aos_deploy.places import gateway_folder
-from aos_gateway.access import access_of, kept_token
-from aos_gateway.app import make_app
-from aos_gateway.drawings import Drawings
-from aos_gateway.feed import Watches
-from aos_gateway.metrics import Metrics
-from aos_gateway.run_shelf import RunShelf
-from aos_gateway.runs import RemoteRun
+from aos_gateway.api.access import access_of, kept_token
+from aos_gateway.api.app import make_app
+from aos_gateway.metrics.counting import Metrics
+from aos_gateway.runs.drawings import Drawings
+from aos_gateway.runs.feed import Watches
+from aos_gateway.runs.run import RemoteRun
+from aos_gateway.runs.shelf import RunShelf
+from aos_gateway.runs.trace import Traces
 from aos_gateway.shared import Gateway
-from aos_gateway.trace import Traces
 from aos_protocol.errors import DeployError
 
 _LAST_STREAMS_S = 1

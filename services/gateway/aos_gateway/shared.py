@@ -5,11 +5,11 @@ from pathlib import Path
 
 import msgspec
 
-from aos_gateway.drawings import Drawings
-from aos_gateway.feed import Watches
-from aos_gateway.metrics import Metrics
-from aos_gateway.run_shelf import RunShelf
-from aos_gateway.trace import Traces
+from aos_gateway.metrics.counting import Metrics
+from aos_gateway.runs.drawings import Drawings
+from aos_gateway.runs.feed import Watches
+from aos_gateway.runs.shelf import RunShelf
+from aos_gateway.runs.trace import Traces
 from aos_language.reading.files import MAX_BUNDLE_BYTES
 
 

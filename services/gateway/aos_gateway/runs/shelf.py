@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import living_runs
-from aos_gateway.runs import KeptRun, RemoteRun, Run, RunEntry
+from aos_gateway.runs.run import KeptRun, RemoteRun, Run, RunEntry
 from aos_protocol.errors import DeployError, GatewayError
 from aos_runtime.disk.mission_folders import number_of
 

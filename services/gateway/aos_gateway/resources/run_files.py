@@ -9,7 +9,7 @@ import msgspec
 
 from aos_deploy.runs.summary import ProcessEnd
 from aos_gateway.operations import Content
-from aos_gateway.runs import KeptRun
+from aos_gateway.runs.run import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError, StorageError
 

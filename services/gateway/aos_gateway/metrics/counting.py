@@ -13,10 +13,10 @@ from collections.abc import Iterable
 from contextlib import suppress
 
 from aos_deploy.processes.consequence import STARTED_AGAIN
-from aos_gateway.exposition import exposition
-from aos_gateway.metric_families import Families
-from aos_gateway.run_shelf import RunShelf
-from aos_gateway.runs import KeptRun, Run, RunEntry
+from aos_gateway.metrics.exposition import exposition
+from aos_gateway.metrics.families import Families
+from aos_gateway.runs.run import KeptRun, Run, RunEntry
+from aos_gateway.runs.shelf import RunShelf
 from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
 from aos_protocol.mission_rows import STATE

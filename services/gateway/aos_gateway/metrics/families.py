@@ -1,6 +1,6 @@
 """The metrics of missions by name, and what a decision record adds to them."""
 
-from aos_gateway.exposition import Counter, Family, Gauge, Histogram
+from aos_gateway.metrics.exposition import Counter, Family, Gauge, Histogram
 from aos_protocol.errors import ANOTHER_MAY_MOVE
 from aos_protocol.messages import DecisionRecord
 

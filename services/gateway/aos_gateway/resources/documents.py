@@ -7,7 +7,7 @@ from typing import Annotated
 
 import msgspec
 
-from aos_gateway.runs import KeptRun, Run
+from aos_gateway.runs.run import KeptRun, Run
 from aos_gateway.shared import Gateway
 from aos_language.load import load_files
 from aos_language.reading.picture_file import PICTURE

@@ -8,10 +8,10 @@ import msgspec
 
 from aos_deploy.deployment.folder import deploy_files_in
 from aos_deploy.deployment.reading import read_deploy_file
-from aos_gateway.runs import Run
+from aos_gateway.runs.run import Run
+from aos_gateway.runs.starting import StartedRun, start_system
+from aos_gateway.runs.uploads import ProjectEntry, files_of_upload, keep_project, kept_projects
 from aos_gateway.shared import Gateway
-from aos_gateway.starting import StartedRun, start_system
-from aos_gateway.uploads import ProjectEntry, files_of_upload, keep_project, kept_projects
 from aos_language.load import LoadedBundle, load_files, with_excerpts
 from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from aos_gateway.runs import Run
-from aos_gateway.trace import Step, Steps
+from aos_gateway.runs.run import Run
+from aos_gateway.runs.trace import Step, Steps
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
 from aos_runtime.bus.subscription import merged

@@ -10,10 +10,10 @@ from collections.abc import AsyncIterator
 
 import msgspec
 
-from aos_gateway.feed import Frame, Watches, frame_of_record, frame_of_state
-from aos_gateway.run_shelf import RunShelf
-from aos_gateway.runs import Run
-from aos_gateway.trace import Steps
+from aos_gateway.runs.feed import Frame, Watches, frame_of_record, frame_of_state
+from aos_gateway.runs.run import Run
+from aos_gateway.runs.shelf import RunShelf
+from aos_gateway.runs.trace import Steps
 
 _BEAT_S = 10.0
 _LIST_S = 1.0

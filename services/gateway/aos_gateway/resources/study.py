@@ -8,8 +8,8 @@ from typing import Annotated, TypeVar
 import msgspec
 
 from aos_deploy.runs.studied import StudiedRun
-from aos_gateway.run_files import number_of_step
-from aos_gateway.runs import KeptRun
+from aos_gateway.resources.run_files import number_of_step
+from aos_gateway.runs.run import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError
 from aos_protocol.keys import Keys

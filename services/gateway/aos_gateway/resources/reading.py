@@ -7,12 +7,12 @@ from typing import Annotated, Any
 import msgspec
 
 from aos_deploy.runs.summary import Summary
-from aos_gateway.documents import draws_state
-from aos_gateway.events import place_of, stream
-from aos_gateway.run_files import number_of_step
-from aos_gateway.runs import KeptRun, RunEntry
+from aos_gateway.resources.documents import draws_state
+from aos_gateway.resources.events import place_of, stream
+from aos_gateway.resources.run_files import number_of_step
+from aos_gateway.runs.run import KeptRun, RunEntry
+from aos_gateway.runs.trace import Trace, steps_of
 from aos_gateway.shared import Gateway
-from aos_gateway.trace import Trace, steps_of
 from aos_protocol import __version__
 from aos_protocol.errors import AosError, GatewayError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, History, MissionEntry, MissionState, Outcome

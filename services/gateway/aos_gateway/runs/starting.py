@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.started_system import started_process, until_run
-from aos_gateway.run_shelf import RunShelf
+from aos_gateway.runs.shelf import RunShelf
 
 
 class StartedRun(msgspec.Struct, frozen=True):

@@ -11,13 +11,13 @@ from starlette.responses import Response
 from starlette.routing import Match, Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from aos_gateway.access import COOKIE, Access
-from aos_gateway.exposition import EXPOSITION
-from aos_gateway.openapi import openapi_document
+from aos_gateway.api.access import COOKIE, Access
+from aos_gateway.api.openapi import openapi_document
+from aos_gateway.api.page import page_routes
+from aos_gateway.api.table import OPERATIONS
+from aos_gateway.metrics.exposition import EXPOSITION
 from aos_gateway.operations import JSON, Content, Operation, response_of, route_of
-from aos_gateway.page import page_routes
 from aos_gateway.shared import Gateway
-from aos_gateway.table import OPERATIONS
 from aos_protocol.errors import AosError, BusError, GatewayError
 
 _HEADERS = {

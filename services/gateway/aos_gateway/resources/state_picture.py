@@ -2,10 +2,10 @@
 
 import asyncio
 
-from aos_gateway.documents import picture_of
 from aos_gateway.operations import Content
-from aos_gateway.reading import decision
-from aos_gateway.runs import KeptRun
+from aos_gateway.resources.documents import picture_of
+from aos_gateway.resources.reading import decision
+from aos_gateway.runs.run import KeptRun
 from aos_gateway.shared import Gateway
 from aos_protocol.errors import GatewayError
 

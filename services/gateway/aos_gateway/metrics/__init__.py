@@ -1,0 +1,1 @@
+"""Metrics of missions, counted out of their records, in Prometheus' format."""

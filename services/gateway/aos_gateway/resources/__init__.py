@@ -1,0 +1,1 @@
+"""Resources of the API: what is read, asked, drawn, told as events, and changed."""
