@@ -10,7 +10,7 @@ from study.played import Played, play
 
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
-from aos_protocol.messages import PredictedObservation, TreeQuery, WhatIfQuery, WhyQuery
+from aos_protocol.messages import Fault, PredictedObservation, TreeQuery, WhatIfQuery, WhyQuery
 from aos_runtime.disk.journal import JournalRow
 from aos_solver.study.study import Study
 
@@ -131,6 +131,29 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
         assert other.value_before == pytest.approx(why.value)
     finally:
         await study.close()
+
+
+async def test_a_decision_whose_activation_brought_nothing_says_so(played: Played, cache_dir: Path) -> None:
+    record = played.mission.outcome(1)
+    assert record is not None
+    assert record.outcome is not None
+    lost = msgspec.structs.replace(
+        record.outcome, status="unknown", response="", fault=Fault("AOS504", "the adapter was lost")
+    )
+    text = msgspec.json.encode(msgspec.structs.replace(record, outcome=lost)).decode()
+    place = next(
+        place
+        for place, row in enumerate(played.rows)
+        if row.kind == "decision" and '"outcome":{' in row.payload
+    )
+    played.rows[place] = played.rows[place]._replace(payload=text)
+    study = Study(played, cache_dir, flips_s=0.0)
+    try:
+        why = await study.why(WhyQuery(1))
+    finally:
+        await study.close()
+    assert not any(each.is_seen for each in why.expected)
+    assert "nothing was observed, its activation ended as unknown: the adapter was lost" in why.remark
 
 
 async def test_an_action_of_a_script_is_explained_where_values_are_searched(

@@ -104,9 +104,12 @@ def _print(found: Replayed) -> None:
         typer.echo(f"  {first.difference}")
         typer.echo(f"  cause: {first.cause}")
     else:
-        values = (
-            f"{found.values} of {count(found.decisions, 'decision')} identical in action, values and counts"
-        )
+        same = "identical in action, values and counts"
+        values = f"{found.values} of {count(found.decisions, 'decision')} {same}"
+        if found.values < found.decisions:
+            values = f"{found.values} of {count(found.decisions, 'decision')} made once more, {same}"
+        if not found.values:
+            values = f"none of {count(found.decisions, 'decision')} can be made once more as it was"
         typer.echo(f"{found.run}: {values}; {count(found.beliefs, 'belief')} identical{over}")
     for why, steps in found.partly.items():
         typer.echo(f"  by their beliefs alone, steps {_ranges(steps)}: {why}")

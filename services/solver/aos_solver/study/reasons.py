@@ -127,7 +127,11 @@ class Reasons:
     async def _consequences(self) -> tuple[Consequence, ...]:
         """The likeliest responses, and the one that came, with what would be done after each."""
         record = self._replay.mission.outcome(self._decision.step)
-        seen = record.outcome.response if record is not None and record.outcome is not None else ""
+        outcome = record.outcome if record is not None else None
+        if outcome is not None and outcome.status != "observed":
+            because = f": {outcome.fault.message}" if outcome.fault is not None else ""
+            self._remarks.append(f"nothing was observed, its activation ended as {outcome.status}{because}")
+        seen = outcome.response if outcome is not None else ""
         predicted = {each.response: each.probability for each in self._decision.predicted}
         shown = sorted(predicted, key=lambda response: -predicted[response])[:_SHOWN_RESPONSES]
         if seen and seen not in shown:
