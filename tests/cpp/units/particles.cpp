@@ -100,6 +100,7 @@ struct Cards {
     int turned = 0;
     bool operator==(const State&) const = default;
   };
+  static std::size_t bytes_elsewhere() { return 0; }
   template <class Random>
   static void initial(State& state, Random& random) {
     state = {};
@@ -161,6 +162,42 @@ TEST("A rare observation after a long history leaves many samples") {
   }
   EXPECT_THAT(cloud.particles.size() == 1, "one state is left");
   EXPECT_THAT(cloud.effective() >= 100, "a rare observation leaves " + std::to_string(cloud.effective()) + " samples");
+}
+
+// Of forty cards each step shows one that was drawn, and says of it what is true in four of five cases.
+struct Shown : Cards {
+  template <class Random>
+  static Step step(State& state, int, Random& random) {
+    state.turned = (state.turned + (random.Bernoulli(0.5) ? 1 : 2)) % count;
+    const bool is_true = random.Bernoulli(0.8);
+    return {0, static_cast<Observation>((state.cards >> state.turned & 1) == is_true)};
+  }
+};
+
+TEST("Moves that keep the states which particles have passed are those that repeat all") {
+  Sampler random{5};
+  ParticleFilter<Shown> filter{random};
+  Cloud<Shown> cloud = filter.initial();
+  for (int step = 0; step < 6; ++step) {
+    const HistoryStep seen{.action = 0, .observation = step % 2 == 0, .is_observed = true};
+    cloud = filter.after(std::move(cloud), seen, ignored_numbers).cloud;
+  }
+  EXPECT_THAT(cloud.history.steps()[0].is_guided, "steps are guided");
+  std::vector<Cloud<Shown>> moved;
+  std::vector<std::size_t> steps;
+  for (const std::size_t bytes : {max_passage_bytes, std::size_t{0}}) {
+    Sampler draws{7};
+    Moves<Shown> moves{cloud.history, draws, bytes};
+    moved.push_back(moves.moved(cloud));
+    steps.push_back(moves.steps());
+  }
+  EXPECT_THAT(moved[0].particles.size() == moved[1].particles.size(), "as many states");
+  for (std::size_t i = 0; i < moved[0].particles.size(); ++i) {
+    const auto& [state, weight] = moved[0].particles[i];
+    EXPECT_THAT(state == moved[1].particles[i].state && weight == moved[1].particles[i].weight, "the same states");
+  }
+  EXPECT_THAT(moved[0].effective() != cloud.effective(), "particles were moved");
+  EXPECT_THAT(steps[0] < steps[1], "fewer steps are made");
 }
 
 }  // namespace particles_tests

@@ -113,14 +113,14 @@ class Draws {
       const auto count = static_cast<int>(std::size(weights));
       const double total = checked_total(std::data(weights), count, /*may_be_zero=*/true);
       if (1 - total <= weight_rounding) return source().choose(std::data(weights), count, total);
+      Copied copied{weights};
+      return or_none(copied, total);
+    } else {
+      Copied copied{weights};
+      const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);
+      if (1 - total <= weight_rounding) return source().choose(copied.weights, copied.count, total);
+      return or_none(copied, total);
     }
-    Copied copied{weights};
-    const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);
-    const double gap = 1 - total;
-    if (gap <= weight_rounding) return source().choose(copied.weights, copied.count, total);
-    copied.append(gap);
-    const int drawn = source().choose(copied.weights, copied.count, 1.0);
-    return drawn == copied.count - 1 ? -1 : drawn;
   }
 
   double SampleNormal(double mean, double deviation) {
@@ -167,6 +167,13 @@ class Draws {
   };
 
   Source& source() { return static_cast<Source&>(*this); }
+
+  // Draws an index of weights that sum to less than 1, or -1.
+  int or_none(Copied& weights, double total) {
+    weights.append(1 - total);
+    const int drawn = source().choose(weights.weights, weights.count, 1.0);
+    return drawn == weights.count - 1 ? -1 : drawn;
+  }
 
   int normalised(const double* weights, int count) {
     return source().choose(weights, count, checked_total(weights, count, /*may_be_zero=*/false));

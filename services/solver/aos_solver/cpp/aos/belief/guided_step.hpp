@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,7 +58,13 @@ class GuidedStep {
   // `numbers` weighs the numbers that steps report; if it is null, they are ignored.
   GuidedStep(int action, Observation observation, NumberSink* numbers, Sampler& random)
       : action_(action), observation_(observation), random_(random), watch_(observation, random) {
+    report_to(numbers);
+  }
+
+  void report_to(NumberSink* numbers) {
     replay_.report_to(numbers);
+    // Each weight is asked for once a step that is visited: the sink notes the highest.
+    keeps_ends_ = numbers == nullptr || !numbers->weighs();
   }
 
   // Leaves the first draws of each step to chance.
@@ -66,7 +73,7 @@ class GuidedStep {
   // Whether the last call left nothing to chance, apart from what has no promise.
   bool was_exhaustive() const { return is_exhaustive_; }
 
-  // How many steps were run so far.
+  // How many steps were run so far. One that ends within its trial counts again where it is followed.
   std::size_t runs() const { return runs_; }
 
   using Visit = FunctionRef<void(const State& next, double weight, const std::vector<double>& values)>;
@@ -77,6 +84,7 @@ class GuidedStep {
     const WholeText whole{text_};
     start_ = &state;
     values_.clear();
+    depth_ = 0;
     is_exhaustive_ = by_chance_ == 0;
     if (by_chance_ > 0) {
       std::vector<double> drawn;
@@ -178,15 +186,14 @@ class GuidedStep {
     bool agrees() const { return kind == 0 || kind == 4; }
   };
 
-  // Finds the strata of a continuous draw. Returns a random point in each.
-  std::vector<Alternative> explored() {
+  // Finds the strata of a continuous draw, each with a random point.
+  void explore(std::vector<Alternative>& strata) {
     std::vector<Point> points;
     add_point(points, explored_tail);
     for (int i = 0; i < explored_points; ++i) add_point(points, (i + 0.5) / explored_points);
     add_point(points, 1 - explored_tail);
     for (int i = 0; i <= explored_points; ++i) bisect(points, points[i], points[i + 1], bisections);
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.value < b.value; });
-    std::vector<Alternative> strata;
     double from = 0;
     const auto end_stratum = [&](double to) {
       if (to > from) strata.push_back({from + random_.uniform() * (to - from), to - from});
@@ -198,7 +205,6 @@ class GuidedStep {
       end_stratum(points[i + 1].value);
     }
     end_stratum(1);
-    return strata;
   }
   void add_point(std::vector<Point>& points, double value) {
     points.push_back({value, Point::kind_of(tried_at(value))});
@@ -214,9 +220,17 @@ class GuidedStep {
     bisect(points, middle, right, depth - 1);
   }
 
+  // The trials of one draw. Their memory serves many steps.
+  struct Trials {
+    std::vector<Alternative> alternatives;
+    std::vector<double> promises;
+    std::vector<State> ends;     // of those that ended with the observation, where they are kept
+    std::vector<int> end_of;     // the place of each alternative's end, -1 for none
+    std::vector<double> weights;  // of the ends
+  };
+
   // Follows the step from the draws in `values_` on. Returns the sum of the weights.
   double follow(double weight, int branches, Visit visit) {
-    std::vector<Alternative> alternatives;
     if (values_.size() >= by_chance_ + max_guided_draws) {
       is_exhaustive_ = false;
       rest_.clear();
@@ -224,80 +238,105 @@ class GuidedStep {
       next_ = *start_;
       ++runs_;
       if (Model::step(next_, action_, replay_).observation != observation_) return 0;
-      return visited(weight, rest_, visit);
+      return visited(next_, weight * replay_.weight(), rest_, visit);
     }
-    const Trial reached = tried(&alternatives);
-    if (reached.has_ended) {
-      return reached.agrees ? visited(weight, values_, visit) : 0;
-    }
-    const bool is_discrete = !alternatives.empty();
-    if (!is_discrete) alternatives = explored();
-    std::vector<double> promises;
-    promises.reserve(alternatives.size());
-    for (const Alternative& alternative : alternatives) promises.push_back(tried_at(alternative.value).promise());
+    if (depth_ == trials_.size()) trials_.push_back(std::make_unique<Trials>());
+    Trials& trials = *trials_[depth_];
+    trials.alternatives.clear();
+    const Trial reached = tried(&trials.alternatives);
+    if (reached.has_ended) return reached.agrees ? visited(next_, weight * replay_.weight(), values_, visit) : 0;
+    const bool is_discrete = !trials.alternatives.empty();
+    if (!is_discrete) explore(trials.alternatives);
+    try_all(trials);
+    const std::vector<double>& promises = trials.promises;
     const auto promising = std::count_if(promises.begin(), promises.end(), [](double p) { return p >= doubtful; });
+    ++depth_;
+    double sum = 0;
     if (is_discrete && promising > 0 && promising <= branches) {
-      return follow_all(alternatives, promises, weight, branches / static_cast<int>(promising), visit);
+      sum = follow_all(trials, weight, branches / static_cast<int>(promising), visit);
+    } else {
+      is_exhaustive_ = is_exhaustive_ && is_discrete;
+      sum = follow_one(trials, weight, branches, visit);
     }
-    is_exhaustive_ = is_exhaustive_ && is_discrete;
-    return follow_one(alternatives, promises, weight, branches, visit);
+    --depth_;
+    return sum;
   }
 
-  double visited(double weight, const std::vector<double>& values, Visit visit) {
-    weight *= replay_.weight();
-    if (weight > 0) visit(next_, weight, values);
+  void try_all(Trials& trials) {
+    trials.promises.clear();
+    trials.ends.clear();
+    trials.end_of.clear();
+    trials.weights.clear();
+    for (const Alternative& alternative : trials.alternatives) {
+      const Trial trial = tried_at(alternative.value);
+      trials.promises.push_back(trial.promise());
+      const bool is_kept = keeps_ends_ && trial.has_ended && trial.agrees;
+      trials.end_of.push_back(is_kept ? static_cast<int>(trials.ends.size()) : -1);
+      if (!is_kept) continue;
+      trials.ends.push_back(next_);
+      trials.weights.push_back(replay_.weight());
+    }
+  }
+
+  static double visited(const State& next, double weight, const std::vector<double>& values, Visit visit) {
+    if (weight > 0) visit(next, weight, values);
     return weight;
   }
 
   // Follows each promising alternative, and now and then one of the others.
-  double follow_all(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
-                    int branches, Visit visit) {
+  double follow_all(const Trials& trials, double weight, int branches, Visit visit) {
     double sum = 0;
-    std::vector<double> others;
-    others.reserve(alternatives.size());
-    for (std::size_t i = 0; i < alternatives.size(); ++i) {
-      const bool is_promising = promises[i] >= doubtful;
-      others.push_back(is_promising ? 0 : promises[i]);
-      if (is_promising) sum += follow_at(alternatives[i], weight * alternatives[i].probability, branches, visit);
+    for (std::size_t i = 0; i < trials.alternatives.size(); ++i) {
+      if (trials.promises[i] < doubtful) continue;
+      sum += follow_at(trials, i, weight * trials.alternatives[i].probability, branches, visit);
     }
-    if (random_.flag(misled)) sum += follow_drawn(alternatives, others, weight / misled, visit);
+    if (random_.flag(misled)) {
+      others_ = trials.promises;
+      for (double& promise : others_) promise = promise >= doubtful ? 0 : promise;
+      sum += follow_drawn(trials, others_, weight / misled, visit);
+    }
     return sum;
   }
 
   // Follows one promising alternative, or now and then one of the others.
-  double follow_one(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
-                    int branches, Visit visit) {
-    std::vector<double> promising = promises;
-    std::vector<double> others = promises;
-    bool is_mixed = false;
-    for (std::size_t i = 0; i < promises.size(); ++i) {
-      (promises[i] >= doubtful ? others : promising)[i] = 0;
-      is_mixed = is_mixed || (promises[i] > 0 && promises[i] < doubtful);
-    }
-    is_mixed = is_mixed && std::any_of(promising.begin(), promising.end(), [](double promise) { return promise > 0; });
-    if (!is_mixed) return follow_drawn(alternatives, promises, weight, visit, branches);
-    if (random_.flag(misled)) return follow_drawn(alternatives, others, weight / misled, visit);
-    return follow_drawn(alternatives, promising, weight / (1 - misled), visit, branches);
+  double follow_one(const Trials& trials, double weight, int branches, Visit visit) {
+    const std::vector<double>& promises = trials.promises;
+    const auto is_promising = [](double promise) { return promise >= doubtful; };
+    const bool is_mixed = std::any_of(promises.begin(), promises.end(), is_promising) &&
+                          std::any_of(promises.begin(), promises.end(), [](double p) { return p > 0 && p < doubtful; });
+    if (!is_mixed) return follow_drawn(trials, promises, weight, visit, branches);
+    const bool is_misled = random_.flag(misled);
+    others_ = promises;
+    for (double& promise : others_) promise = is_promising(promise) == is_misled ? 0 : promise;
+    if (is_misled) return follow_drawn(trials, others_, weight / misled, visit);
+    return follow_drawn(trials, others_, weight / (1 - misled), visit, branches);
   }
 
-  double follow_drawn(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
-                      Visit visit, int branches = 1) {
-    std::vector<double> shares;
-    shares.reserve(alternatives.size());
+  double follow_drawn(const Trials& trials, const std::vector<double>& promises, double weight, Visit visit,
+                      int branches = 1) {
+    const std::vector<Alternative>& alternatives = trials.alternatives;
+    shares_.clear();
     double total = 0;
     for (std::size_t i = 0; i < alternatives.size(); ++i) {
-      shares.push_back(alternatives[i].probability * promises[i]);
-      total += shares.back();
+      shares_.push_back(alternatives[i].probability * promises[i]);
+      total += shares_.back();
     }
     if (total <= 0) return 0;
     is_exhaustive_ = is_exhaustive_ && alternatives.size() == 1;
-    const auto chosen = static_cast<std::size_t>(random_.choose(shares.data(), static_cast<int>(shares.size()), total));
-    return follow_at(alternatives[chosen], weight * total / promises[chosen], branches, visit);
+    const auto chosen = static_cast<std::size_t>(random_.choose(shares_.data(), static_cast<int>(shares_.size()), total));
+    return follow_at(trials, chosen, weight * total / promises[chosen], branches, visit);
   }
 
-  double follow_at(const Alternative& alternative, double weight, int branches, Visit visit) {
-    values_.push_back(alternative.value);
-    const double sum = follow(weight, branches, visit);
+  double follow_at(const Trials& trials, std::size_t chosen, double weight, int branches, Visit visit) {
+    values_.push_back(trials.alternatives[chosen].value);
+    const int end = trials.end_of[chosen];
+    double sum = 0;
+    if (end >= 0 && values_.size() < by_chance_ + max_guided_draws) {
+      ++runs_;
+      sum = visited(trials.ends[end], weight * trials.weights[end], values_, visit);
+    } else {
+      sum = follow(weight, branches, visit);
+    }
     values_.pop_back();
     return sum;
   }
@@ -311,10 +350,15 @@ class GuidedStep {
   State next_{};
   std::vector<double> values_;
   std::vector<double> rest_;
+  std::vector<std::unique_ptr<Trials>> trials_;  // of the draws that are followed now
+  std::size_t depth_ = 0;
+  std::vector<double> others_;
+  std::vector<double> shares_;
   std::string text_;
   std::size_t by_chance_ = 0;
   std::size_t runs_ = 0;
   bool is_exhaustive_ = false;
+  bool keeps_ends_ = true;
 };
 
 }  // namespace aos

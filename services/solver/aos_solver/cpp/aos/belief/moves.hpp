@@ -13,6 +13,9 @@
 // step. A guided step keeps its estimated likelihood. It has to draw from the same weights as before, so that
 // other draws would have been guided alike. The parameters of continuous draws are not compared: there the
 // kept likelihood is an approximation.
+//
+// The states that a copy has passed are kept (passage.hpp), so that a proposal repeats nothing that it leaves as it is. The
+// limits of `moved` are in counted work: the steps of a proposal that repeats all.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +23,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -28,9 +32,11 @@
 #include "aos/belief/free_draws.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/belief/passage.hpp"
 
 namespace aos {
 
+inline constexpr std::size_t max_passage_bytes = std::size_t{64} << 20;  // of all copies of a call
 inline constexpr std::size_t max_moving_steps = 600'000;  // of one call with an effort of 1
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
@@ -41,7 +47,9 @@ class Moves {
  public:
   using State = typename Model::State;
 
-  Moves(const History<Model>& history, Sampler& random) : history_(history), random_(random) {}
+  // Where all that the copies have passed takes more than `passage_bytes`, none of it is kept.
+  Moves(const History<Model>& history, Sampler& random, std::size_t passage_bytes = max_passage_bytes)
+      : history_(history), random_(random), passage_bytes_(passage_bytes) {}
 
   // Copies of a cloud's particles after moves, or the cloud as it is if no move succeeds. A longer history
   // has fewer copies, so that each copy has enough moves. A greater effort has more copies and more moves.
@@ -49,12 +57,19 @@ class Moves {
     const std::size_t max_steps = effort * max_moving_steps;
     const std::size_t copies = std::clamp(max_steps / (20 * (1 + cloud.history.steps().size())), min_copies, max_copies);
     copy(cloud, copies);
+    const std::size_t bytes = sizeof(State) + Model::bytes_elsewhere() + sizeof(typename Passage<Model>::Place);
+    are_kept_ = copies_.size() * (1 + history_.steps().size()) * bytes <= passage_bytes_;
+    passages_.resize(are_kept_ ? copies_.size() : 1);
     std::size_t accepted = 0;
-    while (steps_ < max_steps) {
-      for (Copy& copy : copies_) {
-        accepted += (random_.flag(free_draws_.share()) ? refresh(copy) : move(copy)) ? 1 : 0;
-        if (accepted == 0 && steps_ >= max_steps / telling_share) return cloud;
-        if (steps_ >= max_steps) break;
+    while (work_ < max_steps) {
+      for (std::size_t i = 0; i < copies_.size(); ++i) {
+        Copy& copy = copies_[i];
+        Passage<Model>& passage = passages_[are_kept_ ? i : 0];
+        if (!are_kept_ || passage.empty()) passage.begin(copy.trace);
+        if (i + 2 < passages_.size()) passages_[i + 2].prefetch();
+        accepted += (random_.flag(free_draws_.share()) ? refresh(copy, passage) : move(copy, passage)) ? 1 : 0;
+        if (accepted == 0 && work_ >= max_steps / telling_share) return cloud;
+        if (work_ >= max_steps) break;
       }
     }
     return accepted > 0 ? gathered(cloud, copies_.size()) : cloud;
@@ -108,92 +123,119 @@ class Moves {
   }
 
   // Makes one proposal, at one of all draws of the trace. A change that leads to the same state is no move.
-  bool move(Copy& copy) {
-    list_blocks(copy.trace, blocks_);
-    const std::vector<const Block*>& blocks = blocks_;
-    const auto [place, first] = random_draw(blocks);
-    ++steps_;
-    if (place == blocks.size()) return false;
+  bool move(Copy& copy, Passage<Model>& passage) {
+    const auto [place, first] = random_draw(passage);
+    work_ += 1;
+    const std::size_t count = passage.size();
+    if (place == count) return false;
+    work_ += place;
     State state{};
-    for (std::size_t i = 0; i < place; ++i) repeat(i, *blocks[i], state);
-    State before = state;
+    if (place > 0) state = passed(passage, place - 1);
     std::vector<Block> proposed;
-    proposed.reserve(blocks.size() - place);
-    double ratio = is_guided(place) ? guided(place, *blocks[place], state, proposed)
-                                    : changed(place, first, *blocks[place], state, before, proposed);
+    proposed.reserve(count - place);
+    states_.clear();
+    double ratio = is_guided(place) ? guided(place, passage.block(place), state, proposed)
+                                    : changed(place, first, passage.block(place), state, proposed);
     if (ratio <= 0) return false;
-    if (is_guided(place)) {
-      repeat(place, *blocks[place], before);
-    } else {
-      ++steps_;  // `changed` has made it.
-    }
-    if (state == before) return false;
-    for (std::size_t i = place + 1; i < blocks.size(); ++i) {
+    work_ += 1;
+    if (state == passed(passage, place)) return false;
+    states_.push_back(state);
+    for (std::size_t i = place + 1; i < count; ++i) {
+      const Block& block = passage.block(i);
       if (is_guided(i)) {
-        ratio *= guided(i, *blocks[i], state, proposed);
+        ratio *= guided(i, block, state, proposed);
       } else {
-        const double likelihood = repeat(i, *blocks[i], state);
-        proposed.push_back({{}, blocks[i]->seed, likelihood, static_cast<std::uint32_t>(replay_.draws())});
-        ratio *= likelihood / blocks[i]->likelihood;
+        work_ += 1;
+        const double likelihood = repeat(i, block, state);
+        proposed.push_back({{}, block.seed, likelihood, static_cast<std::uint32_t>(replay_.draws())});
+        ratio *= likelihood / block.likelihood;
       }
       if (ratio <= 0) return false;
+      states_.push_back(state);
     }
-    ratio *= way_back(blocks, proposed, place);
+    ratio *= way_back(passage, proposed, place);
     if (ratio < 1 && !random_.flag(ratio)) return false;
     copy.state = state;
-    for (std::size_t i = place + 1; i < blocks.size(); ++i) {
-      if (!is_guided(i)) proposed[i - place].values = blocks[i]->values;
+    for (std::size_t i = place + 1; i < count; ++i) {
+      if (!is_guided(i)) proposed[i - place].values = passage.block(i).values;
     }
-    copy.trace = replaced(copy.trace, blocks.size() - place, proposed);
+    copy.trace = replaced(copy.trace, count - place, proposed);
     copy.is_moved = true;
+    passage.replace(place, copy.trace, states_);
     return true;
   }
 
   // Makes one proposal, of many draws of the origin made anew at once.
-  bool refresh(Copy& copy) {
-    list_blocks(copy.trace, blocks_);
-    const std::vector<const Block*>& blocks = blocks_;
-    if (blocks[0]->draws == 0) return false;
-    const std::vector<std::size_t>& anew = free_draws_.choose(blocks[0]->draws, random_);
-    std::vector<double>& values = values_;
-    values.clear();
-    State before{};
-    Sampler later{blocks[0]->seed};
-    run(0, blocks[0]->values, later, before, &values);
+  bool refresh(Copy& copy, Passage<Model>& passage) {
+    const Block& origin = passage.block(0);
+    if (origin.draws == 0) return false;
+    const std::vector<std::size_t>& anew = free_draws_.choose(origin.draws, random_);
+    list_values(origin, values_);
     for (const std::size_t draw : anew) {
-      if (draw < values.size()) values[draw] = random_.uniform();
+      if (draw < values_.size()) values_[draw] = random_.uniform();
     }
     std::vector<double> used;
+    used.reserve(values_.size());
     State after{};
-    run(0, values, random_, after, &used);
-    if (after == before) return false;
-    const bool is_accepted = still_brings(blocks, before, after);
+    run(0, values_, random_, after, &used);
+    work_ += 2;
+    if (after == passed(passage, 0)) return false;
+    states_.assign(1, after);
+    likelihoods_.clear();
+    const bool is_accepted = still_brings(passage, after);
     free_draws_.note(is_accepted);
     if (!is_accepted) return false;
     std::vector<Block> proposed;
     const auto draws = static_cast<std::uint32_t>(used.size());
     proposed.push_back({std::move(used), 0, 1, draws});
-    for (std::size_t i = 1; i < blocks.size(); ++i) proposed.push_back(*blocks[i]);
+    for (std::size_t i = 1; i < passage.size(); ++i) proposed.push_back(passage.block(i));
     copy.state = after;
-    copy.trace = replaced(copy.trace, blocks.size(), proposed);
+    copy.trace = replaced(copy.trace, passage.size(), proposed);
     copy.is_moved = true;
+    passage.refresh(copy.trace, states_, likelihoods_);
     return true;
   }
 
-  // Runs all steps from either origin, to their last states. Returns whether the second origin is accepted in
-  // place of the first. It has to give what was observed, and the densities of the numbers decide by chance.
-  bool still_brings(const std::vector<const Block*>& blocks, State& before, State& after) {
+  // Runs all steps from another origin, to its last state. Returns whether that origin is accepted in place of the first.
+  // It has to give what was observed, and the densities of the numbers decide by chance.
+  bool still_brings(Passage<Model>& passage, State& after) {
     double ratio = 1;
-    for (std::size_t i = 1; i < blocks.size(); ++i) {
-      DrawWatcher* const watcher = is_guided(i) ? &weights_drawn_from_ : nullptr;
-      const double likelihood_before = repeat(i, *blocks[i], before, watcher);
-      const std::uint64_t weights_before = weights_drawn_from_.digest();
-      const double likelihood_after = repeat(i, *blocks[i], after, watcher);
-      if (is_guided(i) && weights_drawn_from_.digest() != weights_before) return false;
+    for (std::size_t i = 1; i < passage.size(); ++i) {
+      const bool is_watched = is_guided(i);
+      const auto& before = repeated(passage, i);
+      work_ += 2;
+      const double likelihood_after = repeat(i, passage.block(i), after, is_watched ? &weights_drawn_from_ : nullptr);
+      if (is_watched && weights_drawn_from_.digest() != before.digest) return false;
       if (likelihood_after <= 0) return false;
-      ratio *= likelihood_after / likelihood_before;
+      ratio *= likelihood_after / before.likelihood;
+      states_.push_back(after);
+      likelihoods_.push_back(likelihood_after);
     }
     return ratio >= 1 || random_.flag(ratio);
+  }
+
+  // The state after a block.
+  const State& passed(Passage<Model>& passage, std::size_t place) {
+    while (passage.passed() <= place) pass(passage, passage.passed());
+    return passage.state(place);
+  }
+  // What came of a block when it was repeated as it is.
+  const typename Passage<Model>::Repeated& repeated(Passage<Model>& passage, std::size_t place) {
+    passed(passage, place - 1);
+    if (!passage.is_repeated(place)) pass(passage, place);
+    return passage.repeated(place);
+  }
+  void pass(Passage<Model>& passage, std::size_t place) {
+    State state{};
+    if (place > 0) state = passage.state(place - 1);
+    const double likelihood = repeat(place, passage.block(place), state, is_guided(place) ? &weights_drawn_from_ : nullptr);
+    passage.note(place, state, {likelihood, weights_drawn_from_.digest()});
+  }
+
+  // The values of all draws of a block.
+  static void list_values(const Block& block, std::vector<double>& values) {
+    values.assign(block.values.begin(), block.values.begin() + std::min<std::ptrdiff_t>(std::ssize(block.values), block.draws));
+    for (Sampler later{block.seed}; values.size() < block.draws;) values.push_back(later.uniform());
   }
 
   struct DrawPlace {
@@ -201,25 +243,20 @@ class Moves {
     std::size_t draw;
   };
   // One draw of all, at random. The block is the one after the last if there are no draws.
-  DrawPlace random_draw(const std::vector<const Block*>& blocks) {
-    std::size_t left = 0;
-    for (const Block* block : blocks) left += block->draws;
-    if (left == 0) return {blocks.size(), 0};
-    left = static_cast<std::size_t>(random_.below(static_cast<int>(left)));
+  DrawPlace random_draw(const Passage<Model>& passage) {
+    if (passage.draws() == 0) return {passage.size(), 0};
+    auto left = static_cast<std::size_t>(random_.below(static_cast<int>(passage.draws())));
     std::size_t place = 0;
-    while (left >= blocks[place]->draws) left -= blocks[place++]->draws;
+    while (left >= passage.draws_of(place)) left -= passage.draws_of(place++);
     return {place, left};
   }
   // How much likelier the same place is to be chosen from the proposed trace than from this one. The place is
   // the same draw, or any draw of a guided block.
-  double way_back(const std::vector<const Block*>& blocks, const std::vector<Block>& proposed, std::size_t place) const {
-    double before = 0;
+  double way_back(const Passage<Model>& passage, const std::vector<Block>& proposed, std::size_t place) const {
+    const auto before = static_cast<double>(passage.draws());
     double after = 0;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-      before += blocks[i]->draws;
-      after += i < place ? blocks[i]->draws : proposed[i - place].draws;
-    }
-    const double shares = is_guided(place) ? static_cast<double>(proposed[0].draws) / blocks[place]->draws : 1;
+    for (std::size_t i = 0; i < passage.size(); ++i) after += i < place ? passage.draws_of(i) : proposed[i - place].draws;
+    const double shares = is_guided(place) ? static_cast<double>(proposed[0].draws) / passage.draws_of(place) : 1;
     return after > 0 ? shares * before / after : 0;
   }
 
@@ -245,18 +282,15 @@ class Moves {
     return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
   }
 
-  // Proposes a block with some draws changed from `first` on, and makes `old` the state that the block gives. Returns the
-  // factor of the acceptance ratio, which is 0 if the proposal does not give what was observed.
-  double changed(std::size_t place, std::size_t first, const Block& block, State& state, State& old,
-                 std::vector<Block>& proposed) {
-    std::vector<double>& values = values_;
-    values.clear();
-    Sampler later{block.seed};
-    run(place, block.values, later, old, &values);
-    perturb(values, first);
+  // Proposes a block with some draws changed from `first` on. Returns the factor of the acceptance ratio, which is 0 if the
+  // proposal does not give what was observed.
+  double changed(std::size_t place, std::size_t first, const Block& block, State& state, std::vector<Block>& proposed) {
+    work_ += 2;
+    list_values(block, values_);
+    perturb(values_, first);
     std::vector<double> used;
-    used.reserve(values.size());
-    const double likelihood = run(place, values, random_, state, &used);
+    used.reserve(values_.size());
+    const double likelihood = run(place, values_, random_, state, &used);
     const auto draws = static_cast<std::uint32_t>(used.size());
     proposed.push_back({std::move(used), 0, likelihood, draws});
     return likelihood / block.likelihood;
@@ -282,8 +316,9 @@ class Moves {
   double guided(std::size_t place, const Block& block, State& state, std::vector<Block>& proposed) {
     const HistoryStep& step = history_.steps()[place - 1];
     NumbersOf numbers{step, replay_};
-    GuidedStep<Model> steps{step.action, step.observation, numbers.sink(), random_};
-    steps.leave_to_chance(step.by_chance);
+    GuidedStep<Model>& steps = guided_step(place);
+    steps.report_to(numbers.sink());
+    const std::size_t runs_before = steps.runs();
     const State before = state;
     double sum = 0;
     Block chosen;
@@ -293,11 +328,24 @@ class Moves {
       state = next;
       chosen.values = values;
     });
-    steps_ += steps.runs();
+    work_ += steps.runs() - runs_before;
+    steps_ += steps.runs() - runs_before;
     chosen.likelihood = sum;
     chosen.draws = static_cast<std::uint32_t>(chosen.values.size());
     proposed.push_back(std::move(chosen));
     return sum / block.likelihood;
+  }
+
+  // What guides a step of the history; its memory serves all proposals.
+  GuidedStep<Model>& guided_step(std::size_t place) {
+    if (guided_steps_.size() <= place) guided_steps_.resize(place + 1);
+    auto& guided = guided_steps_[place];
+    if (guided == nullptr) {
+      const HistoryStep& step = history_.steps()[place - 1];
+      guided = std::make_unique<GuidedStep<Model>>(step.action, step.observation, nullptr, random_);
+      guided->leave_to_chance(step.by_chance);
+    }
+    return *guided;
   }
 
   // A trace with its last `count` blocks replaced.
@@ -326,12 +374,18 @@ class Moves {
 
   const History<Model>& history_;
   Sampler& random_;
+  std::size_t passage_bytes_;
   Replay replay_;
   Weights weights_drawn_from_;
   FreeDraws free_draws_;
+  std::vector<std::unique_ptr<GuidedStep<Model>>> guided_steps_;  // of the history's steps, from 1
   std::vector<Copy> copies_;
-  std::vector<const Block*> blocks_;  // of the trace that is moved
+  std::vector<Passage<Model>> passages_;  // of the copies, or of one
+  bool are_kept_ = false;
+  std::vector<State> states_;  // after the blocks of a proposal
+  std::vector<double> likelihoods_;
   std::vector<double> values_;
+  std::size_t work_ = 0;
   std::size_t steps_ = 0;
 };
 
