@@ -61,6 +61,8 @@ async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) ->
     assert all(record.planner and record.why and record.threads == 1 for record in around.records)
     assert all(record.preparation_s >= 0 for record in around.records)
     assert all((record.update_s > 0) == (record.outcome is not None) for record in around.records)
+    efforts = [record.update_effort for record in around.records if record.outcome]
+    assert all("steps of the model" in effort for effort in efforts[1:])
     statuses = [record.outcome.status for record in around.records if record.outcome]
     assert statuses[0] == "timed_out"
     assert set(statuses[1:]) == {"observed"}

@@ -37,6 +37,9 @@ async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Play
         assert [each.response for each in why.expected if each.is_seen] == [
             played.mission.outcome(2).outcome.response
         ]
+        after = played.mission.outcome(2)
+        assert (why.update_s, why.update_effort) == (after.update_s, after.update_effort)
+        assert why.update_s > 0 < why.update_effort.count("steps of the model")
         assert why.flips
         for flip in why.flips:
             assert flip.is_checked

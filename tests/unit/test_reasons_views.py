@@ -40,6 +40,13 @@ def test_a_decision_is_explained_in_eight_lines_at_most() -> None:
     assert lines[-2] == "  pick is better where P(holding=true) is below 0.0356, now 0.17"
 
 
+def test_a_long_belief_update_is_told_with_what_it_took() -> None:
+    long = msgspec.structs.replace(WHY, update_s=1.734, update_effort="3000 steps of the model")
+    assert why_lines(long)[1].endswith("; r1 was seen; the belief update took 1.7 s: 3000 steps of the model")
+    assert len(why_lines(long)) <= 8
+    assert why_lines(msgspec.structs.replace(long, update_s=0.09)) == why_lines(WHY)
+
+
 def test_a_close_decision_says_how_many_simulations_would_tell() -> None:
     close = msgspec.structs.replace(
         WHY, is_exact=False, is_close=True, margin_stderr=0.6, simulations_to_tell=12000, flips=(), remark=""

@@ -4,6 +4,8 @@ from aos_protocol.messages import Consequence, Flip, ValueTerm, WhatIf, Why
 
 _SHOWN_TERMS = 4
 _LEAST_TERM = 5e-4
+_LONG_UPDATE_S = 0.1
+"""What a decision usually has. A shorter update holds no robot up, and is in `--json` alone."""
 
 
 def why_lines(why: Why) -> list[str]:
@@ -49,7 +51,15 @@ def _expected(why: Why) -> str:
     likely = ", ".join(f"{each.response} {each.probability:.1%}" for each in why.expected)
     seen = next((each for each in why.expected if each.is_seen), None)
     came = f"; {seen.response} was seen" if seen is not None else ""
-    return f"  expected: {likely}{came}" if likely else ""
+    return f"  expected: {likely}{came}{_update(why)}" if likely else ""
+
+
+def _update(why: Why) -> str:
+    """What the belief update took after the outcome, where that was long."""
+    if why.update_s < _LONG_UPDATE_S:
+        return ""
+    effort = f": {why.update_effort}" if why.update_effort else ""
+    return f"; the belief update took {why.update_s:.2g} s{effort}"
 
 
 def _consequence(each: Consequence) -> str:

@@ -274,7 +274,8 @@ class DecisionRecord(Message, frozen=True):
 
     `sequence` is dense over the mission and names the publication, `step` names the decision, from 1.
     `planning_s` is what the decision took. Of it `preparation_s` is processor time for what no budget counts:
-    lists of states, their values, first bounds. `update_s` is what the belief update took after the outcome.
+    lists of states, their values, first bounds. `update_s` is what the belief update took after the outcome,
+    and `update_effort` tells that in counts.
     `belief` is the belief decided on, or after the observation the updated one. `surprise` is
     -log P(observation | belief, action) in nats, of a density where numbers were observed; infinite surprise
     is given as `is_impossible`. `remark` says what of the outcome could not be used for the belief. `planner`
@@ -321,6 +322,7 @@ class DecisionRecord(Message, frozen=True):
     is_cautious: bool = False
     preparation_s: float = 0.0
     update_s: float = 0.0
+    update_effort: str = ""
     adopted: ModelAdopted | None = None
     chosen_by: ChosenBy = "planner"
     searches: tuple[SearchMade, ...] = ()

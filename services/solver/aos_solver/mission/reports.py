@@ -102,6 +102,7 @@ class Reports:
             outcome=outcome,
             surprise=update.surprise,
             update_s=update_s,
+            update_effort=update.effort,
             adopted=None,
             is_impossible=update.is_impossible,
             remark="; ".join(text for text in remarks if text),

@@ -53,6 +53,7 @@ class Reasons:
             flips = await self._flips(other, margin, begun_s)
             expected = await self._consequences()
         terms, rest, other_rest = await self._terms(other, action.q, others.q)
+        after = self._replay.mission.outcome(decision.step)
         return Why(
             mission=decision.mission,
             step=decision.step,
@@ -76,6 +77,8 @@ class Reasons:
             rest=rest,
             other_rest=other_rest,
             flips=flips,
+            update_s=after.update_s if after else 0.0,
+            update_effort=after.update_effort if after else "",
             remark="; ".join(self._remarks),
         )
 
