@@ -31,6 +31,10 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(root: Path, 
         after = json.loads(system.aos("why", "1", "--json")[1])
         for each in after["expected"]:
             each.pop("is_seen", None)
+        # The outcome is later than the first question.
+        assert after.pop("update_s") > 0 == live.pop("update_s")
+        assert after.pop("update_effort").endswith("steps of the model")
+        assert "update_effort" not in live
         for lines in ("terms", "rest", "other_rest", "remark"):  # The solver may still compile for these.
             after.pop(lines, None)
             live.pop(lines, None)
