@@ -1,6 +1,7 @@
 // Samples that are weighed by what was observed: guided_step.hpp, particle_filter.hpp.
 #include "aos/belief/particle_filter.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -191,11 +192,8 @@ TEST("Moves that keep the states which particles have passed are those that repe
     moved.push_back(moves.moved(cloud));
     steps.push_back(moves.steps());
   }
-  EXPECT_THAT(moved[0].particles.size() == moved[1].particles.size(), "as many states");
-  for (std::size_t i = 0; i < moved[0].particles.size(); ++i) {
-    const auto& [state, weight] = moved[0].particles[i];
-    EXPECT_THAT(state == moved[1].particles[i].state && weight == moved[1].particles[i].weight, "the same states");
-  }
+  const auto same = [](const auto& one, const auto& other) { return one.state == other.state && one.weight == other.weight; };
+  EXPECT_THAT(std::ranges::equal(moved[0].particles, moved[1].particles, same), "the same states");
   EXPECT_THAT(moved[0].effective() != cloud.effective(), "particles were moved");
   EXPECT_THAT(steps[0] < steps[1], "fewer steps are made");
 }

@@ -56,14 +56,10 @@ inline TraceLink longer(TraceLink before, Block block) {
   return std::make_shared<Trace>(Trace{std::move(before), origin, std::move(block)});
 }
 // The blocks of a trace, from the origin on.
-inline void list_blocks(const TraceLink& trace, std::vector<const Block*>& blocks) {
-  blocks.clear();
-  for (const Trace* block = trace.get(); block != nullptr; block = block->before.get()) blocks.push_back(&block->block);
-  std::reverse(blocks.begin(), blocks.end());
-}
 inline std::vector<const Block*> blocks_of(const TraceLink& trace) {
   std::vector<const Block*> blocks;
-  list_blocks(trace, blocks);
+  for (const Trace* block = trace.get(); block != nullptr; block = block->before.get()) blocks.push_back(&block->block);
+  std::reverse(blocks.begin(), blocks.end());
   return blocks;
 }
 
