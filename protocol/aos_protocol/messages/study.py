@@ -71,8 +71,8 @@ class Why(Message, frozen=True):
     is worth more. Values are exact where `is_exact`. `is_close`: the margin is within two standard errors,
     and about `simulations_to_tell` would tell, where any number would. `terms` add up to the values, up to
     `rest` and `other_rest`, which are what later steps are worth where only the first step's rewards could be
-    told apart. `flips` are the nearest first. `update_s` and `update_effort` are of the belief update after the
-    outcome, as the record has them. `remark` says what could not be told, and why.
+    told apart. `flips` are the nearest first. `update_s` and `update_effort` are of the belief update after
+    the outcome, as the record has them. `remark` says what could not be told, and why.
     """
 
     mission: str
