@@ -55,7 +55,7 @@ def _expected(why: Why) -> str:
 
 
 def _update(why: Why) -> str:
-    """What the belief update took after the outcome, where that was long."""
+    """Tells what the belief update took after the outcome, where that was long."""
     if why.update_s < _LONG_UPDATE_S:
         return ""
     effort = f": {why.update_effort}" if why.update_effort else ""
