@@ -5,7 +5,7 @@ from aos_protocol.messages import Consequence, Flip, ValueTerm, WhatIf, Why
 _SHOWN_TERMS = 4
 _LEAST_TERM = 5e-4
 _LONG_UPDATE_S = 0.1
-"""What a decision usually has. A shorter update holds no robot up, and is in `--json` alone."""
+"""The time that a decision usually has. A shorter update is in `--json` alone."""
 
 
 def why_lines(why: Why) -> list[str]:
