@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import pytest_asyncio
 from processes import HANG_S
-from ros1_core import PYTHON
+from ros1_core import PYTHON, skip_without_ros1
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.processes.children import Child, guarded
@@ -131,6 +131,8 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
 
 
 async def test_of_whatever_answers_in_place_of_a_master_little_is_told() -> None:
+    skip_without_ros1()
+
     async def answer(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         writer.write(b"noise " * 1000 + b"\n")
         await writer.drain()
