@@ -159,3 +159,12 @@ def test_a_bare_name_is_told_beside_a_wrong_declaration_of_the_environment() -> 
     )
     lines = finding_texts(environment=environment, skill=skill)
     assert any("unknown name `length`. Did you mean `lenght`?" in line for line in lines), lines
+
+
+def test_shared_code_that_is_no_cpp_is_an_error_that_no_compiler_follows() -> None:
+    shared = "shared_code:\nint twice(int n) { retrun n * 2; }\nint one() { return twice(1); }\n"
+    files = {"hall.ef": f"{ENVIRONMENT}\n{shared}", "walk.sd": SKILL, "walk.am": MAPPING}
+    loaded = load_files(encoded(files))
+    (only,) = [found for found in loaded.diagnostics if found.is_error]
+    assert (only.code, only.excerpt) == ("AOS108", shared.splitlines()[1])
+    assert loaded.draft is None

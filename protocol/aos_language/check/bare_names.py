@@ -1,6 +1,7 @@
 """The bare names of model code that no compiler will look at, since declarations around it are wrong."""
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator
 
@@ -14,6 +15,8 @@ from aos_language.cpp.snippets import Access
 from aos_language.findings import Findings
 from aos_protocol.documents import Assignment, Environment, Project, SkillModel
 from aos_protocol.spelling import nearest
+
+_OWN_TYPE = re.compile(r"\b(?:class|enum|struct|typedef|typename|union|using)\s+(?:class\s+)?(\w+)")
 
 
 class _Document(msgspec.Struct, frozen=True):
@@ -65,6 +68,7 @@ def _documents(assembly: Assembly, environment: Environment, compiled: Project |
 def _document(model: Environment | SkillModel, blocks: tuple[Block, ...], names: set[str]) -> _Document:
     for block in blocks:
         names |= {*block.names, *(declaration.name for declaration in read_block(block).declarations)}
+        names.update(_OWN_TYPE.findall(block.snippet.code))
     for part in msgspec.structs.astuple(model):
         for assignment in part if isinstance(part, tuple) else ():
             if isinstance(assignment, Assignment) and assignment.temporary is not None:

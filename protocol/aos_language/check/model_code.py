@@ -119,7 +119,10 @@ class _BlockCheck:
 
     def run(self) -> None:
         for fault in self._cpp.faults:
-            if fault.kind is FaultKind.SYNTAX:
+            if fault.kind is FaultKind.SYNTAX and self._block.is_declarations:
+                hint = fault.hint or "Nothing of shared code can be used until all of it is C++"
+                self._findings.error("AOS108", f"{fault.message} in C++", self._span(fault.extent), hint)
+            elif fault.kind is FaultKind.SYNTAX:
                 message, hint = f"{fault.message} in C++", fault.hint or "The compiler will tell more"
                 self._findings.warning("AOS108", message, self._span(fault.extent), hint)
             else:
@@ -127,6 +130,8 @@ class _BlockCheck:
                 mend = Mend(span, 1, fault.instead) if fault.instead else None
                 self._findings.error("AOS108", fault.message, span, fault.hint, mend)
         if any(fault.kind is not FaultKind.SYNTAX for fault in self._cpp.faults):
+            return
+        if self._block.is_declarations and self._cpp.faults:
             return
         self._check_semicolons()
         for mention in self._cpp.mentions:

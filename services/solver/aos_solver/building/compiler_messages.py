@@ -17,6 +17,9 @@ _PLACE = re.compile(
 _ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)")
 """g++ and clang say this of the one deleted operator that documents can meet, see named_array.hpp."""
 _NOT_DECLARED = re.compile(r"`([A-Za-z_]\w*)` was not declared|use of undeclared identifier `([A-Za-z_]\w*)`")
+_UNKNOWN = re.compile(
+    r"(?:use of undeclared identifier )?`([A-Za-z_]\w*)`(?: (?:was not|has not been) declared|$)"
+)
 _OF_PYTHON = {"True": "true", "False": "false", "None": "nullptr", "elif": "else if", "pass": ";"}
 _OF_PYTHON |= {"TRUE": "true", "FALSE": "false", "null": "nullptr"}
 _A_TEXT = re.compile(
@@ -74,10 +77,12 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
         if not hint and (unknown := _NOT_DECLARED.fullmatch(text)) is not None:
             name = unknown[1] or unknown[2]
             of_python = f"C++ writes `{_OF_PYTHON[name]}`" if name in _OF_PYTHON else ""
-            hint = of_python or did_you_mean(name, sorted(emitted.names))
+            hint = of_python or did_you_mean(name, sorted(emitted.names - {name}))
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
         diagnostics.append(diagnostic)
-    return CompilerReport(tuple(_without_repeats(diagnostics)), tuple(outside))
+    return CompilerReport(
+        tuple(_without_consequences(_without_repeats(diagnostics), emitted)), tuple(outside)
+    )
 
 
 def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
@@ -86,6 +91,18 @@ def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
     if suggested is None or hasattr(math, suggested[1]):
         return True
     return re.search(rf"\b{suggested[1]}\b", emitted.cpp) is not None
+
+
+def _without_consequences(diagnostics: list[Diagnostic], emitted: EmittedModel) -> list[Diagnostic]:
+    """Leaves out names that the documents declare, where another document has a mistake of its own: the
+    declaration may be what is wrong."""
+
+    def is_declared(found: Diagnostic) -> bool:
+        name = _UNKNOWN.match(found.message)
+        return name is not None and name[1] in emitted.names
+
+    causes = {found.span.file for found in diagnostics if not is_declared(found)}
+    return [found for found in diagnostics if not is_declared(found) or not causes - {found.span.file}]
 
 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
