@@ -25,32 +25,14 @@ def run(*command: str, folder: Path | None = None) -> subprocess.CompletedProces
 def test_help_has_an_example_and_every_exit_code() -> None:
     text = " ".join(run("aos-up", "--help").stdout.split())
     assert "Example: aos-up deploy/armadillo.yaml" in text
-    for code in (
-        "0 the goal",
-        "1 documents",
-        "2 the command",
-        "3 the machine",
-        "4 the mission",
-        "130 interr",
-    ):
-        assert code in text
+    codes = "0 the goal", "1 documents", "2 the command", "3 the machine", "4 the mission", "130 interr"
+    assert [code for code in codes if code not in text] == []
 
 
 def test_the_overview_names_every_command() -> None:
     text = run("aos", "--help").stdout
-    for command in (
-        "up",
-        "decisions",
-        "runs",
-        "bundle",
-        "lint",
-        "inspect",
-        "plan",
-        "simulate",
-        "rate",
-        "doctor",
-    ):
-        assert f"  {command} " in text
+    names = "up", "decisions", "runs", "bundle", "lint", "inspect", "plan", "simulate", "rate", "doctor"
+    assert [name for name in names if f"  {name} " not in text] == []
 
 
 @pytest.mark.parametrize("command", [["aos-up"], ["aos-up", "x.yaml", "--sed", "1"], ["aos", "decide"]])
@@ -134,10 +116,6 @@ def test_every_program_tells_its_version_and_has_a_short_help(command: str) -> N
     assert run(command, "--version").stdout == f"aos {__version__}\n"
     assert run(command, "-h").stdout == run(command, "--help").stdout
     assert "--install-completion" in run(command, "-h").stdout
-
-
-def test_short_help_reaches_the_commands_below() -> None:
-    assert "Example: aos bundle push" in run("aos", "bundle", "push", "-h").stdout
 
 
 @pytest.mark.parametrize(

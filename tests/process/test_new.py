@@ -102,6 +102,11 @@ def test_every_example_is_whole_where_it_is_written(name: str) -> None:
     assert deployment.world is None or deployment.world.resolve().is_relative_to(here)
 
 
+def test_an_example_is_written_once() -> None:
+    run("new example errand --in once")
+    assert "once is not empty. Nothing was written" in str(run("new example errand --in once").exception)
+
+
 def test_an_unknown_example_is_told_with_the_nearest() -> None:
     assert "Did you mean `armadillo`?" in str(getattr(run("new example armadilo").exception, "hint", ""))
 

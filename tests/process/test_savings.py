@@ -44,7 +44,7 @@ async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_a
 ) -> None:
     async with engine_of_text(cleaning(7), cache_dir) as engine:
         search = Search(simulations=_SIMULATIONS, seed=1)
-        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
+        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=30))
     assert sum(action == "clean" for action in run.actions) >= 8
     assert {"charge", "empty_bin"} <= set(run.actions)
 

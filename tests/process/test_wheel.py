@@ -48,13 +48,6 @@ def test_the_main_job_runs_from_an_empty_folder(aos: Installation) -> None:
     assert (aos.folder / "runs" / "latest" / "summary.json").is_file()
 
 
-def test_an_example_is_written_once(aos_without_sim: Installation) -> None:
-    assert aos_without_sim.run("aos", "new", "example", "armadillo", "--in", "once").returncode == 0
-    again = aos_without_sim.run("aos", "new", "example", "armadillo", "--in", "once")
-    assert again.returncode == 1
-    assert "once is not empty. Nothing was written" in again.stderr
-
-
 def test_a_benchmark_runs_from_an_empty_folder(aos_without_sim: Installation) -> None:
     done = aos_without_sim.run("aos", "bench", "tiger", "--metric", "steps", "--quick", "--json")
     assert done.returncode == 0, done.stderr

@@ -29,7 +29,7 @@ def help_of(root: TyperGroup, path: tuple[str, ...]) -> str:
     text = io.StringIO()
     with redirect_stdout(text), pytest.MonkeyPatch.context() as patch:
         patch.setenv("COLUMNS", "80")
-        root.main([*path, "--help"], prog_name="aos", standalone_mode=False)
+        root.main([*path, "-h"], prog_name="aos", standalone_mode=False)
     return text.getvalue()
 
 
