@@ -180,23 +180,46 @@ FIELD_SKILLS = {
 }
 
 
-async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can_run(cache_dir: Path) -> None:
+@pytest.fixture
+async def field(cache_dir: Path) -> BuiltModel:
+    """A field that is first flooded in the north, and then watered in the south."""
     files = {"field.ef": FIELD}
     for skill, code in FIELD_SKILLS.items():
         files[f"{skill}.sd"] = f"project: field\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
         files[f"{skill}.am"] = mapping_text("done", project="field", skill=skill)
-    built = await built_text(files, cache_dir)
+    return await built_text(files, cache_dir)
 
-    def robot(request: Activate) -> Outcome:
-        return observed(request, "done")
 
-    around = Surroundings(robot)
+def done(request: Activate) -> Outcome:
+    return observed(request, "done")
+
+
+async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can_run(
+    field: BuiltModel,
+) -> None:
+    around = Surroundings(done)
     around.unavailable = {"flood": "its adapter has left"}
-    state, _ = await run_mission(built, robot, limits=MissionLimits(step_limit=20), around=around)
+    state, _ = await run_mission(field, done, limits=MissionLimits(step_limit=20), around=around)
     decisions = [record for record in around.records if record.outcome is None]
     assert [decision.skill for decision in decisions] == ["drive", *["water"] * 3, "drive", "water"]
     assert "flood is left out after 3 decisions for want of it: its adapter has left" in decisions[-1].why
     assert state.ending == "goal"
+
+
+async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_no_step_is_spent(
+    field: BuiltModel,
+) -> None:
+    def come_back() -> None:
+        around.unavailable = {}
+
+    around = Surroundings(done)
+    around.unavailable = dict.fromkeys(("flood", "water"), "its adapter has left")
+    around.on_hold = come_back
+    limits = MissionLimits(step_limit=20, stop_below_value=0.0)
+    await run_mission(field, done, limits=limits, around=around)
+    skills = [record.skill for record in around.decisions]
+    # Each second one is for want of what is away; without it nothing is worth a step.
+    assert skills[:8] == [*["drive"] * 7, "flood"]
 
 
 async def test_a_mission_does_not_hold_for_ever(finer: BuiltModel) -> None:

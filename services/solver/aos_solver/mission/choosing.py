@@ -38,6 +38,9 @@ class _Without(msgspec.Struct, frozen=True):
 
 
 _IDLE_DECISIONS = 5  # in a row: one or two may be bad luck of a search
+_RETURN_S = 5.0
+"""An adapter that has died is there again within this time, where it is started again."""
+_LOOKS = 10
 _GIVES_UP = (Ending.SKILLS_FAILED, Ending.NOTHING_WORTHWHILE)
 
 
@@ -142,7 +145,7 @@ class Chooser:
                 if action.skill not in without.reasons and action.name not in without.reasons
             ]
             if not set(possible) - forbidden:
-                if self._is_searched_anew():
+                if await self._is_searched_anew():
                     continue
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
             unavailable = self._around.unavailable
@@ -165,7 +168,7 @@ class Chooser:
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
             ended = await self._ending(engine, plan, belief, without)
-            if ended is not None and ended.ending in _GIVES_UP and self._is_searched_anew():
+            if ended is not None and ended.ending in _GIVES_UP and await self._is_searched_anew():
                 continue
             told = await self._endless.newly_found(engine)
             kept_back = _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
@@ -178,10 +181,18 @@ class Chooser:
             chosen_by, searches = self.search.chosen_by, self._searches.told()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
 
-    def _is_searched_anew(self) -> bool:
-        """Returns whether skills were passed over; they are not any more, as their adapters may come back."""
-        if not self._passed_over.reasons(self._around.unavailable):
+    async def _is_searched_anew(self) -> bool:
+        """Returns whether skills were passed over; they are not any more, as their adapters may come back.
+
+        That is waited for: decisions for want of them would use the mission's steps up in a moment.
+        """
+        away = self._passed_over.reasons(self._around.unavailable).keys()
+        if not away:
             return False
+        for _ in range(_LOOKS):
+            if not away <= self._around.unavailable.keys():
+                break
+            await self._around.until_changed(_RETURN_S / _LOOKS)
         self._passed_over.forget()
         return True
 

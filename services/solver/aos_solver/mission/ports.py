@@ -28,6 +28,10 @@ class Available(Protocol):
         """The count of announcements of each skill's adapter; 0 for skills that are not there."""
         ...
 
+    async def until_changed(self, timeout_s: float) -> None:
+        """Returns when other skills are available, when somebody wants the mission to go on, or in time."""
+        ...
+
 
 class Robot(Available, Protocol):
     """The robot and its world."""
@@ -39,10 +43,6 @@ class Robot(Available, Protocol):
 
     async def activate(self, request: Activate, action: str) -> Outcome:
         """Run the grounded action of this name; AosError when nobody can be asked or nobody answers."""
-        ...
-
-    async def until_changed(self, timeout_s: float) -> None:
-        """Returns when other skills are available, when somebody wants the mission to go on, or in time."""
         ...
 
 
