@@ -85,7 +85,7 @@ def test_a_reported_draw_is_emitted_as_its_distribution(dialect: str) -> None:
     for line in (
         "if (state.wet) __observed.depth = aos::Normal(2, 0.5);",
         "else __observed.depth = aos::Uniform(0, 1);",
-        "__observed.echoes[i] = aos::Discrete(aos::normalised, {0.5, 0.5});",
+        "aos::at(__observed.echoes, i) = aos::Discrete(aos::normalised, {0.5, 0.5});",
         "__observed.echoes.push_back( aos::Discrete({1.0}) );",
         "case 1: __observed.loud = aos::Bernoulli(0.2);",
         "aos::ReportedNumber<Source> depth;",
