@@ -11,6 +11,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
+from tests.wide.gauges import gauges
 from tests.wide.leaving import LEAVING, LEAVING_SIZES
 from tests.wide.lock import lock
 from tests.wide.photo import photo
@@ -23,8 +24,8 @@ from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 from .losses import error_of_mean
 from .mechanisms import BUNDLES, BundleRoute
 
-_SINGLE = {"rescue": rescue, "lock": lock, "towers": towers, "photo": photo}
-_SINGLE_SIZES = {"rescue": 3, "lock": 5, "towers": 10, "photo": 12}
+_SINGLE = {"rescue": rescue, "lock": lock, "towers": towers, "photo": photo, "gauges": gauges}
+_SINGLE_SIZES = {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8}
 
 _HERE = Path(__file__).parents[2] / "deploy" / "bundles" / "bench"
 

@@ -86,6 +86,7 @@ _SAVINGS = ("savings", "saving_lookahead")
 
 BUNDLES = (
     BundleRoute("survey", 1000, 60, ("plain_plans",)),
+    BundleRoute("gauges", 10_000, 60, ("detours",)),
     BundleRoute("diagnosis200", 2000, 40, ("simple_policies", "repeated_trials", "lower_trials")),
     BundleRoute(
         "lightdark",
@@ -111,7 +112,6 @@ BUNDLES = (
     BundleRoute("towers", 4000, 80, ("goal_conditions", "whole_lists", "retries", "kept_ways")),
     BundleRoute("tidy", 4000, 100, ("goal_conditions",)),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
-    BundleRoute("harbour", 1000, 60, ("options", "learned_values")),
     BundleRoute("rescue", 1000, 40, ("options", "tests_first")),
     BundleRoute("photo", 1000, 80, ("priced_information", "wide_values", "first_state")),
     BundleRoute("shelf", 1000, 60, ("estimated_draws",)),

@@ -5,6 +5,7 @@ from statistics import fmean
 
 from models import built_text, engine_of, engine_of_text
 from wide.delivery import delivery
+from wide.gauges import gauges
 from wide.leaving import questions, survey
 from wide.lock import lock
 from wide.problems import open_field, parcels
@@ -119,6 +120,16 @@ async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path) -> No
         run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
     assert run.actions[-1] == "leave"
     assert run.discounted_return > -9
+
+
+async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads(cache_dir: Path) -> None:
+    """A robot without detours reads what it knows, up to the last step, since nothing else costs less."""
+    async with engine_of_text(gauges(8), cache_dir) as engine:
+        limits = MissionLimits(goal_probability=1, step_limit=60)
+        run = await simulate_mission(engine, Search(simulations=10_000, seed=301), limits)
+    assert "wipe" in run.actions
+    assert run.actions[-1].startswith("report")
+    assert len(run.actions) < 60
 
 
 async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 
 from .apart import APART, APART_SIZES
 from .apart_rules import APART_RULES
-from .inspection import inspection, inspection_rule
+from .gauges import Gauges, gauges, gauges_rule
 from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
 from .lock import Lock, lock, lock_rule
 from .missions import Played, played
@@ -29,7 +29,6 @@ from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
 from .sorting import Sorting, sorting, sorting_rule
-from .tabletop import Tabletop, tabletop, tabletop_rule
 from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
 from .towers import Towers, towers, towers_rule
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
@@ -37,13 +36,12 @@ from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 _STEPS = 120  # at most, in a mission
 
 _SINGLE = {
-    "inspection": inspection,
     "rescue": rescue,
-    "tabletop": tabletop,
     "lock": lock,
     "towers": towers,
     "photo": photo,
     "sorting": sorting,
+    "gauges": gauges,
 }
 _BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
 _SIZES = (
@@ -52,7 +50,7 @@ _SIZES = (
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
-    | {"inspection": 16, "rescue": 3, "tabletop": 5, "lock": 5, "towers": 10, "photo": 12, "sorting": 10}
+    | {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "sorting": 10, "gauges": 8}
 )
 _RULES = (
     RULES
@@ -61,26 +59,18 @@ _RULES = (
     | TOGETHER_RULES
     | LEAVING_RULES
     | {
-        "inspection": inspection_rule,
         "rescue": rescue_rule,
-        "tabletop": tabletop_rule,
         "lock": lock_rule,
         "towers": towers_rule,
         "photo": photo_rule,
         "sorting": sorting_rule,
+        "gauges": gauges_rule,
     }
 )
 _WORLDS = (
     TOGETHER_WORLDS
     | LEAVING_WORLDS
-    | {
-        "rescue": Rescue,
-        "tabletop": Tabletop,
-        "lock": Lock,
-        "towers": Towers,
-        "photo": Photo,
-        "sorting": Sorting,
-    }
+    | {"rescue": Rescue, "lock": Lock, "towers": Towers, "photo": Photo, "sorting": Sorting, "gauges": Gauges}
 )
 
 

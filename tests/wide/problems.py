@@ -142,84 +142,10 @@ __observed.north = AOS.SampleNormal(state__.y, deviation);"""
     return writer.files
 
 
-def scales(settings: int = 17) -> Bundle:
-    """A load of unknown weight: weigh it on a coarse and on a fine scale, then choose a setting."""
-    writer = BundleWriter(
-        f"scales{settings}",
-        """horizon: 40
-discount: 0.97
-
-state_variable: double weight
-
-state_variable: bool is_held
-
-initial_belief:
-state.weight = AOS.SampleUniform(1, 9);
-
-reward_code:
-if (state.is_held) {
-    __isGoalState = true;
-    __reward = 20;
-}
-""",
-    )
-    for name, cost, deviation in (("heft", 0.3, 2.0), ("weigh", 1.5, 0.6)):
-        model = f"""__reward = -{cost};
-__moduleResponse = done;
-__observed.kg = AOS.SampleNormal(state.weight, {deviation});"""
-        writer.skill(name, ["done"], model, numbers=["kg"])
-    width = 8 / (settings - 1)
-    grip = f"""if (fabs(state.weight - (1 + {width!r} * setting)) < {0.8 * width!r}) {{
-    state__.is_held = true;
-    __moduleResponse = held;
-}} else {{
-    __reward = -6;
-    __moduleResponse = slipped;
-}}"""
-    writer.skill("grip", ["held", "slipped"], grip, over={"setting": str(settings)})
-    return writer.files
-
-
-def harbour(length: int = 60) -> Bundle:
-    """A boat on a line that knows of its place the depth below it, and shall anchor at one place."""
-    writer = BundleWriter(
-        f"harbour{length}",
-        f"""horizon: 60
-discount: 0.98
-
-state_variable: double x
-
-state_variable: bool is_anchored
-
-initial_belief:
-state.x = AOS.SampleUniform(0, {length});
-
-reward_code:
-if (state.is_anchored) {{
-    bool is_there = fabs(state.x - {0.7 * length!r}) < 2.5;
-    __reward = is_there ? 50 : -50;
-    __isGoalState = is_there;
-    __isFailureState = !is_there;
-}}
-""",
-    )
-    sail = f"""__reward = -0.5;
-state__.x = state.x + (step == 0 ? -6 : step == 1 ? -2 : step == 2 ? 2 : 6) + AOS.SampleNormal(0, 0.3);
-if (state__.x < 0) state__.x = 0;
-if (state__.x > {length}) state__.x = {length};
-__moduleResponse = sailed;
-__observed.depth = AOS.SampleNormal(10 + 4 * sin(state__.x / 5) + 0.1 * state__.x, 1.0);"""
-    writer.skill("sail", ["sailed"], sail, over={"step": "4"}, numbers=["depth"])
-    writer.skill("anchor", ["anchored"], "state__.is_anchored = true;\n__moduleResponse = anchored;")
-    return writer.files
-
-
 PROBLEMS: dict[str, Callable[[int], Bundle]] = {
     "parcels": parcels,
     "clutter": clutter,
     "open_field": open_field,
-    "scales": scales,
-    "harbour": harbour,
     "shelf": shelf,
 }
-SIZES = {"parcels": 14, "clutter": 40, "open_field": 9, "scales": 17, "harbour": 60, "shelf": 7}
+SIZES = {"parcels": 14, "clutter": 40, "open_field": 9, "shelf": 7}

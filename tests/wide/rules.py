@@ -85,61 +85,9 @@ def open_field(light: int, rng: random.Random) -> float:
     return discount * (100 if (at[0] - 9) ** 2 + (at[1] - 1) ** 2 < 1 else -100)
 
 
-def scales(settings: int, rng: random.Random) -> float:
-    """Weigh on the fine scale until the most likely setting holds with 0.8, then grip."""
-    weight = rng.uniform(1, 9)
-    grid = np.linspace(1, 9, 801)
-    odds = np.full(801, 1 / 801)
-    width = 8 / (settings - 1)
-    places = 1 + width * np.arange(settings)
-    earned, discount = 0.0, 1.0
-    for _ in range(40):
-        holds = [odds[np.abs(grid - place) < 0.8 * width].sum() for place in places]
-        best = int(np.argmax(holds))
-        if holds[best] > 0.8:
-            if abs(weight - places[best]) < 0.8 * width:
-                return earned + discount * 20
-            earned -= 6 * discount
-            odds[np.abs(grid - places[best]) < 0.8 * width] = 1e-12
-        else:
-            earned -= 1.5 * discount
-            odds *= np.exp(-0.5 * ((grid - rng.gauss(weight, 0.6)) / 0.6) ** 2)
-        odds /= odds.sum()
-        discount *= 0.97
-    return earned
-
-
-def harbour(length: int, rng: random.Random) -> float:
-    """Sail towards the anchorage by the mean of the belief until 0.8 of it is there, then anchor."""
-    draws = np.random.default_rng(rng.randrange(2**32))
-    x = rng.uniform(0, length)
-    cloud = draws.uniform(0, length, 4000)
-    goal = 0.7 * length
-    earned, discount = 0.0, 1.0
-    for turn in range(59):
-        if (np.abs(cloud - goal) < 2.5).mean() > 0.8:
-            break
-        gap = goal - cloud.mean() if cloud.std() < 5 else (6 if turn % 8 < 4 else -6)
-        step = float(np.clip(6 if gap > 4 else 2 if gap > 0 else -2 if gap > -4 else -6, -6, 6))
-        x = min(max(x + step + draws.normal(0, 0.3), 0), length)
-        cloud = np.clip(cloud + step + draws.normal(0, 0.3, len(cloud)), 0, length)
-
-        def depth(at: np.ndarray | float) -> np.ndarray:
-            return 10 + 4 * np.sin(np.asarray(at) / 5) + 0.1 * np.asarray(at)
-
-        logs = -0.5 * (depth(cloud) - draws.normal(depth(x), 1.0)) ** 2
-        weights = np.exp(logs - logs.max())
-        cloud = cloud[draws.choice(len(cloud), len(cloud), p=weights / weights.sum())]
-        earned -= 0.5 * discount
-        discount *= 0.98
-    return earned + discount * (50 if abs(x - goal) < 2.5 else -50)
-
-
 RULES: dict[str, Callable[[int, random.Random], float]] = {
     "parcels": parcels,
     "clutter": clutter,
     "open_field": open_field,
-    "scales": scales,
-    "harbour": harbour,
     "shelf": shelf_rule,
 }

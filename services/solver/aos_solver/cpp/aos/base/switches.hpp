@@ -12,7 +12,7 @@
 // Which planner decides:
 //   lists (of states), estimated_draws, exact, near_states, belief_tree, options, savings
 // Options:
-//   enough_ways, tests_first, goal_conditions, plain_plans, whole_lists, retries, kept_ways
+//   enough_ways, tests_first, goal_conditions, plain_plans, whole_lists, retries, kept_ways, detours
 // What saves most:
 //   saving_lookahead
 // SARSOP:
@@ -24,7 +24,7 @@
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
   of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings)                                  \
-  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways)                                                          \
+  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours)                                                       \
   of(saving_lookahead)                                                                                         \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information)  \

@@ -89,17 +89,27 @@ class OptionPolicy {
     for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
     note_way(likely, observing);
     if (switches::tests_first) pairs_.add_to(candidates_, observing, left, random);
-    settle(belief.probability_of(Ending::running));
+    if (switches::detours && is_idle()) moves_.add_detours(candidates_, tried_moves_, barred, left, random);
+    settle(belief.probability_of(Ending::running), horizon);
     taken_ = affordable_ - left;
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
 
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
-  // What the best candidate is worth if nothing more is observed after it.
+  // What the best candidate is worth if nothing more is observed after it; a lost step costs as much at each decision.
   double least() const { return least_; }
-  // The plain plan that returns most from the states of the decision, and how much an action earns there.
+  // The plain plan that returns most from the states of the decision, or that follows the best option; and how much an action earns there.
   PlainPlan plain_plan(int horizon, const BarredActions& barred, Sampler& random) {
-    return PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);
+    PlainPlan plan = PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);
+    if (!switches::detours || plan.action < 0) return plan;
+    const PlainPlan alone = plan;
+    for (const std::size_t option : likely_options(barred)) {
+      const StateWeights after = gains_.after(option, belief_.weights());
+      const double later = gains_.discount(option) * std::accumulate(after.begin(), after.end(), 0.0) * alone.returned;
+      const double returned = gains_.earned(option, belief_.weights()) + later;
+      if (returned > plan.returned) plan = {library_.options()[option].front(), returned, std::hypot(alone.error, error_of(option))};
+    }
+    return plan;
   }
   double reward_of(int action, Sampler& random) const { return PlainPlans<Model>::played(action, belief_, of_reward, 1, random).returned; }
   // Whether the world, left to itself, comes to cost more than ways earn where the state is seen. Ways do not tell then what to do.
@@ -249,9 +259,27 @@ class OptionPolicy {
     return views;
   }
 
+  // The standard error of what an option earns, since few states are drawn.
+  double error_of(std::size_t option) const {
+    const double mean = gains_.earned(option, belief_.weights());
+    double squares = 0;
+    for (std::size_t k = 0; k < belief_.size(); ++k) {
+      StateWeights one(belief_.size());
+      one[k] = 1;
+      squares += std::pow(belief_.weights()[k] * (gains_.earned(option, one) - mean), 2);
+    }
+    return std::sqrt(squares);
+  }
+
+  // Whether the best candidate observes, spares no regret by that, and costs more than is earned after it: a lost step.
+  bool is_idle() const {
+    const auto best = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
+    return best != candidates_.end() && !best->way.empty() && best->value < 0 && best->spared <= matters * std::abs(regret_.value_seen());
+  }
+
   // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
   // they are seen. Half of that distance is what may be wrong about it.
-  void settle(double running) {
+  void settle(double running, int horizon) {
     estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
     const OptionCandidate* best = nullptr;
     for (const OptionCandidate& candidate : candidates_) {
@@ -268,7 +296,8 @@ class OptionPolicy {
       estimate.standard_error = running * error;
     }
     reason_ = best != nullptr ? best->reason : "nothing";
-    least_ = best != nullptr ? running * best->value : 0;
+    const double steps = Model::discount < 1 ? (1 - std::pow(Model::discount, horizon)) / (1 - Model::discount) : horizon;
+    least_ = best != nullptr ? running * best->value * (switches::detours && is_idle() ? steps : 1) : 0;
   }
 
   bool is_prepared_ = false;
