@@ -350,8 +350,7 @@ class Claims {
   }
 
   void fail(const std::string& claim, const std::string& said, double lower, double upper) {
-    findings_.begin_object().member("claim", claim).member("who", who_).member("where", where_).member("said", said);
-    findings_.member("lower", lower).member("upper", upper).end_object();
+    findings_.push_back({claim, who_, where_, said, lower, upper});
   }
   static std::string number(double value) { return aos::number_text(value); }
 
@@ -360,7 +359,12 @@ class Claims {
     json.begin_object().member("problem", problem_.name).member("states", problem_.states()).member("claims", claims_);
     json.member("widest_bracket", widest_).key("planners").begin_object();
     for (const auto& [name, count] : planners_) json.member(name, count);
-    json.end_object().key("false").raw("[" + findings_.text() + "]").end_object();
+    json.end_object().key("false").begin_array();
+    for (const Finding& each : findings_) {
+      json.begin_object().member("claim", each.claim).member("who", each.who).member("where", each.where);
+      json.member("said", each.said).member("lower", each.lower).member("upper", each.upper).end_object();
+    }
+    json.end_array().end_object();
     return json.text();
   }
 
@@ -381,7 +385,11 @@ class Claims {
   std::map<std::string, int> planners_;
   std::string where_;
   std::string who_;
-  aos::JsonWriter findings_;
+  struct Finding {
+    std::string claim, who, where, said;
+    double lower, upper;
+  };
+  std::vector<Finding> findings_;
 };
 
 }  // namespace exam
