@@ -68,7 +68,7 @@ def test_no_list_of_commands_cuts_a_sentence_off(helps: dict[str, str]) -> None:
 
 
 def test_a_sentence_that_is_too_long_is_found() -> None:
-    app = typer.Typer(rich_markup_mode=None)
+    app = typer.Typer(rich_markup_mode=None, context_settings={"help_option_names": ["-h"]})
     app.callback()(lambda: None)
     app.command(help="word " * 40)(lambda: None)
     root = typer.main.get_command(app)

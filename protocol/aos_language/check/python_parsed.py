@@ -33,10 +33,8 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(_TEXT.sub("", code)) else ""
         if mode == "eval" and (error.text or "")[(error.offset or end) - 1 :].startswith("= "):
             hint = hint or "To compare, write `==`"
-        lines = re.sub(
-            r"(?<=on line )\d+", lambda n: str(snippet.locate(int(n[0]) - is_long, 1).line), error.msg
-        )
-        findings.error("AOS121", f"this is not Python: {lines}", span, hint)
+        message = _LINE.sub(lambda n: str(snippet.locate(int(n[0]) - is_long, 1).line), error.msg)
+        findings.error("AOS121", f"this is not Python: {message}", span, hint)
     except (ValueError, RecursionError, MemoryError) as error:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
     else:

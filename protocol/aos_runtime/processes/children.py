@@ -178,7 +178,11 @@ class Child:
 
     def _starved_s(self) -> float:
         """Returns for how long it and its children waited for a processor; 0 where the kernel is silent."""
-        return 0.0 if self.returncode is not None else _starved_s(self.pid)
+        return 0.0 if self.returncode is not None else _scheduled_s(self.pid)[1]
+
+    def ran_s(self) -> float:
+        """Returns for how long it and its children had a processor; 0 where the kernel is silent."""
+        return 0.0 if self.returncode is not None else _scheduled_s(self.pid)[0]
 
     @property
     def stdin(self) -> asyncio.StreamWriter:
@@ -258,12 +262,14 @@ def _children(pid: int) -> list[int]:
         return []
 
 
-def _starved_s(pid: int) -> float:
+def _scheduled_s(pid: int) -> tuple[float, float]:
+    """The time on a processor, and that of waiting for one, of a process and its children."""
     try:
-        waited_ns = int(Path(f"/proc/{pid}/schedstat").read_text().split()[1])
-    except (OSError, IndexError, ValueError):
-        return 0.0
-    return waited_ns / 1e9 + sum(map(_starved_s, _children(pid)))
+        ran_ns, waited_ns, *_ = map(int, Path(f"/proc/{pid}/schedstat").read_text().split())
+    except (OSError, ValueError):
+        return 0.0, 0.0
+    below = [_scheduled_s(child) for child in _children(pid)]
+    return ran_ns / 1e9 + sum(ran for ran, _ in below), waited_ns / 1e9 + sum(waited for _, waited in below)
 
 
 def _state(pid: int) -> str:

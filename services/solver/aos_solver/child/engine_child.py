@@ -169,6 +169,10 @@ class EngineChild:
         """The number of the document code that runs now or ran last, 0 for none; of threads, the first's."""
         return 0 if self._blame is None else running_piece(self._blame)
 
+    def ran_s(self) -> float:
+        """Returns for how long it had a processor; 0 where the kernel is silent."""
+        return self._child.ran_s()
+
     async def ask(
         self,
         command: str | None,

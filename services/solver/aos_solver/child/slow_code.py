@@ -6,8 +6,6 @@ statement by a build that tells of each of them.
 
 import asyncio
 import logging
-from collections import Counter
-from collections.abc import Iterable
 
 import msgspec
 
@@ -21,7 +19,7 @@ from aos_solver.emission.trace import TracedModel, traced
 log = logging.getLogger(__name__)
 
 _LEAST_SHARE = 0.5
-_LEAST_LOOKS = 20
+_LEAST_S = 0.02
 _STEPS_S = 0.5
 _LOOK_PERIOD_S = 0.002
 _PERIODS = 100
@@ -30,7 +28,7 @@ _DEADLINE_S = 12.0
 
 
 class SlowCode(msgspec.Struct, frozen=True):
-    """The place of code that ran at so large a `share` of the looks."""
+    """The place of code that ran for so large a `share` of the processor time."""
 
     span: Span
     share: float
@@ -38,8 +36,7 @@ class SlowCode(msgspec.Struct, frozen=True):
 
 async def slow_code(built: BuiltModel, start: EngineStart) -> SlowCode | None:
     """The code in which random steps spend half of their time or more; None where there is no such place."""
-    looks = await _looks(built, start)
-    piece, share = _most(looks)
+    piece, share = _most(await _times_s(built, start))
     if share < _LEAST_SHARE:
         return None
     trace = traced(built.emitted)
@@ -54,7 +51,7 @@ async def _slow_statement(
 ) -> SlowCode | None:
     try:
         told = await build(trace.emitted, cache_dir=built.cache_dir, kind="unoptimized")
-        number, share = _most(await _looks(told, start))
+        number, share = _most(await _times_s(told, start))
     except AosError as error:
         log.info("the slow statement was not found: %s", error)
         return None
@@ -62,31 +59,34 @@ async def _slow_statement(
     return SlowCode(trace.emitted.snippets[number - 1], share) if is_of_it else None
 
 
-async def _looks(built: BuiltModel, start: EngineStart) -> list[int]:
-    """The numbers of the code that ran at each look, 0 for the engine's own."""
+async def _times_s(built: BuiltModel, start: EngineStart) -> dict[int, float]:
+    """The processor times by the number of the code that ran, 0 for the engine's own.
+
+    It is no real time: others may have the processor for long while a piece runs.
+    """
     child = await EngineChild.launch(built, start, _PERIODS)
-    looks = []
+    times_s: dict[int, float] = {}
     try:
         await child.begin(_DEADLINE_S)
         command = command_line("rate", seconds=_STEPS_S, seed=start.seed)
         asking = asyncio.create_task(child.ask(command, dict, _DEADLINE_S))
+        before_s = child.ran_s()
         while not asking.done():
-            looks.append(child.running_piece)
+            piece = child.running_piece
             await asyncio.wait({asking}, timeout=_LOOK_PERIOD_S)
+            ran_s = child.ran_s()
+            times_s[piece] = times_s.get(piece, 0.0) + max(ran_s - before_s, 0.0)
+            before_s = ran_s
         asking.result()
     except ModelError as error:
         log.info("slow code ended: %s", error)
     finally:
         await child.close()
-    return looks
+    return times_s
 
 
-def _most(looks: Iterable[int]) -> tuple[int, float]:
-    """The number of the documents' code that ran at most looks, and its share of them; 0 of too few."""
-    counts = Counter(looks)
-    in_all = counts.total()
-    counts.pop(0, None)
-    if in_all < _LEAST_LOOKS or not counts:
-        return 0, 0.0
-    number, times = counts.most_common(1)[0]
-    return number, times / in_all
+def _most(times_s: dict[int, float]) -> tuple[int, float]:
+    """The number of the documents' code that ran longest, and its share; 0 of too little."""
+    in_all_s = sum(times_s.values())
+    number = max(times_s.keys() - {0}, key=times_s.__getitem__, default=0)
+    return (number, times_s[number] / in_all_s) if number and in_all_s >= _LEAST_S else (0, 0.0)
