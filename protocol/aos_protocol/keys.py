@@ -162,7 +162,8 @@ class Keys:
         return Serving(adapter, version, instance, "/" + path)
 
     def lack(self, lack: Lack) -> str:
-        adapter, reason = _checked(_NAME, lack.adapter, "adapter name"), quote(lack.reason, safe="") or "-"
+        adapter = _checked(_NAME, lack.adapter, "adapter name")
+        reason = quote(lack.reason[:999], safe="") or "-"  # Zenoh panics at keys of 64 kB.
         return f"{self._root}/lack/{adapter}/{reason}/{_path(lack.path)}"
 
     @property

@@ -63,6 +63,7 @@ def test_an_adapter_has_its_own_paths_and_no_others() -> None:
         lack = Lack("arm", "no node/service *here*?", path)
         assert is_allowed(ARM, "announces", KEYS.lack(lack))
         assert KEYS.lack_of(KEYS.lack(lack)) == lack
+    assert len(KEYS.lack(Lack("arm", "é" * 99_999, "/pick"))) < 60_000
     assert not is_allowed(ARM, "announces", KEYS.lack(Lack("arm", "none", "/drive")))
     assert not is_allowed(ARM, "answers", KEYS.call("/drive"))
     assert not is_allowed(ARM, "answers", "aos/r/call/**")

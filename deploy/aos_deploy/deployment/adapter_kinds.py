@@ -81,7 +81,7 @@ OURS = {
 
 
 def kind_of(name: str) -> Kind | None:
-    """The kind of that name. Only for one that is not ours is looked through what is installed."""
+    """The kind of that name. Installed packages are looked through for what is not ours."""
     return OURS.get(name) or adapter_kinds().get(name)
 
 
