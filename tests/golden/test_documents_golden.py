@@ -35,14 +35,14 @@ def files_of(case: str) -> dict[str, bytes]:
     return files | files_in(case)
 
 
-def test_the_bundle_that_the_cases_spoil_is_clean() -> None:
+def test_the_bundle_that_the_cases_spoil_is_clean():
     loaded = load_files(files_of("base"))
     assert loaded.project is not None
     assert loaded.diagnostics == ()
 
 
 @pytest.mark.parametrize("case", sorted(FOLDERS | CHANGES.keys()))
-def test_a_malformed_bundle_is_explained_as_stored(case: str) -> None:
+def test_a_malformed_bundle_is_explained_as_stored(case):
     loaded = load_files(files_of(case), name="kettle")
     text = "".join(f"{render(diagnostic)}\n" for diagnostic in loaded.diagnostics)
     expected = FOLDER / f"{case}.txt"

@@ -13,7 +13,7 @@ GOLDEN = Path(__file__).parent
 
 
 @pytest.mark.parametrize("example", ["kettle-json", "kettle-sdl"])
-def test_the_emitted_model_of_every_block_is_the_promoted_one(root: Path, example: str) -> None:
+def test_the_emitted_model_of_every_block_is_the_promoted_one(root: Path, example):
     program, _ = lower(bundle_project(root / "docs" / "examples" / example))
     assert program is not None
     cpp = emit(program).cpp
@@ -22,7 +22,7 @@ def test_the_emitted_model_of_every_block_is_the_promoted_one(root: Path, exampl
         check(GOLDEN / "kettle.cpp", cpp)
 
 
-def test_emission_gives_the_same_bytes_again(bundles: Path) -> None:
+def test_emission_gives_the_same_bytes_again(bundles: Path):
     first, second = (lower(bundle_project(bundles / "armadillo-finer"))[0] for _ in range(2))
     assert first is not None
     assert second is not None

@@ -24,26 +24,26 @@ def compare(folder: Path, expected: Path) -> None:
     assert generated == stored
 
 
-def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path) -> None:
+def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path):
     rough, finer = (project_in(bundles / f"armadillo-{name}") for name in ("rough", "finer"))
     assert [mapping.python for mapping in emit_project(rough)] == [mapping.python for mapping in emit_project(finer)]
 
 
-def test_a_json_mapping_with_every_construct_is_generated_as_stored() -> None:
+def test_a_json_mapping_with_every_construct_is_generated_as_stored():
     compare(EXPECTED / "valves", EXPECTED / "valves")
 
 
-def test_the_mapping_of_a_monitor_is_generated_as_stored() -> None:
+def test_the_mapping_of_a_monitor_is_generated_as_stored():
     compare(EXPECTED.parents[1] / "data" / "bundles" / "battery", EXPECTED / "battery")
 
 
-def test_generating_twice_gives_the_same_bytes(bundles: Path) -> None:
+def test_generating_twice_gives_the_same_bytes(bundles: Path):
     first, second = (emit_project(project_in(bundles / "armadillo-finer")) for _ in range(2))
     assert first == second
 
 
 @pytest.mark.corpus
-def test_every_mapping_of_the_original_bundles_is_generated(corpus: Path) -> None:
+def test_every_mapping_of_the_original_bundles_is_generated(corpus: Path):
     folders = [path for path in sorted(corpus.iterdir()) if path.is_dir() and path.name != "bad"]
     counts = {folder.name: len(emit_project(project_in(folder))) for folder in folders}
     assert counts == {

@@ -49,13 +49,13 @@ def is_allowed(party: Party, act: str, key: str) -> bool:
         ("a", "a/b", False),
     ],
 )
-def test_an_expression_includes_what_zenoh_says_it_does(pattern: str, key: str, is_included: bool) -> None:
+def test_an_expression_includes_what_zenoh_says_it_does(pattern, key, is_included):
     zenoh = pytest.importorskip("zenoh")
     assert includes(pattern, key) is is_included
     assert zenoh.KeyExpr(pattern).includes(zenoh.KeyExpr(key)) is is_included
 
 
-def test_an_adapter_has_its_own_paths_and_no_others() -> None:
+def test_an_adapter_has_its_own_paths_and_no_others():
     for path in ("/pick", "/gripper/open"):
         assert is_allowed(ARM, "answers", KEYS.call(path))
         assert is_allowed(ARM, "tells", KEYS.progress(path))
@@ -71,12 +71,12 @@ def test_an_adapter_has_its_own_paths_and_no_others() -> None:
     assert not is_allowed(ARM, "asks", KEYS.call("/pick"))
 
 
-def test_an_adapter_for_everything_else_has_not_what_is_bound_elsewhere() -> None:
+def test_an_adapter_for_everything_else_has_not_what_is_bound_elsewhere():
     assert is_allowed(REST, "answers", KEYS.call("/drive"))
     assert not is_allowed(REST, "answers", KEYS.call("/pick"))
 
 
-def test_who_may_steer_is_the_operator_and_who_looks_on_may_tell_nothing() -> None:
+def test_who_may_steer_is_the_operator_and_who_looks_on_may_tell_nothing():
     operator, watcher = (Party(name=role, role=role) for role in (OPERATOR, WATCHER))
     for key in (KEYS.start_mission, KEYS.stop_mission, KEYS.push_bundle, KEYS.call("/pick")):
         assert is_allowed(operator, "asks", key)
@@ -86,17 +86,17 @@ def test_who_may_steer_is_the_operator_and_who_looks_on_may_tell_nothing() -> No
     assert told == []
 
 
-def test_only_the_solver_tells_how_the_mission_is() -> None:
+def test_only_the_solver_tells_how_the_mission_is():
     assert [row.tells for row in TABLE if row.key == "mission/state"] == [(SOLVER,)]
 
 
-def test_another_robot_is_none_of_ones_business() -> None:
+def test_another_robot_is_none_of_ones_business():
     for role in ROLES:
         party = Party(name=role, role=role)
         assert not any(is_allowed(party, act, Keys("other").mission_state) for act in ACTS)
 
 
-def test_what_the_router_would_deny_is_told() -> None:
+def test_what_the_router_would_deny_is_told():
     access = Access("r", ARM)
     access.check("answers", KEYS.call("/pick"))
     with pytest.raises(
@@ -108,7 +108,7 @@ def test_what_the_router_would_deny_is_told() -> None:
         access.check("tells", KEYS.mission_state)
 
 
-def test_every_rule_of_the_router_has_a_name_of_its_own() -> None:
+def test_every_rule_of_the_router_has_a_name_of_its_own():
     access = access_control("r", [ARM, REST])
     names = [rule["id"] for rule in access["rules"]]
     assert len(set(names)) == len(names)
@@ -122,7 +122,7 @@ DENIED = (
 OVER = b"TRACE rx-1 ThreadId(09) zenoh::net::routing::interceptor: Msg intercepted!"
 
 
-def test_a_flood_of_refusals_is_a_few_lines() -> None:
+def test_a_flood_of_refusals_is_a_few_lines():
     told: list[str] = []
     log = RefusalLog(told.append)
     for _ in range(1500):
@@ -136,7 +136,7 @@ def test_a_flood_of_refusals_is_a_few_lines() -> None:
     assert len(told) < 1100
 
 
-def test_a_permission_that_is_looked_up_is_no_refusal_and_a_session_is_known_again() -> None:
+def test_a_permission_that_is_looked_up_is_no_refusal_and_a_session_is_known_again():
     told: list[str] = []
     log = RefusalLog(told.append)
     log.take(DENIED + b"aos/r/topic/camera")
@@ -151,7 +151,7 @@ def test_a_permission_that_is_looked_up_is_no_refusal_and_a_session_is_known_aga
     assert told[1:] == ["refused: a connection with a wrong password"]
 
 
-def test_every_key_has_a_row() -> None:
+def test_every_key_has_a_row():
     written = re.findall(r"^    aos/<robot>/(\S+)", keys.__doc__ or "", re.MULTILINE)
     rows = [row.key.replace("<topic>", "<path>") for row in TABLE]
     assert sorted(rows) == sorted(written)

@@ -13,7 +13,7 @@ from aos_protocol.messages import Activate, ActivationId
 LOOK = "project: fetch\nresponse: seen\nresponse_rule: True\nmodule_activation: skill\npath: /look\n"
 
 
-async def test_the_start_of_a_mappings_process_takes_nothing_of_it() -> None:
+async def test_the_start_of_a_mappings_process_takes_nothing_of_it():
     clock = Clock()
 
     async def start() -> None:

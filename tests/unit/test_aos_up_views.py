@@ -69,12 +69,12 @@ EVENTS: tuple[Event, ...] = (
 )
 
 
-def test_a_decision_without_simulations_says_that_nothing_was_searched() -> None:
+def test_a_decision_without_simulations_says_that_nothing_was_searched():
     record = msgspec.structs.replace(DECISION, planner="sarsop", simulations=0, threads=1)
     assert decision_line(record).endswith("]  sarsop without a search in 0.25 s")
 
 
-def test_a_decision_for_less_than_the_best_value_says_why() -> None:
+def test_a_decision_for_less_than_the_best_value_says_why():
     serve = ActionValue("serve", 5.0, 100, 0.5)
     why = "serve cannot be chosen now: no adapter answers calls of /serve"
     record = msgspec.structs.replace(DECISION, actions=(serve, *DECISION.actions[1:]), why=why)
@@ -82,13 +82,13 @@ def test_a_decision_for_less_than_the_best_value_says_why() -> None:
     assert why not in decision_line(msgspec.structs.replace(DECISION, why=why))
 
 
-def test_an_action_that_was_not_tried_stands_last_with_no_value() -> None:
+def test_an_action_that_was_not_tried_stands_last_with_no_value():
     untried = ActionValue("serve", 9.0, 0, 1.36)
     record = msgspec.structs.replace(DECISION, actions=(untried, *DECISION.actions[1:]))
     assert "[pick +2.71 ± 0.04, serve -]" in decision_line(record)
 
 
-def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others() -> None:
+def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others():
     actions = tuple(
         msgspec.structs.replace(DECISION.actions[0], action=f"a{i}", q=float(i)) for i in range(9)
     )
@@ -99,7 +99,7 @@ def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others(
     assert "a2 " not in line
 
 
-def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) -> None:
+def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]):
     with PlainView() as view:
         for event in EVENTS:
             view(event)
@@ -119,34 +119,30 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
     ]
 
 
-def test_a_removal_that_is_refused_is_told_with_its_project(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_removal_that_is_refused_is_told_with_its_project(capsys: pytest.CaptureFixture[str]):
     PlainView()(BundleReport("fetch", False, 3))
     assert capsys.readouterr().out == "a change of fetch refused, nothing has changed\n"
 
 
-def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]) -> None:
+def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]):
     worse = msgspec.structs.replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
     PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
     assert "goal 0.100  failure 0.250\n" in capsys.readouterr().out
 
 
-def test_the_goal_without_what_nobody_observed_is_told_where_it_differs(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_the_goal_without_what_nobody_observed_is_told_where_it_differs(capsys: pytest.CaptureFixture[str]):
     worse = msgspec.structs.replace(BELIEF, cautious=EndingOdds(0.0, 0.0, 0.0))
     PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
     assert "goal 0.100 (cautious 0.000)\n" in capsys.readouterr().out
 
 
-def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]):
     lost = Outcome(OUTCOME.id, "pick", "timed_out", fault=Fault("AOS503", "no answer within 9 s"))
     PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
     assert "pick -> timed_out (no answer within 9 s)" in capsys.readouterr().out
 
 
-def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(capsys: pytest.CaptureFixture[str]):
     lost = Outcome(OUTCOME.id, "pick", "failed", fault=Fault("AOS510", "no\nmap \x1b[31m"))
     PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
     assert "pick -> failed (no map  [31m)" in capsys.readouterr().out
@@ -154,12 +150,12 @@ def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(
     assert reason.isprintable()
 
 
-def test_an_empty_text_as_a_response_is_seen(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_empty_text_as_a_response_is_seen(capsys: pytest.CaptureFixture[str]):
     PlainView()(msgspec.structs.replace(OBSERVED, outcome=msgspec.structs.replace(OUTCOME, response="")))
     assert 'pick -> ""  surprise' in capsys.readouterr().out
 
 
-def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.CaptureFixture[str]) -> None:
+def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.CaptureFixture[str]):
     view = PlainView()
     for remark in ("listing states: 1 of 2", "listing states: 2 of 3", "computing first bounds: 1 of 10"):
         view(MissionState("m", "planning", 0, 0.0, remark=remark))
@@ -170,7 +166,7 @@ def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.Capture
     ]
 
 
-def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]):
     with JsonView() as view:
         for event in EVENTS:
             view(event)
@@ -196,7 +192,7 @@ def shown(screen: Screen, width: int = 120, height: int = 40) -> str:
     return text.getvalue()
 
 
-def test_the_screen_says_what_is_being_waited_for() -> None:
+def test_the_screen_says_what_is_being_waited_for():
     screen = Screen("armadillo")
     screen.take(ServiceChanged("registry", "ready", 0.1))
     screen.take(ServiceChanged("skills", "starting", 0.1))
@@ -205,7 +201,7 @@ def test_the_screen_says_what_is_being_waited_for() -> None:
     assert "compiling the model ... 0 s" in shown(screen)
 
 
-def test_the_screen_says_how_far_a_decision_is_and_for_how_long_it_has_been_made() -> None:
+def test_the_screen_says_how_far_a_decision_is_and_for_how_long_it_has_been_made():
     screen = Screen("armadillo")
     screen.take(MissionState("m", "planning", 0, 0.0, remark="listing states: 1 of 2"))
     screen.remark_since_s -= 7
@@ -215,7 +211,7 @@ def test_the_screen_says_how_far_a_decision_is_and_for_how_long_it_has_been_made
     assert "computing first bounds: 1 of 10 ... 0 s" in shown(screen)
 
 
-def test_the_screen_shows_steps_values_and_belief_bars() -> None:
+def test_the_screen_shows_steps_values_and_belief_bars():
     screen = Screen("armadillo")
     for event in EVENTS:
         screen.take(event)
@@ -235,7 +231,7 @@ def test_the_screen_shows_steps_values_and_belief_bars() -> None:
 
 
 @pytest.mark.parametrize("width", [80, 132])
-def test_a_number_with_many_values_is_shown_by_median_and_range(width: int) -> None:
+def test_a_number_with_many_values_is_shown_by_median_and_range(width):
     depth = Marginal("depth", {"1.234": 0.001}, 0.999, (0.512, 1.0, 1.5, 2.0, 2.468))
     screen = Screen("armadillo")
     belief = msgspec.structs.replace(OBSERVED.belief, marginals=(depth,))
@@ -271,7 +267,7 @@ def small_screen() -> Screen:
     return screen
 
 
-def test_the_screen_fits_80_columns_and_24_rows_with_every_number_whole() -> None:
+def test_the_screen_fits_80_columns_and_24_rows_with_every_number_whole():
     text = shown(small_screen(), 80, 24)
     for whole in ("step  action", "12  navigate(corridor)", "pick_succeeded", "-14.35  0.07  72,345", "0.75"):
         assert whole in text
@@ -281,13 +277,13 @@ def test_the_screen_fits_80_columns_and_24_rows_with_every_number_whole() -> Non
 
 @pytest.mark.parametrize("width", [80, 100, 132, 200])
 @pytest.mark.parametrize("height", [24, 40])
-def test_the_screen_keeps_to_the_terminal(width: int, height: int) -> None:
+def test_the_screen_keeps_to_the_terminal(width, height):
     lines = shown(small_screen(), width, height).rstrip().splitlines()
     assert len(lines) <= height
     assert max(map(len, lines)) <= width
 
 
-def test_actions_that_differ_in_their_middle_are_told_apart_in_a_narrow_terminal() -> None:
+def test_actions_that_differ_in_their_middle_are_told_apart_in_a_narrow_terminal():
     actions = tuple(ActionValue(f"take(side={side}_side)", 1.0, 10, 0.1) for side in ("left", "right"))
     screen = small_screen()
     screen.take(msgspec.structs.replace(MANY, step=13, actions=actions, action=actions[0].action))
@@ -306,7 +302,7 @@ def test_actions_that_differ_in_their_middle_are_told_apart_in_a_narrow_terminal
         ("succeeded", 1.0, "", "navigate(destination=corridor) ... 0 s\n"),
     ],
 )
-def test_the_screen_shows_how_far_the_skill_is(state: str, progress: float, text: str, expected: str) -> None:
+def test_the_screen_shows_how_far_the_skill_is(state, progress, text, expected):
     screen = small_screen()
     screen.take(SkillProgress(ActivationId("m", 12), "/navigate", state, progress, text))
     lines = shown(screen, 80, 24)
@@ -315,14 +311,14 @@ def test_the_screen_shows_how_far_the_skill_is(state: str, progress: float, text
     assert max(map(len, lines.splitlines())) <= 80
 
 
-def test_progress_of_another_step_or_by_hand_is_not_shown_as_that_of_the_skill() -> None:
+def test_progress_of_another_step_or_by_hand_is_not_shown_as_that_of_the_skill():
     for mission, step in (("m", 11), ("by-hand", 12)):
         screen = small_screen()
         screen.take(SkillProgress(ActivationId(mission, step), "/navigate", "executing", 0.5))
         assert "50%" not in shown(screen, 80, 24)
 
 
-def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("TERM", "xterm")
     text = io.StringIO()
     with LiveView("armadillo", Console(file=text, width=80, height=24, force_terminal=True)) as view:
@@ -335,7 +331,7 @@ def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.Monkey
     assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(rest)
 
 
-def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("FORCE_COLOR", "1")
     shown_on = console()
@@ -344,14 +340,14 @@ def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch
     assert captured.get() == "value\n"
 
 
-def test_the_screen_says_what_was_remarkable_about_a_step() -> None:
+def test_the_screen_says_what_was_remarkable_about_a_step():
     screen = Screen("armadillo")
     screen.take(msgspec.structs.replace(OBSERVED, remark="the local variables do not correct the belief"))
     screen.take(msgspec.structs.replace(DECISION, sequence=2, step=2))
     assert "step 1: the local variables do not correct the belief" in shown(screen)
 
 
-def test_the_live_view_draws_and_lets_go_of_the_terminal() -> None:
+def test_the_live_view_draws_and_lets_go_of_the_terminal():
     text = io.StringIO()
     with LiveView("armadillo", Console(file=text, width=120, force_terminal=True)) as view:
         for event in EVENTS:
@@ -368,7 +364,7 @@ def test_the_live_view_draws_and_lets_go_of_the_terminal() -> None:
         ({"is_plain": False, "is_json": True, "is_terminal": True}, JsonView),
     ],
 )
-def test_the_view_fits_where_it_is_shown(options: dict[str, bool], kind: type[object]) -> None:
+def test_the_view_fits_where_it_is_shown(options, kind):
     assert isinstance(make_view("armadillo", **options), kind)
 
 
@@ -384,7 +380,7 @@ def test_the_view_fits_where_it_is_shown(options: dict[str, bool], kind: type[ob
         ("cancelled", 130),
     ],
 )
-def test_each_ending_has_its_exit_code(ending: str, code: int) -> None:
+def test_each_ending_has_its_exit_code(ending, code):
     assert exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending=ending)) == code
 
 
@@ -399,7 +395,7 @@ def test_each_ending_has_its_exit_code(ending: str, code: int) -> None:
         ("AOS203", 3, 7),
     ],
 )
-def test_a_fault_counts_by_when_it_happens(code: str, before: int, after: int) -> None:
+def test_a_fault_counts_by_when_it_happens(code, before, after):
     error: AosError = error_from_code(code, "")
     assert exit_code_of_error(error) == before
     account = Account()

@@ -81,7 +81,7 @@ def errors(environment: str) -> list[Diagnostic]:
     return [finding for finding in load_files(files(environment=environment)).diagnostics if finding.is_error]
 
 
-def test_elements_exist_from_the_start_and_have_the_names_of_the_enums_values(model: ScriptedModel) -> None:
+def test_elements_exist_from_the_start_and_have_the_names_of_the_enums_values(model: ScriptedModel):
     state = model.play(initial="1").initial["state"]
     assert [state[f"at[{item}]"] for item in ("Soda", "Chips", "Tea")] == ["Shelf", "Shelf", "Table"]
     assert [state[f"price[{item}]"] for item in ("Soda", "Chips", "Tea")] == ["1.5", "2.5", "3"]
@@ -90,7 +90,7 @@ def test_elements_exist_from_the_start_and_have_the_names_of_the_enums_values(mo
     assert [state["rows[Tea][0]"], state["rows[Tea][1]"]] == ["7", "8"]
 
 
-def test_values_and_numbers_index_them_and_they_read_like_arrays(model: ScriptedModel) -> None:
+def test_values_and_numbers_index_them_and_they_read_like_arrays(model: ScriptedModel):
     played = model.play("take(item=soda)", "take(item=soda)", initial="1")
     assert played.observations == ["taken", "again"]
     assert played.values("at[Soda]") == ["Shelf", "Hand", "Hand"]
@@ -100,12 +100,12 @@ def test_values_and_numbers_index_them_and_they_read_like_arrays(model: Scripted
     assert played.steps[0]["state"]["rows[Tea][2]"] == "0"
 
 
-def test_a_list_of_another_length_is_a_fault(model: ScriptedModel) -> None:
+def test_a_list_of_another_length_is_a_fault(model: ScriptedModel):
     fault = model.fault("later", initial="1")
     assert "a list of 2 for an array over an enum of 3 values" in json.dumps(fault)
 
 
-def test_all_dialects_say_the_same() -> None:
+def test_all_dialects_say_the_same():
     bundle = load_files(files())
     assert bundle.project is not None, bundle.diagnostics
     assert "variable Place[Item] at = Shelf" in outline(bundle.project)
@@ -133,7 +133,7 @@ def test_all_dialects_say_the_same() -> None:
         ("vector<int> [ Item ]", ("vector<int>", True, "Item")),
     ],
 )
-def test_the_type_of_an_array_says_its_index(written: str, read: tuple[str, bool, str]) -> None:
+def test_the_type_of_an_array_says_its_index(written, read):
     assert array_type(written) == read
 
 
@@ -148,13 +148,13 @@ def test_the_type_of_an_array_says_its_index(written: str, read: tuple[str, bool
         ("state.at[Soda] == Hand -> state.robot.seen[Hand] == 1", "shop.ef:25:22", "The values of Item are"),
     ],
 )
-def test_an_index_that_is_of_no_enum_or_of_another_is_an_error(change: str, place: str, hint: str) -> None:
+def test_an_index_that_is_of_no_enum_or_of_another_is_an_error(change, place, hint):
     (error,) = errors(change)
     assert (error.code, str(error.span)) == ("AOS110", place)
     assert error.hint.startswith(hint)
 
 
-def test_a_parameter_that_is_an_enum_has_all_values_where_none_are_declared(model: ScriptedModel) -> None:
+def test_a_parameter_that_is_an_enum_has_all_values_where_none_are_declared(model: ScriptedModel):
     puts = {name: values for name, values in model.describe().items() if name.startswith("put")}
     assert list(puts) == [f"put(where={place}, item=soda)" for place in ("Shelf", "Table", "Hand")]
     assert model.play("put(where=Hand, item=soda)").values("at[Soda]") == ["Shelf", "Hand"]

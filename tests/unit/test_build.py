@@ -59,7 +59,7 @@ def places(error: ModelError) -> list[str]:
     return [str(diagnostic.span) for diagnostic in error.diagnostics]
 
 
-async def test_a_model_is_built_once_and_then_found(bundles: Path, cache_dir: Path) -> None:
+async def test_a_model_is_built_once_and_then_found(bundles: Path, cache_dir: Path):
     emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
     first = await build(emitted, cache_dir=cache_dir)
     told: list[str] = []
@@ -69,7 +69,7 @@ async def test_a_model_is_built_once_and_then_found(bundles: Path, cache_dir: Pa
     assert (second.executable.parent / "model.cpp").read_text() == emitted.cpp
 
 
-async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir: Path) -> None:
+async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir: Path):
     emitted = emitted_skill("state__.total += 1;")
     async with asyncio.TaskGroup() as tasks:
         both = [tasks.create_task(build(emitted, cache_dir=cache_dir)) for _ in range(2)]
@@ -79,7 +79,7 @@ async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir
     assert await answers(first)
 
 
-async def test_progress_says_what_takes_the_time(cache_dir: Path) -> None:
+async def test_progress_says_what_takes_the_time(cache_dir: Path):
     remarks: list[str] = []
     emitted = emitted_skill("state__.total += 2;")
     await build(emitted, cache_dir=cache_dir, on_progress=remarks.append)
@@ -97,8 +97,8 @@ async def test_progress_says_what_takes_the_time(cache_dir: Path) -> None:
     ],
 )
 async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
-    length: int, ready: set[int], chosen: int, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    length, ready, chosen, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+):
     usual = await build_engine(cache_dir)
     compiler = await find_compiler()
     names = {engine_name(compiler, size) for size in ready}
@@ -118,8 +118,8 @@ async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
 
 @pytest.mark.parametrize(("processors", "gigabytes", "at_once"), [(2, 8, 2), (2, 1, 1), (1, 8, 1), (4, 4, 2)])
 async def test_an_engine_has_a_compiler_for_each_processor_and_its_longest_part_begins(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, processors: int, gigabytes: int, at_once: int
-) -> None:
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, processors, gigabytes, at_once
+):
     begun: list[str] = []
     ended: list[str] = []
     most = 0
@@ -141,7 +141,7 @@ async def test_an_engine_has_a_compiler_for_each_processor_and_its_longest_part_
 
 async def test_a_part_of_the_engine_that_fails_stops_the_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     ended: list[str] = []
 
     async def compiled(_: Compiler, command: list[str], *__: Any, **___: Any) -> tuple[str, int]:
@@ -158,7 +158,7 @@ async def test_a_part_of_the_engine_that_fails_stops_the_others(
     assert not ended
 
 
-async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) -> None:
+async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path):
     error = await build_error(
         emitted_skill("int number = 1;\n\tstate__.total = numbr + 1;\n\n__reward = missing(number)"),
         cache_dir,
@@ -172,13 +172,13 @@ async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) ->
     )
 
 
-async def test_a_number_with_a_unit_is_told_without_the_compilers_words(cache_dir: Path) -> None:
+async def test_a_number_with_a_unit_is_told_without_the_compilers_words(cache_dir: Path):
     error = await build_error(emitted_skill("int length = 5m;"), cache_dir)
     (only,) = error.diagnostics
     assert only.message == "a number cannot have `m` behind it"
 
 
-async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path) -> None:
+async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path):
     document: dict[str, Any] = {
         "Preconditions": {"GlobalVariablePreconditionAssignments": [
             {"AssignmentCode": "int a = 1;\nint b = \"two\";\n__meetPrecondition = a > b;"}
@@ -199,12 +199,12 @@ async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path) -
     assert len(places(error)) == 1
 
 
-async def test_a_mistake_in_a_template_that_code_uses_is_told_where_it_is_used(cache_dir: Path) -> None:
+async def test_a_mistake_in_a_template_that_code_uses_is_told_where_it_is_used(cache_dir: Path):
     error = await build_error(emitted_skill("vector<int> v{3, 1};\nstd::sort(v.begin(), 7);"), cache_dir)
     assert places(error)[0].startswith("act.sd:4:")
 
 
-async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: Path) -> None:
+async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: Path):
     emitted = emitted_skill("state__.total = 5;")
     broken = EmittedModel(
         emitted.project,
@@ -224,7 +224,7 @@ async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: 
 
 async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     pids, cache, scratch = tmp_path / "pids", tmp_path / "cache", tmp_path / "scratch"
     pids.touch()
     scratch.mkdir()
@@ -238,7 +238,7 @@ async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(
     await until_ended([int(pid) for pid in pids.read_text().split()])
 
 
-async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path: Path) -> None:
+async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path: Path):
     async def fail(staging: Path) -> None:
         (staging / "half").write_text("half")
         raise ModelError("no")
@@ -248,7 +248,7 @@ async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp
     assert entries(tmp_path) == []
 
 
-async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path: Path) -> None:
+async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path: Path):
     async def make(staging: Path) -> None:
         (staging / "part").write_text("whole")
 
@@ -265,7 +265,7 @@ async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path: Path) ->
 
 async def test_what_models_include_is_compiled_once_and_changes_nothing(
     cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     compiler = await find_compiler()
     engine = await build_engine(cache_dir)
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)

@@ -79,7 +79,7 @@ def rewards(block: tuple[Assignment, ...]) -> set[str]:
 
 
 @pytest.mark.corpus
-def test_types_and_variables_are_the_same(pair: tuple[Project, Project]) -> None:
+def test_types_and_variables_are_the_same(pair: tuple[Project, Project]):
     ours_environment, theirs = (project.environment for project in pair)
     assert {v for enum in ours_environment.enums for v in enum.values} == {
         ours(v) for enum in theirs.enums for v in enum.values
@@ -92,7 +92,7 @@ def test_types_and_variables_are_the_same(pair: tuple[Project, Project]) -> None
 
 
 @pytest.mark.corpus
-def test_skills_parameters_responses_and_penalties_are_the_same(pair: tuple[Project, Project]) -> None:
+def test_skills_parameters_responses_and_penalties_are_the_same(pair: tuple[Project, Project]):
     described = [
         {
             (
@@ -110,7 +110,7 @@ def test_skills_parameters_responses_and_penalties_are_the_same(pair: tuple[Proj
 
 
 @pytest.mark.corpus
-def test_rewards_are_the_same(pair: tuple[Project, Project]) -> None:
+def test_rewards_are_the_same(pair: tuple[Project, Project]):
     mine, theirs = pair
     for skill in theirs.skills:
         model = mine.skill(ours(skill.name)).model
@@ -120,14 +120,13 @@ def test_rewards_are_the_same(pair: tuple[Project, Project]) -> None:
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_the_picking_skill_has_the_figures_of_its_statistics(bundles: Path, name: str) -> None:
+def test_the_picking_skill_has_the_figures_of_its_statistics(bundles: Path, name):
     (block,) = project_in(bundles / f"armadillo-{name}").skill("pick").model.dynamic_model
-    assert block.code is not None
     lists = re.findall(r"SampleDiscrete\(Ending, \{(.*?)\}", block.code.code)
     assert {figure.strip() for figures in lists for figure in figures.split(",")} == FIGURES[name]
 
 
-def test_without_sensing_and_with_the_enhanced_pick_the_rest_is_the_same(bundles: Path) -> None:
+def test_without_sensing_and_with_the_enhanced_pick_the_rest_is_the_same(bundles: Path):
     whole, blind, enhanced = (
         load_bundle(bundles / f"armadillo-finer{kind}").files for kind in ("", "-blind", "-enhanced")
     )
@@ -139,7 +138,7 @@ def test_without_sensing_and_with_the_enhanced_pick_the_rest_is_the_same(bundles
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_the_enhanced_pick_has_the_figures_of_the_plain_one(bundles: Path, name: str) -> None:
+def test_the_enhanced_pick_has_the_figures_of_the_plain_one(bundles: Path, name):
     """The original's enhanced finer pick gave four weights to five endings, and so other probabilities."""
     weights = [
         re.findall(r"SampleDiscrete\(Ending, \{(.*?)\}", (bundles / path / "pick.sd").read_text())
@@ -148,7 +147,7 @@ def test_the_enhanced_pick_has_the_figures_of_the_plain_one(bundles: Path, name:
     assert weights[0] == weights[1]
 
 
-def test_the_two_bundles_differ_in_the_picking_model_only(bundles: Path) -> None:
+def test_the_two_bundles_differ_in_the_picking_model_only(bundles: Path):
     rough, finer = (load_bundle(bundles / f"armadillo-{name}").files for name in FIGURES)
     assert {name for name in finer if finer[name] != rough[name]} == {"pick.sd"}
     for kind in ("blind", "enhanced"):
@@ -157,7 +156,7 @@ def test_the_two_bundles_differ_in_the_picking_model_only(bundles: Path) -> None
     assert len(picks) == 1
 
 
-def test_our_bundles_say_nothing_but_that_the_rough_weights_do_not_add_up_to_one(bundles: Path) -> None:
+def test_our_bundles_say_nothing_but_that_the_rough_weights_do_not_add_up_to_one(bundles: Path):
     """The published figures of the rough bundle add up to 1.095, those of the finer one are only rounded."""
     codes = {
         name: {diagnostic.code for diagnostic in load_bundle(bundles / f"armadillo-{name}").diagnostics}

@@ -19,13 +19,13 @@ def broken(bundles: Path, tmp_path: Path) -> Path:
     return folder
 
 
-def test_lint_of_a_good_bundle_ends_with_zero(bundles: Path) -> None:
+def test_lint_of_a_good_bundle_ends_with_zero(bundles: Path):
     result = aos("lint", bundles / "armadillo-rough", "--no-compile")
     assert result.exit_code == 0
     assert result.output.endswith("0 errors, 1 warning\n")
 
 
-def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Path, tmp_path: Path) -> None:
+def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Path, tmp_path: Path):
     folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
     path = folder / "pick.sd"
     path.write_text(path.read_text().replace("bool in_hand =", "bool in_hand = in_the_hand &&"))
@@ -45,7 +45,7 @@ def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Pa
     assert "no member named `nowhere`" not in together
 
 
-def test_lint_gives_sarif_with_rules_and_regions(broken: Path) -> None:
+def test_lint_gives_sarif_with_rules_and_regions(broken: Path):
     result = aos("lint", broken, "--format", "sarif")
     log = json.loads(result.output)
     assert log["version"] == "2.1.0"
@@ -68,14 +68,14 @@ def test_lint_gives_sarif_with_rules_and_regions(broken: Path) -> None:
     assert replacement["deletedRegion"] == {"startLine": 12, "startColumn": 41, "endColumn": 49}
 
 
-def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(broken: Path) -> None:
+def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(broken: Path):
     result = aos("lint", broken)
     assert result.exit_code == 1
     assert "serve.sd:12:41: error[AOS116]" in result.output
     assert "broken: error[AOS115]: there is no environment document" in result.output
 
 
-def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(bundles: Path) -> None:
+def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(bundles: Path):
     alone = aos("lint", bundles / "armadillo-retract", "--no-compile")
     assert alone.exit_code == 1
     assert "armadillo-retract --also BUNDLE" in alone.output
@@ -86,7 +86,7 @@ def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(bund
 
 
 @pytest.mark.parametrize("option", [("--json",), ("--format", "json")])
-def test_lint_gives_the_same_as_json(broken: Path, option: tuple[str, ...]) -> None:
+def test_lint_gives_the_same_as_json(broken: Path, option):
     result = aos("lint", broken, *option)
     found = json.loads(result.output)
     assert (found["errors"], found["bundle"]) == (2, str(broken))
@@ -95,7 +95,7 @@ def test_lint_gives_the_same_as_json(broken: Path, option: tuple[str, ...]) -> N
     assert error["hint"] == "Did you mean `delivered`?"
 
 
-def test_inspect_prints_the_documents_with_their_places(bundles: Path) -> None:
+def test_inspect_prints_the_documents_with_their_places(bundles: Path):
     result = aos("inspect", bundles / "armadillo-rough")
     assert result.exit_code == 0
     assert "project armadillo: horizon 10, discount 0.99" in result.output
@@ -105,25 +105,25 @@ def test_inspect_prints_the_documents_with_their_places(bundles: Path) -> None:
 
 
 @pytest.mark.parametrize("stage", ["documents", "model", "cpp", "python"])
-def test_inspect_prints_each_stage_as_json(bundles: Path, stage: str) -> None:
+def test_inspect_prints_each_stage_as_json(bundles: Path, stage):
     result = aos("inspect", bundles / "armadillo-rough", "--stage", stage, "--json")
     assert "pick" in str(json.loads(result.output)[stage])
 
 
-def test_inspect_prints_the_python_of_one_skill(bundles: Path) -> None:
+def test_inspect_prints_the_python_of_one_skill(bundles: Path):
     arguments = ["inspect", str(bundles / "armadillo-finer"), "--stage", "python", "--skill", "pick"]
     result = aos(*arguments)
     assert "skill pick, project armadillo" in result.output
     assert "navigate" not in result.output
 
 
-def test_inspect_of_a_broken_bundle_raises_with_all_findings(broken: Path) -> None:
+def test_inspect_of_a_broken_bundle_raises_with_all_findings(broken: Path):
     result = aos("inspect", broken)
     assert isinstance(result.exception, DocumentError)
     assert {d.code for d in result.exception.diagnostics if d.is_error} == {"AOS115", "AOS116"}
 
 
-def test_a_push_without_a_running_system_says_so(bundles: Path, tmp_path: Path) -> None:
+def test_a_push_without_a_running_system_says_so(bundles: Path, tmp_path: Path):
     arguments = ["bundle", "push", str(bundles / "armadillo-finer"), "--runs", str(tmp_path)]
     result = aos(*arguments)
     assert "there is no run in" in str(result.exception)

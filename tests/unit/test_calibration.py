@@ -33,12 +33,12 @@ def counted(draw: Draw, *counts: int) -> DrawEstimate:
 
 
 @pytest.mark.parametrize("counts", [(4, 0, 0), (2, 1, 1), (1, 1, 2), (3, 0, 1), (0, 2, 2)])
-def test_four_records_that_may_well_come_are_no_reason_to_change_a_number(counts: tuple[int, ...]) -> None:
+def test_four_records_that_may_well_come_are_no_reason_to_change_a_number(counts):
     assert not counted(discrete(0.6, 0.2, 0.2), *counts).is_contradicted
     assert not counted(discrete(0.5, 0.5), 4, 0).is_contradicted
 
 
-def test_what_is_inside_keeps_its_proportions_and_what_is_excluded_stays_so() -> None:
+def test_what_is_inside_keeps_its_proportions_and_what_is_excluded_stays_so():
     found = counted(discrete(0.6, 0.2, 0.2, 0.0), 10, 70, 20, 0)
     assert [outcome.is_inside for outcome in found.outcomes] == [False, False, True, True]
     assert found.is_contradicted
@@ -49,7 +49,7 @@ def test_what_is_inside_keeps_its_proportions_and_what_is_excluded_stays_so() ->
     assert sum(proposed_numbers(one)) == pytest.approx(1)
 
 
-def test_an_outcome_with_weight_0_is_never_proposed_even_where_it_came() -> None:
+def test_an_outcome_with_weight_0_is_never_proposed_even_where_it_came():
     found = counted(discrete(0.5, 0.5, 0.0), 10, 10, 20)
     assert not found.outcomes[2].is_inside
     assert not found.is_contradicted or proposed_numbers(found)[2] == 0.0
@@ -57,19 +57,19 @@ def test_an_outcome_with_weight_0_is_never_proposed_even_where_it_came() -> None
     assert not certain.is_contradicted
 
 
-def test_what_the_documents_exclude_explains_nothing_that_is_open() -> None:
+def test_what_the_documents_exclude_explains_nothing_that_is_open():
     open_one = Lattice(np.ones(2), (), (np.array([[1], [2]], dtype=np.int64),))
     (found,) = estimate([discrete(1.0, 0.0)], [open_one] * 4)
     assert [outcome.count for outcome in found.outcomes] == [4.0, 0.0]
     assert not found.is_contradicted
 
 
-def test_a_draw_that_decides_what_there_is_at_the_start_is_never_proposed() -> None:
+def test_a_draw_that_decides_what_there_is_at_the_start_is_never_proposed():
     assert counted(discrete(0.9, 0.1), 0, 40).is_contradicted
     assert not counted(discrete(0.9, 0.1, is_initial=True), 0, 40).is_contradicted
 
 
-def test_numbers_that_stay_are_not_in_the_patch() -> None:
+def test_numbers_that_stay_are_not_in_the_patch():
     found = counted(discrete(0.6, 0.2, 0.2), 10, 70, 20)
     patch, by_hand = patch_of([found], {"pick.sd": b"0.6 0.2 0.2\n"}, {"pick.sd": "pick.sd"})
     assert "+0.1 0.7 0.2" in patch
@@ -78,7 +78,7 @@ def test_numbers_that_stay_are_not_in_the_patch() -> None:
     assert not same
 
 
-def test_how_many_records_would_tell_falls_with_how_far_they_are_off() -> None:
+def test_how_many_records_would_tell_falls_with_how_far_they_are_off():
     near, far = counted(discrete(0.5, 0.5), 2, 2), counted(discrete(0.5, 0.5), 4, 0)
     assert near.records_to_tell == 97
     assert 4 < far.records_to_tell < near.records_to_tell
@@ -87,7 +87,7 @@ def test_how_many_records_would_tell_falls_with_how_far_they_are_off() -> None:
 
 def test_a_terminal_of_any_width_shows_the_whole_table(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     result = Calibration(9, 9, (), (counted(discrete(0.5, 0.5), 5, 4),), (), "", "", ())
     shown = {}
     for width in ("30", "80", "300"):

@@ -49,15 +49,15 @@ def bird(cache_dir: Path) -> ScriptedModel:
     ("action", "seen"),
     [("fly", 1), ("rest", 2), ("sing", 0), ("turn(by=2)", 20), ("turn(by=3)", 30), ("lean(by=4)", 400)],
 )
-def test_only_the_chosen_skill_is_seen(bird: ScriptedModel, action: str, seen: int) -> None:
+def test_only_the_chosen_skill_is_seen(bird: ScriptedModel, action, seen):
     assert bird.play(action).values("seen") == ["0", str(seen)]
 
 
-def test_a_skill_is_charged_for_itself_alone(bird: ScriptedModel) -> None:
+def test_a_skill_is_charged_for_itself_alone(bird: ScriptedModel):
     assert bird.play("fly", "rest", "fly", "sing").rewards == [-1, 0, -1, 0]
 
 
-def test_the_emitted_text_tells_skills_apart_by_their_names(bird: ScriptedModel) -> None:
+def test_the_emitted_text_tells_skills_apart_by_their_names(bird: ScriptedModel):
     chosen = bird.emitted.cpp.split("struct aos_Chosen {")[1].split("};")[0]
     for skill in ("fly", "rest", "turn", "lean", "never"):
         assert f"if constexpr (std::same_as<Skill, aos_skill_{skill}>) {skill} = &parameters;" in chosen

@@ -41,9 +41,7 @@ def found(folder: Path, claim: str, deploy: str = "fetch.yaml") -> list[str]:
         ("goal: true\n        when: {some: tkae}", "the skill tkae, which"),
     ],
 )
-def test_a_name_that_no_mission_can_have_is_a_mistake_at_its_claim(
-    folder: Path, claim: str, mistake: str
-) -> None:
+def test_a_name_that_no_mission_can_have_is_a_mistake_at_its_claim(folder: Path, claim, mistake):
     (only,) = found(folder, claim)
     assert only.startswith(f"6 a claim names {mistake}")
 
@@ -56,9 +54,9 @@ def test_a_name_that_no_mission_can_have_is_a_mistake_at_its_claim(
         "never_state: thing_at=Left, is_t | taken=t | world_ending=goal | anything else",
     ],
 )
-def test_what_a_mission_can_have_is_none(folder: Path, claim: str) -> None:
+def test_what_a_mission_can_have_is_none(folder: Path, claim):
     assert found(folder, claim) == []
 
 
-def test_where_documents_may_come_into_a_folder_their_names_are_not_known(folder: Path) -> None:
+def test_where_documents_may_come_into_a_folder_their_names_are_not_known(folder: Path):
     assert found(folder, "never: tkae", "watching.yaml") == []

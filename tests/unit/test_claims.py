@@ -47,7 +47,7 @@ DELIVERED = trial("pick > ok", "sense > empty", "sense > full", "go(to=hall) > t
         ("g", False),
     ],
 )
-def test_a_pattern_names_an_action_with_or_without_parameters_and_response(pattern: str, names: bool) -> None:
+def test_a_pattern_names_an_action_with_or_without_parameters_and_response(pattern, names):
     assert matches(pattern, "go(to=hall) > there") is names
 
 
@@ -79,11 +79,11 @@ def test_a_pattern_names_an_action_with_or_without_parameters_and_response(patte
         (Claim(says="", goal=False), False),
     ],
 )
-def test_each_check_can_hold_and_can_fail(claim: Claim, holds: bool) -> None:
+def test_each_check_can_hold_and_can_fail(claim, holds):
     assert judge(claim, [DELIVERED]).is_seen is holds
 
 
-def test_nothing_is_claimed_of_states_that_nobody_knows() -> None:
+def test_nothing_is_claimed_of_states_that_nobody_knows():
     claim = Claim(says="", never_state="hurt=true | lost=true")
     assert not judge(claim, [DELIVERED]).is_seen
     known = trial("a > b", states=("hurt=false, lost=false",))
@@ -116,20 +116,18 @@ WORLD = trial(
         (Claim(says="", around=Around(step="go", after='"held"')), False),
     ],
 )
-def test_the_world_is_asked_at_steps_and_knows_nothing_of_calls_that_it_has_not_seen(
-    claim: Claim, holds: bool
-) -> None:
+def test_the_world_is_asked_at_steps_and_knows_nothing_of_calls_that_it_has_not_seen(claim, holds):
     assert judge(claim, [WORLD]).is_seen is holds
 
 
-def test_a_model_says_how_its_world_ended() -> None:
+def test_a_model_says_how_its_world_ended():
     ended = Trial(seed=1, ending="goal", goal=False, actions=("a",), responses=("b",), states=("x=1",))
     assert not judge(Claim(says="", last_state="world_ending=failure"), [ended]).is_seen
     ended = msgspec.structs.replace(ended, world_ending="failure")
     assert judge(Claim(says="", last_state="world_ending=failure"), [ended]).is_seen
 
 
-def test_the_goal_of_a_system_is_asked_of_the_world_where_somebody_knows_it() -> None:
+def test_the_goal_of_a_system_is_asked_of_the_world_where_somebody_knows_it():
     claim = Claim(says="", goal=True)
     asked = asking_the_world(claim, "system", '"served": true')
     lies = trial("pick > ok", states=('{"step": 1, "served": false}',))
@@ -140,28 +138,28 @@ def test_the_goal_of_a_system_is_asked_of_the_world_where_somebody_knows_it() ->
     assert asking_the_world(claim, "system", "") == claim
 
 
-def test_a_claim_about_some_missions_leaves_the_others_out() -> None:
+def test_a_claim_about_some_missions_leaves_the_others_out():
     claim = Claim(says="", when=When(some="serve"), first="pick")
     verdict = judge(claim, [DELIVERED, trial("wait > ok", seed=2)])
     assert (verdict.held, verdict.missions, verdict.is_seen) == (1, 1, True)
     assert not judge(claim, [trial("wait > ok")]).is_seen, "no mission shows it"
 
 
-def test_a_mission_that_broke_counts_against_every_claim() -> None:
+def test_a_mission_that_broke_counts_against_every_claim():
     broken = Trial(seed=3, ending="fault", goal=False, fault="the engine has ended")
     verdict = judge(Claim(says="", never="drop", share=0.5), [DELIVERED, broken])
     assert verdict.failed_seeds == (3,)
     assert verdict.share.value == 0.5
 
 
-def test_surely_asks_the_lower_end_of_the_interval() -> None:
+def test_surely_asks_the_lower_end_of_the_interval():
     ten = [trial("a > b", seed=seed) for seed in range(10)]
     assert judge(Claim(says="", goal=True, share=0.8), ten).is_seen
     assert not judge(Claim(says="", goal=True, share=0.8, surely=True), ten).is_seen
     assert judge(Claim(says="", goal=True, share=0.7, surely=True), ten).is_seen
 
 
-def test_a_claim_that_fails_though_it_held_is_told_with_its_reason() -> None:
+def test_a_claim_that_fails_though_it_held_is_told_with_its_reason():
     unsure = judge(Claim(says="", goal=True, share=0.9, surely=True), [DELIVERED])
     assert verdict_text(unsure).endswith("; wanted 0.90 at the lower end; more missions may tell)")
     assert verdict_line("part", unsure).endswith("more missions may tell)")
@@ -169,17 +167,16 @@ def test_a_claim_that_fails_though_it_held_is_told_with_its_reason() -> None:
     assert (about_none.is_seen, verdict_text(about_none)) == (False, "no mission was one that it is about")
 
 
-def test_intervals_are_those_of_the_tables() -> None:
+def test_intervals_are_those_of_the_tables():
     share = interval_of_share(18, 20)
     assert (share.low, share.high) == pytest.approx((0.699, 0.972), abs=0.001)
     mean = interval_of_mean([1.0, 2.0, 3.0, 4.0, 5.0])
-    assert mean is not None
     assert mean.high - mean.value == pytest.approx(2.776 * (2.5 / 5) ** 0.5, abs=0.01)
     assert interval_of_mean([1.0]) == Interval(1.0, -math.inf, math.inf)
     assert interval_of_mean([]) is None
 
 
-def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path) -> None:
+def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path):
     path = tmp_path / "missions.yaml"
     path.write_text(
         "aos: 1\ntests:\n  one:\n    deploy: x.yaml\n    seeds: 0\n    claims:\n"
@@ -195,7 +192,7 @@ def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path)
 @pytest.mark.parametrize(
     "path", sorted(shipped("deploy/experiments").glob("*.yaml")), ids=lambda path: path.stem
 )
-def test_shipped_experiments_name_what_is_there(path: Path, tmp_path: Path) -> None:
+def test_shipped_experiments_name_what_is_there(path, tmp_path: Path):
     for part in read_experiment(path).parts.values():
         deployment_of(part, path.parent, tmp_path)
 
@@ -203,7 +200,7 @@ def test_shipped_experiments_name_what_is_there(path: Path, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     "path", sorted(shipped("deploy/experiments/statistics").glob("*.yaml")), ids=lambda path: path.stem
 )
-def test_shipped_scripts_name_what_is_there(path: Path, tmp_path: Path) -> None:
+def test_shipped_scripts_name_what_is_there(path, tmp_path: Path):
     file = read_script_file(path)
     for part in file.parts.values():
         assert deployment_of(part, path.parent, tmp_path).world is not None
@@ -211,7 +208,7 @@ def test_shipped_scripts_name_what_is_there(path: Path, tmp_path: Path) -> None:
         assert all((path.parent / bundle).is_dir() for bundle in bundles)
 
 
-def test_a_part_without_a_script_is_told_with_its_place(tmp_path: Path) -> None:
+def test_a_part_without_a_script_is_told_with_its_place(tmp_path: Path):
     path = tmp_path / "scripts.yaml"
     path.write_text("aos: 1\ntitle: T\nparts:\n  one: {deploy: x.yaml, missions: 2}\n")
     with pytest.raises(DeployError) as caught:
@@ -219,14 +216,14 @@ def test_a_part_without_a_script_is_told_with_its_place(tmp_path: Path) -> None:
     assert [(finding.code, finding.span.line) for finding in caught.value.diagnostics] == [("AOS105", 4)]
 
 
-def test_speed_is_simulated_time_for_processor_time() -> None:
+def test_speed_is_simulated_time_for_processor_time():
     line = '{"time_s": %g, "processor_s": %g}'
     whole = Trial(seed=1, ending="goal", goal=True, states=(line % (10.0, 1.0), line % (30.0, 2.0)))
     assert simulated_speed([whole]) == 10.0
     assert simulated_speed([Trial(seed=2, ending="goal", goal=True, states=("at=Home",))]) is None
 
 
-def test_a_claim_about_none_of_the_missions_is_said_to_have_no_case() -> None:
+def test_a_claim_about_none_of_the_missions_is_said_to_have_no_case():
     claim = Claim(says="", first="pick", when=When(some="drop"))
     assert (judge(claim, [DELIVERED]).is_seen, judge(claim, [DELIVERED]).word) == (False, "no case")
     assert judge(Claim(says="", first="serve"), [DELIVERED]).word == "not seen"

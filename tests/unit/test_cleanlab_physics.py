@@ -40,7 +40,7 @@ def at_station(file: CleanLabFile, name: str) -> CleanLabFile:
     return msgspec.structs.replace(file, robot=file.stations[name])
 
 
-def test_a_cup_is_seen_picked_and_taken_to_a_bin(file: CleanLabFile) -> None:
+def test_a_cup_is_seen_picked_and_taken_to_a_bin(file: CleanLabFile):
     name = filled_stations(file, 1)[0]
     world = CleanLab(at_station(file, name), 1)
     assert call(world, "/look") == {"is_there": True}
@@ -54,7 +54,7 @@ def test_a_cup_is_seen_picked_and_taken_to_a_bin(file: CleanLabFile) -> None:
     assert world.binned() == [name]
 
 
-def test_a_cup_is_seen_where_it_stands_and_not_where_it_stood(file: CleanLabFile) -> None:
+def test_a_cup_is_seen_where_it_stands_and_not_where_it_stood(file: CleanLabFile):
     name = filled_stations(file, 1)[0]
     world = CleanLab(at_station(file, name), 1)
     cup = world.cups[name]
@@ -65,7 +65,7 @@ def test_a_cup_is_seen_where_it_stands_and_not_where_it_stood(file: CleanLabFile
         assert place_of_cup(world) == pytest.approx(moved[:2], abs=0.003)
 
 
-def test_what_is_not_seen_is_not_grasped(file: CleanLabFile) -> None:
+def test_what_is_not_seen_is_not_grasped(file: CleanLabFile):
     """A cup that is white to the camera, in the place where one would stand beside it."""
     name = filled_stations(file, 1)[0]
     world = CleanLab(at_station(file, name), 1)
@@ -77,7 +77,7 @@ def test_what_is_not_seen_is_not_grasped(file: CleanLabFile) -> None:
     assert world.held_cup is None
 
 
-def test_at_an_empty_station_nothing_is_seen_and_nothing_picked(file: CleanLabFile) -> None:
+def test_at_an_empty_station_nothing_is_seen_and_nothing_picked(file: CleanLabFile):
     empty = next(name for name in file.stations if name not in filled_stations(file, 1))
     world = CleanLab(at_station(file, empty), 1)
     assert call(world, "/look") == {"is_there": False}
@@ -86,7 +86,7 @@ def test_at_an_empty_station_nothing_is_seen_and_nothing_picked(file: CleanLabFi
     assert world.sensors()["/gripper"]["gap_m"] < 0.01
 
 
-def test_glare_hides_a_cup_and_a_ghost_shows_one(file: CleanLabFile) -> None:
+def test_glare_hides_a_cup_and_a_ghost_shows_one(file: CleanLabFile):
     faulty = msgspec.structs.replace(file, faults=FaultModel(glare=1.0, ghost=1.0))
     name = filled_stations(file, 1)[0]
     empty = next(station for station in file.stations if station not in filled_stations(file, 1))
@@ -94,7 +94,7 @@ def test_glare_hides_a_cup_and_a_ghost_shows_one(file: CleanLabFile) -> None:
     assert call(CleanLab(at_station(faulty, empty), 1), "/look") == {"is_there": True}
 
 
-def test_cups_stand_on_different_stations_of_each_side(file: CleanLabFile) -> None:
+def test_cups_stand_on_different_stations_of_each_side(file: CleanLabFile):
     drawn = {tuple(sorted(filled_stations(file, seed))) for seed in range(20)}
     assert len(drawn) > 5
     for names in drawn:

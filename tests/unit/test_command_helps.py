@@ -45,13 +45,13 @@ def helps() -> dict[str, str]:
     return {" ".join(("aos", *path)): help_of(root, path) for path in paths_below(root, ())}
 
 
-def test_each_command_has_an_example_of_itself(helps: dict[str, str]) -> None:
+def test_each_command_has_an_example_of_itself(helps: dict[str, str]):
     assert len(helps) > 50
     examples = {name: " ".join(text.split()).replace("aos-up", "aos up") for name, text in helps.items()}
     assert [name for name, text in examples.items() if f"Example: {name}" not in text] == []
 
 
-def test_files_of_examples_are_there_or_made_by_commands(helps: dict[str, str]) -> None:
+def test_files_of_examples_are_there_or_made_by_commands(helps: dict[str, str]):
     named = set()
     for text in helps.values():
         example = re.sub(
@@ -63,11 +63,11 @@ def test_files_of_examples_are_there_or_made_by_commands(helps: dict[str, str]) 
     assert [name for name in files - {"armadillo/armadillo.yaml"} if not (ROOT / name).exists()] == []
 
 
-def test_no_list_of_commands_cuts_a_sentence_off(helps: dict[str, str]) -> None:
+def test_no_list_of_commands_cuts_a_sentence_off(helps: dict[str, str]):
     assert [line for text in helps.values() for line in cut_off(text)] == []
 
 
-def test_a_sentence_that_is_too_long_is_found() -> None:
+def test_a_sentence_that_is_too_long_is_found():
     app = typer.Typer(rich_markup_mode=None, context_settings={"help_option_names": ["-h"]})
     app.callback()(lambda: None)
     app.command(help="word " * 40)(lambda: None)

@@ -48,9 +48,7 @@ def found_in(path: Path, text: str) -> Diagnostic:
     ],
 )
 @pytest.mark.parametrize(("before", "after"), [("", ""), ('"', '"')])
-def test_a_mistake_is_told_at_its_place(
-    write: Path, never: str, code: str, at: int, text: str, before: str, after: str
-) -> None:
+def test_a_mistake_is_told_at_its_place(write: Path, never, code, at, text, before, after):
     found = found_in(write, f"    - never: {before}{never}{after}\n      probability: 0.01\n")
     assert found.code == code
     assert text in f"{found.message}. {found.hint}"
@@ -59,19 +57,19 @@ def test_a_mistake_is_told_at_its_place(
     assert never in found.excerpt
 
 
-def test_the_text_of_a_block_begins_in_the_line_below(write: Path) -> None:
+def test_the_text_of_a_block_begins_in_the_line_below(write: Path):
     never = "    - never: |\n        serve &&\n        stat.holding_can\n      probability: 0.01\n"
     assert found_in(write, never).span.line == 8
 
 
 @pytest.mark.parametrize("probability", ["1", "-0.1", "often"])
-def test_a_bound_is_a_probability_below_one(write: Path, probability: str) -> None:
+def test_a_bound_is_a_probability_below_one(write: Path, probability):
     found = found_in(write, f"    - {{never: serve, probability: {probability}}}\n")
     assert (found.code, found.span.line) == ("AOS106", 6)
     assert "mission.constraints[0].probability" in found.message
 
 
-def test_constraints_become_part_of_the_model(write: Path) -> None:
+def test_constraints_become_part_of_the_model(write: Path):
     write.write_text(write.read_text() + "    - {never: serve && state.holding_can, probability: 0.01}\n")
     program = lowered(project_of(read_deploy_file(write)))[0]
     assert isinstance(program, Program)
@@ -81,7 +79,7 @@ def test_constraints_become_part_of_the_model(write: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["serve", "often: serve", "1: serve", "0.1:", ": serve"])
-def test_an_option_that_is_no_constraint_says_how_to_write_one(text: str) -> None:
+def test_an_option_that_is_no_constraint_says_how_to_write_one(text):
     with pytest.raises(DeployError) as caught:
         constraint_of_option(text)
     assert caught.value.hint.startswith("Write it as --never '0.01: serve")

@@ -138,7 +138,7 @@ def page_rows(root: Path) -> dict[str, tuple[str, str]]:
 
 
 @pytest.mark.parametrize("construct", MISUSES)
-def test_a_construct_that_is_misused_is_told_at_its_place(construct: str) -> None:
+def test_a_construct_that_is_misused_is_told_at_its_place(construct):
     rule = MISUSES[construct]
     files, place = bundle_of(rule)
     loaded = load_files(files)
@@ -151,7 +151,7 @@ def test_a_construct_that_is_misused_is_told_at_its_place(construct: str) -> Non
     assert any(finding.is_error for finding in told) == (construct not in WARNED_OF)
 
 
-def test_the_page_of_the_constructs_names_every_one_and_tests_that_exist(root: Path) -> None:
+def test_the_page_of_the_constructs_names_every_one_and_tests_that_exist(root: Path):
     rows = page_rows(root)
     assert {name: code for name, (_, code) in rows.items()} == {
         name: rule.code for name, rule in MISUSES.items()

@@ -43,22 +43,22 @@ def says_the_same_in_both_dialects(files: dict[str, bytes]) -> None:
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", CORPUS)
-def test_an_original_bundle_says_the_same_in_both_dialects(corpus: Path, name: str) -> None:
+def test_an_original_bundle_says_the_same_in_both_dialects(corpus: Path, name):
     says_the_same_in_both_dialects(read_bundle_files(corpus / name)[0])
 
 
 @pytest.mark.parametrize("name", ["armadillo-finer", "armadillo-rough"])
-def test_a_shipped_bundle_says_the_same_in_both_dialects(bundles: Path, name: str) -> None:
+def test_a_shipped_bundle_says_the_same_in_both_dialects(bundles: Path, name):
     says_the_same_in_both_dialects(read_bundle_files(bundles / name)[0])
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
-def test_the_language_pages_examples_say_the_same_in_both_dialects(root: Path, dialect: str) -> None:
+def test_the_language_pages_examples_say_the_same_in_both_dialects(root: Path, dialect):
     files, _ = read_bundle_files(root / "docs" / "examples" / f"kettle-{dialect}")
     says_the_same_in_both_dialects(files)
 
 
-def test_file_names_come_from_the_documents_not_from_the_files(root: Path) -> None:
+def test_file_names_come_from_the_documents_not_from_the_files(root: Path):
     files, _ = read_bundle_files(root / "docs" / "examples" / "kettle-json")
     sdl = converted(files, Dialect.SDL)
     assert sorted(sdl) == ["environment.ef", "environment.lf", "pour.am", "pour.sd"]
@@ -66,12 +66,12 @@ def test_file_names_come_from_the_documents_not_from_the_files(root: Path) -> No
     assert sorted(converted(files, Dialect.JSON)) == names
 
 
-def test_versions_stay() -> None:
+def test_versions_stay():
     files = {"p.ef": ENVIRONMENT.replace(b"horizon", b"version: 1.4\nhorizon")}
     assert b"version: 1.4\n" in converted(converted(files, Dialect.JSON), Dialect.SDL)["environment.ef"]
 
 
-def test_a_default_that_ends_in_a_number_is_not_taken_for_a_scale() -> None:
+def test_a_default_that_ends_in_a_number_is_not_taken_for_a_scale():
     json = b"""{"PlpMain": {"Project": "p", "Name": "e", "Type": "Environment"},
         "EnvironmentGeneral": {"Horizon": 3, "Discount": 0.9},
         "GlobalVariableTypes": [{"TypeName": "T", "Type": "compound",
@@ -80,7 +80,7 @@ def test_a_default_that_ends_in_a_number_is_not_taken_for_a_scale() -> None:
     assert b'"Default": "2 + 5"' in back["environment.ef.json"]
 
 
-def test_what_the_other_dialect_cannot_say_is_refused_where_it_stands() -> None:
+def test_what_the_other_dialect_cannot_say_is_refused_where_it_stands():
     skill = b"""{"PlpMain": {"Project": "p", "Name": "s", "Type": "PLP"}, "DynamicModel":
         {"NextStateAssignments": [{"AssignmentCode": ["goto precondition;", "precondition:", "x();"]}]}}"""
     texts, findings = convert({"s.json": skill}, Dialect.SDL)
@@ -91,7 +91,7 @@ def test_what_the_other_dialect_cannot_say_is_refused_where_it_stands() -> None:
     assert error.span.file == "s.json"
 
 
-def test_a_document_with_mistakes_is_not_converted() -> None:
+def test_a_document_with_mistakes_is_not_converted():
     texts, findings = convert({"p.ef": b"project: p\nhorizon: many\n"}, Dialect.JSON)
     assert texts == {}
     assert [finding.code for finding in findings] == ["AOS106"]
@@ -105,7 +105,7 @@ LINES = st.lists(
 
 @settings(max_examples=60, deadline=None)
 @given(lines=LINES)
-def test_any_code_stays_as_it_is_or_is_refused(lines: list[str]) -> None:
+def test_any_code_stays_as_it_is_or_is_refused(lines: list[str]):
     text = "\n".join(lines)
     texts, findings = convert({"p.ef": ENVIRONMENT + f"initial_belief:\n{text}\n".encode()}, Dialect.JSON)
     if texts:
@@ -115,9 +115,7 @@ def test_any_code_stays_as_it_is_or_is_refused(lines: list[str]) -> None:
         assert any(finding.is_error for finding in findings)
 
 
-def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(
-    bundles: Path, tmp_path: Path
-) -> None:
+def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(bundles: Path, tmp_path: Path):
     from typer import Typer
 
     app = Typer()

@@ -25,7 +25,7 @@ def found(code: str) -> tuple[DrawingLoop, ...]:
         "do { state.side = AOSUtils::SampleDiscrete(state.odds); } while (state.side == 0);",
     ],
 )
-def test_a_loop_that_draws_is_told(code: str) -> None:
+def test_a_loop_that_draws_is_told(code):
     assert len(found(code)) == 1
 
 
@@ -41,11 +41,11 @@ def test_a_loop_that_draws_is_told(code: str) -> None:
         "int x = 0; if (state.side) { bool x = true; while (x) x = AOS.Bernoulli(0.5); }",
     ],
 )
-def test_others_are_left_as_they_are(code: str) -> None:
+def test_others_are_left_as_they_are(code):
     assert found(code) == ()
 
 
-def test_variables_are_those_that_the_condition_sees() -> None:
+def test_variables_are_those_that_the_condition_sees():
     code = """const int limit = 3;
 int outer, unrelated = 1;
 auto spin = [&](int n) { while (n > 0) n -= AOS.Bernoulli(0.5); return n; };
@@ -65,7 +65,7 @@ for (int i = 0; i < limit; i++) {
     assert read.after.drawing == {"AOS", "AOSUtils", "spin"}
 
 
-def test_a_function_sees_its_parameters_and_its_own_variables() -> None:
+def test_a_function_sees_its_parameters_and_its_own_variables():
     code = """const int most = 3;
 int roll(const auto& state, auto& state__, int sides) {
     int face = 0;
@@ -81,7 +81,7 @@ int twice(int sides) { while (roll(sides) < 1) {} return sides; }"""
     assert second.mentioned == ("sides",)
 
 
-def test_what_is_called_is_told_unless_it_is_a_lambda_that_keeps_nothing() -> None:
+def test_what_is_called_is_told_unless_it_is_a_lambda_that_keeps_nothing():
     code = """int x = 0, n = 0;
 auto plain = [&]() { x += AOS.Bernoulli(0.5); };
 auto keeps = [n]() mutable { n++; };
@@ -91,7 +91,7 @@ while (x < 1) { plain(); keeps(); }"""
     assert not loop.is_in_function
 
 
-def test_places_are_those_of_the_text_before_its_semicolons_are_put_in() -> None:
+def test_places_are_those_of_the_text_before_its_semicolons_are_put_in():
     code = "int é = 0;\nwhile (é == 0 /* again */) é = AOS.Bernoulli(0.5)"
     cpp = read_cpp(code)
     (loop,) = loops_of(cpp, STATE).loops

@@ -66,26 +66,26 @@ def found(code: str) -> list[tuple[str, int, bool]]:
 
 
 @pytest.mark.parametrize(("code", "name", "column"), NEVER)
-def test_what_no_way_sets_is_told_at_its_first_read(code: str, name: str, column: int) -> None:
+def test_what_no_way_sets_is_told_at_its_first_read(code, name, column):
     assert found(code) == [(name, column, True)]
 
 
 @pytest.mark.parametrize(("code", "name", "column"), SOMETIMES)
-def test_what_some_ways_leave_without_a_value_is_told_as_that(code: str, name: str, column: int) -> None:
+def test_what_some_ways_leave_without_a_value_is_told_as_that(code, name, column):
     assert found(code) == [(name, column, False)]
 
 
 @pytest.mark.parametrize("code", RIGHT)
-def test_what_has_or_may_well_have_a_value_is_left_alone(code: str) -> None:
+def test_what_has_or_may_well_have_a_value_is_left_alone(code):
     assert found(code) == []
 
 
-def test_places_count_characters_of_the_document_before_semicolons_that_were_put_in() -> None:
+def test_places_count_characters_of_the_document_before_semicolons_that_were_put_in():
     (unset,) = unset_reads(read_cpp('auto t = "ä"; { y = 1 }\nint x;\ny = x;'))
     assert (unset.extent.line, unset.extent.column) == (3, 5)
 
 
-def test_text_that_is_nested_very_deeply_is_read_or_left() -> None:
+def test_text_that_is_nested_very_deeply_is_read_or_left():
     assert found("int x; y = " + "(" * 5000 + "x" + ")" * 5000 + ";") in ([], [("x", 5012, True)])
     assert found("int x; " + "while (c) { " * 30 + "y = x; " + "}" * 30) == []
 
@@ -103,6 +103,6 @@ def test_text_that_is_nested_very_deeply_is_read_or_left() -> None:
         ),
     ],
 )
-def test_lint_tells_it_at_its_line(code: str, finding: str) -> None:
+def test_lint_tells_it_at_its_line(code, finding):
     skill = SKILL.replace("__moduleResponse", f"{code}\n__moduleResponse")
     assert finding_texts(skill=skill) == [finding]

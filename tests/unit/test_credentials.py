@@ -28,7 +28,7 @@ def run(tmp_path: Path) -> RunDirectory:
     return RunDirectory.create(tmp_path, "r", 0)
 
 
-def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory) -> None:
+def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory):
     passes = Passes(run, [Party(name=SOLVER, role=SOLVER), ARM])
     names = (SOLVER, "arm", OPERATOR, WATCHER)
     credentials = [credential_of_run(run.path, name) for name in names]
@@ -43,7 +43,7 @@ def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory) -> No
     assert passes.dictionary.stat().st_mode & 0o777 == 0o600
 
 
-def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path: Path) -> None:
+def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path: Path):
     file = tmp_path / "arm.password"
     first, second = (
         Passes(RunDirectory.create(tmp_path, "r", 0), [], [Outsider(ARM, file)]) for _ in range(2)
@@ -56,7 +56,7 @@ def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path: Path) -> None:
         Passes(RunDirectory.create(tmp_path, "r", 0), [], [Outsider(ARM, file)])
 
 
-def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path) -> None:
+def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path):
     (tmp_path / "password").write_text("secret\n")
     variables = {"AOS_USER": "arm", "AOS_PASSWORD_FILE": str(tmp_path / "password")}
     credential = credential_of_environment(variables)
@@ -69,7 +69,7 @@ def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path) -> No
 
 def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     # The folders of tests may have long paths themselves.
     with tempfile.TemporaryDirectory(dir="/tmp") as name:
         short = Path(name)
@@ -85,7 +85,7 @@ def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(
 
 
 @pytest.mark.parametrize("written", ["{command: [python], credential: x}", "{external: '', credential: 3}"])
-def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Path, written: str) -> None:
+def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Path, written):
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
         f"aos: 1\nrobot: r\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
@@ -98,7 +98,7 @@ def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Pat
 
 def test_a_unit_starts_a_mission_with_the_machine(
     root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(sys, "base_prefix", "/home/robot/.pyenv/versions/3.11")
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
@@ -139,7 +139,7 @@ def short_folder() -> Iterator[Path]:
 
 def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
     short_folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
     names = ("killed", "listened", "locked", "young", "filled")
     folders = {name: short_folder / f"aos-bus-{name}" for name in names}

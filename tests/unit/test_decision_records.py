@@ -6,7 +6,7 @@ from pathlib import Path
 MOST_WORDS = 320
 
 
-def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root: Path) -> None:
+def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root: Path):
     folder = root / "docs" / "decisions"
     status = {path.name[:4]: path.read_text().splitlines()[2] for path in folder.glob("0*.md")}
     names: set[tuple[str, str]] = set()
@@ -22,7 +22,7 @@ def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root
     assert marked == names
 
 
-def test_a_record_is_short(root: Path) -> None:
+def test_a_record_is_short(root: Path):
     """Some 200 words are enough for a situation, a choice and what follows; git keeps how it came about."""
     words = {path.name: len(path.read_text().split()) for path in (root / "docs/decisions").glob("0*.md")}
     assert {name: count for name, count in words.items() if count > MOST_WORDS} == {}

@@ -9,8 +9,8 @@ from long_run import write_long_run
 
 @pytest.mark.parametrize("is_killed", [True, False])
 def test_a_mission_that_was_killed_is_told_apart_from_one_that_has_ended(
-    tmp_path: Path, is_killed: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path: Path, is_killed, monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
     run = tmp_path / "runs" / write_long_run(tmp_path / "runs", 2, has_ended=not is_killed)
     told = aos("decisions", "--run", run)

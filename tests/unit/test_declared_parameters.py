@@ -103,7 +103,7 @@ def said(variable: StateVariable) -> tuple[object, ...]:
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
-def test_every_dialect_declares_the_same_parameters(dialect: str) -> None:
+def test_every_dialect_declares_the_same_parameters(dialect):
     variables = project(DIALECTS[dialect]).environment.variables
     assert [said(variable) for variable in variables] == [
         ("holder", "Person", "", False, None, None),
@@ -115,7 +115,7 @@ def test_every_dialect_declares_the_same_parameters(dialect: str) -> None:
     ]
 
 
-def test_what_is_read_of_a_bundle_shows_parameters_with_type_and_default() -> None:
+def test_what_is_read_of_a_bundle_shows_parameters_with_type_and_default():
     shown = outline(project(DIALECTS["SDL"]))
     assert "mission parameter Person target = bob " in shown
     assert "mission parameter bool[Person] wanted = true " in shown
@@ -141,7 +141,7 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("declared", MISTAKES)
-def test_a_mistake_with_a_parameter_is_told_in_its_line(declared: str) -> None:
+def test_a_mistake_with_a_parameter_is_told_in_its_line(declared):
     code, message = MISTAKES[declared]
     files = {"home.ef": f"{SDL}\n{declared}\n", "act.sd": SKILL}
     loaded = load_files(encoded(files))
@@ -151,7 +151,7 @@ def test_a_mistake_with_a_parameter_is_told_in_its_line(declared: str) -> None:
     assert found.span.line > SDL.count("\n")
 
 
-def test_a_variable_is_no_parameter_of_actions_and_of_missions_at_once() -> None:
+def test_a_variable_is_no_parameter_of_actions_and_of_missions_at_once():
     both = json_environment("PlpMain").replace(
         '"IsMissionParameter": true', '"IsMissionParameter": true, "IsActionParameterValue": true', 1
     )
@@ -159,7 +159,7 @@ def test_a_variable_is_no_parameter_of_actions_and_of_missions_at_once() -> None
     assert [(d.code, d.is_error) for d in loaded.diagnostics] == [("AOS106", True)]
 
 
-def test_a_local_variable_of_a_mapping_with_its_name_does_not_tell_it() -> None:
+def test_a_local_variable_of_a_mapping_with_its_name_does_not_tell_it():
     mapping = (
         "project: home\n\nresponse: done\nresponse_rule: count > 0\n\nmodule_activation: skill\n"
         "path: /act\n\nlocal_variable: count\ntype: int\nfrom_ros_service_response: true\ncode:\n"
@@ -174,7 +174,7 @@ def values(*options: str) -> dict[str, str]:
     return usable_values([mission_value_of_option(option) for option in options], leaves)
 
 
-def test_values_have_one_spelling_and_the_last_counts() -> None:
+def test_values_have_one_spelling_and_the_last_counts():
     found = values(
         "target=alice", "dock.x_m=.5", "dock.near=carol", "wanted[bob]=false", "wanted.carol=true",
         "count=+07", "word= so ", "target=carol",
@@ -190,7 +190,7 @@ def test_values_have_one_spelling_and_the_last_counts() -> None:
     }
 
 
-def test_an_engine_gets_them_as_the_numbers_of_a_saved_state() -> None:
+def test_an_engine_gets_them_as_the_numbers_of_a_saved_state():
     leaves = parameter_leaves(project(DIALECTS["SDL"]).environment)
     found = parameter_arguments(leaves, values("target=carol", "wanted.bob=true", "count=-2", "word=ab"))
     assert found == ("target=2", "wanted[bob]=1", "count=-2", "word=2 97 98")
@@ -213,7 +213,7 @@ def test_an_engine_gets_them_as_the_numbers_of_a_saved_state() -> None:
         ("target", "'target' sets no mission parameter. Write it as --set target=alice"),
     ],
 )
-def test_what_cannot_be_set_is_told_with_the_nearest_name(option: str, says: str) -> None:
+def test_what_cannot_be_set_is_told_with_the_nearest_name(option, says):
     with pytest.raises(DocumentError) as caught:
         values(option)
     assert caught.value.code == "AOS146"
@@ -241,7 +241,7 @@ def deploy_file(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_deploy_file_sets_parts_by_mappings(deploy_file: Path) -> None:
+def test_a_deploy_file_sets_parts_by_mappings(deploy_file: Path):
     given = project_of(read_deploy_file(deploy_file)).mission_values
     assert {value.name: value.text for value in given} == {
         "target": "carol",
@@ -251,7 +251,7 @@ def test_a_deploy_file_sets_parts_by_mappings(deploy_file: Path) -> None:
     }
 
 
-def test_documents_that_only_play_the_world_need_not_have_a_parameter(deploy_file: Path) -> None:
+def test_documents_that_only_play_the_world_need_not_have_a_parameter(deploy_file: Path):
     documents = deploy_file.with_name("home") / "home.ef"
     documents.write_text(documents.read_text().replace("target", "whom"))
     deployment = read_deploy_file(deploy_file)
@@ -270,8 +270,8 @@ def test_documents_that_only_play_the_world_need_not_have_a_parameter(deploy_fil
     ],
 )
 def test_a_wrong_value_of_a_deploy_file_is_told_where_it_stands(
-    deploy_file: Path, before: str, after: str, code: str, place: str
-) -> None:
+    deploy_file: Path, before, after, code, place
+):
     deploy_file.write_text(DEPLOY.replace(before, after))
     with pytest.raises(DeployError) as caught:
         project_of(read_deploy_file(deploy_file))
@@ -280,7 +280,7 @@ def test_a_wrong_value_of_a_deploy_file_is_told_where_it_stands(
     assert str(found.span).endswith(f"home.yaml:{place}")
 
 
-def test_a_policy_is_for_the_values_that_it_was_solved_with() -> None:
+def test_a_policy_is_for_the_values_that_it_was_solved_with():
     header = PolicyHeader(
         model="home", model_digest="d", discount=0.9, lower=0, upper=1, actions=("act",), states=("s",),
         mission_parameters={"target": "bob", "count": "3"},

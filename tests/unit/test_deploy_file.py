@@ -15,7 +15,7 @@ from aos_deploy.processes.program import programs_of_deployment
 from aos_protocol.errors import DeployError
 
 
-def test_what_is_not_said_has_its_default(folder: Path) -> None:
+def test_what_is_not_said_has_its_default(folder: Path):
     deployment = read(folder, HEAD)
     assert deployment.project == "rover"
     assert deployment.bundles == (folder / "bundle",)
@@ -25,7 +25,7 @@ def test_what_is_not_said_has_its_default(folder: Path) -> None:
     assert deployment.world is None
 
 
-def test_a_bundle_may_be_an_archive(folder: Path) -> None:
+def test_a_bundle_may_be_an_archive(folder: Path):
     archive = Path(shutil.make_archive(str(folder / "packed"), "zip", folder / "bundle"))
     deployment = read(folder, HEAD.replace("bundle]", "packed.zip]") + "leave_out: [look]\n")
     assert deployment.bundles == (archive,)
@@ -33,12 +33,12 @@ def test_a_bundle_may_be_an_archive(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["leave_out: [look]\n", "watch: drop\n"])
-def test_settings_of_a_skill_that_comes_later_are_taken(folder: Path, text: str) -> None:
+def test_settings_of_a_skill_that_comes_later_are_taken(folder: Path, text):
     name = "look" if "look" in text else "new_skill"
     assert set(read(folder, HEAD + text + f"skills: {{{name}: {{retries: 2}}}}\n").file.skills) == {name}
 
 
-def test_everything_that_can_be_said_arrives(folder: Path) -> None:
+def test_everything_that_can_be_said_arrives(folder: Path):
     deployment = read(
         folder,
         HEAD
@@ -64,11 +64,11 @@ runs: ../elsewhere
 
 
 @pytest.mark.parametrize("name", ["armadillo", "armadillo-rough", "armadillo-hotplug"])
-def test_the_shipped_deploy_files_are_good(root: Path, name: str) -> None:
+def test_the_shipped_deploy_files_are_good(root: Path, name):
     assert read_deploy_file(root / "deploy" / f"{name}.yaml").file.robot == "armadillo"
 
 
-def test_programs_stand_between_the_services_and_the_adapters(folder: Path) -> None:
+def test_programs_stand_between_the_services_and_the_adapters(folder: Path):
     deployment = read(
         folder,
         HEAD
@@ -118,7 +118,7 @@ programs:
         ("{command: [a], host: arm, ready: {port: 1}}", "AOS106 programs.nav.ready.port is looked for"),
     ],
 )
-def test_mistakes_about_programs_are_told_at_their_place(folder: Path, part: str, found: str) -> None:
+def test_mistakes_about_programs_are_told_at_their_place(folder: Path, part, found):
     (finding,) = findings(folder, f"{HEAD}programs:\n  nav: {part}\n")
     line, _, said = finding.partition(" ")
     assert line.startswith("5:")
@@ -126,13 +126,13 @@ def test_mistakes_about_programs_are_told_at_their_place(folder: Path, part: str
 
 
 @pytest.mark.parametrize("name", ["solver", "arm", "two words"])
-def test_a_program_has_a_name_of_its_own(folder: Path, name: str) -> None:
+def test_a_program_has_a_name_of_its_own(folder: Path, name):
     text = f"{HEAD}adapters: {{arm: {{command: [./arm]}}}}\nbind: {{/drive: arm}}\n"
     (finding,) = findings(folder, f"{text}programs: {{{name}: {{command: [a]}}}}\n")
     assert f"AOS126 {name!r} is no name for a program" in finding
 
 
-def test_what_a_deploy_file_starts_is_looked_for_before_it_is_started(folder: Path) -> None:
+def test_what_a_deploy_file_starts_is_looked_for_before_it_is_started(folder: Path):
     def missing(command: str) -> str:
         with pytest.raises(DeployError) as caught:
             check_needed_here(read(folder, f"{HEAD}programs: {{nav: {{command: {command}}}}}\n"))
@@ -149,7 +149,7 @@ def test_what_a_deploy_file_starts_is_looked_for_before_it_is_started(folder: Pa
         check_needed_here(read(folder, f"{HEAD}programs: {{nav: {{command: {command}}}}}\n"))
 
 
-def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
+def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path):
     deployment = read_deploy_file(root / "deploy" / "armadillo-hotplug.yaml")
     assert deployment.file.leave_out == ("observe_holding", "observe_arm_outstretched")
 
@@ -235,7 +235,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ("solver: {simulations: 9, time_s: 1}", "4:34 AOS106 solver has both simulations and time_s"),
     ],
 )
-def test_a_mistake_is_named_with_its_place(folder: Path, text: str, found: str) -> None:
+def test_a_mistake_is_named_with_its_place(folder: Path, text, found):
     assert findings(folder, f"{HEAD}{text}\n")[0].startswith(found)
 
 
@@ -252,21 +252,21 @@ def test_a_mistake_is_named_with_its_place(folder: Path, text: str, found: str) 
         (HEAD.replace("[bundle]", "[bundle, gone]"), "3:19 AOS101 there is no bundle folder"),
     ],
 )
-def test_what_a_file_must_have(folder: Path, text: str, found: str) -> None:
+def test_what_a_file_must_have(folder: Path, text, found):
     assert findings(folder, text)[0].startswith(found)
 
 
-def test_all_mistakes_are_found_in_one_run(folder: Path) -> None:
+def test_all_mistakes_are_found_in_one_run(folder: Path):
     text = f"{HEAD}leave_out: [lok]\nworld: gone.yaml\nsolver: {{sed: 1, seed: x}}\nmission: 3\n"
     assert [found.split()[0] for found in findings(folder, text)] == ["4:13", "5:8", "6:10", "6:24", "7:10"]
 
 
-def test_a_path_of_an_adapter_with_a_mistake_is_none_as_well(folder: Path) -> None:
+def test_a_path_of_an_adapter_with_a_mistake_is_none_as_well(folder: Path):
     text = f"{HEAD}adapters: {{arm: {{command: ./arm}}}}\nbind: {{'*': arm, /drive: {{arm: go}}}}\n"
     assert [found.split(".command")[0] for found in findings(folder, text)] == ["4:12 AOS106 adapters.arm"]
 
 
-def test_a_path_that_is_nearly_one_of_a_skill_is_remarked_where_another_adapter_moves(folder: Path) -> None:
+def test_a_path_that_is_nearly_one_of_a_skill_is_remarked_where_another_adapter_moves(folder: Path):
     deployment = read(
         folder, f"{HEAD}bind: {{/drvie: pybullet, /pick: pybullet, '*': model}}\nworld: room.yaml\n"
     )
@@ -276,7 +276,7 @@ def test_a_path_that_is_nearly_one_of_a_skill_is_remarked_where_another_adapter_
     assert misspelt_paths(deployment, ["/drvie", "/look"]) == (), "a skill that picks may come"
 
 
-def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path) -> None:
+def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path):
     with pytest.raises(DeployError) as absent:
         read_deploy_file(folder / "absent.yaml")
     assert absent.value.message == f"there is no deploy file {folder / 'absent.yaml'}"
@@ -287,7 +287,7 @@ def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path) -> None:
     assert "not UTF-8" in binary.value.diagnostics[0].message
 
 
-def test_only_endpoints_of_this_machine_are_taken() -> None:
+def test_only_endpoints_of_this_machine_are_taken():
     for good in ("tcp/127.0.0.1:7447", "tcp/localhost:0", "tcp/[::1]:7447"):
         check_endpoint(good)
     for bad in ("tcp/192.168.0.1:7447", "udp/127.0.0.1:7447", "127.0.0.1:7447", "tcp/127.0.0.1"):
@@ -298,7 +298,7 @@ def test_only_endpoints_of_this_machine_are_taken() -> None:
 # --- a folder in place of the file ---
 
 
-def test_a_folder_with_one_deploy_file_stands_for_it(folder: Path) -> None:
+def test_a_folder_with_one_deploy_file_stands_for_it(folder: Path):
     (folder / "rover.yaml").write_text(HEAD)
     (folder / "tests.yaml").write_text("aos: 1\nmissions: []\n")
     assert read_deploy_file(folder).path == folder / "rover.yaml"
@@ -311,15 +311,13 @@ def refusal(path: Path) -> str:
     return str(caught.value)
 
 
-def test_a_folder_with_several_deploy_files_is_refused_with_their_names(folder: Path) -> None:
+def test_a_folder_with_several_deploy_files_is_refused_with_their_names(folder: Path):
     for name in ("a", "b"):
         (folder / f"{name}.yaml").write_text(HEAD)
     assert f"has 2 deploy files. Name one: {folder / 'a.yaml'}, {folder / 'b.yaml'}" in refusal(folder)
 
 
-def test_a_bundle_is_refused_with_the_deploy_file_beside_it(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_bundle_is_refused_with_the_deploy_file_beside_it(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(folder)
     text = refusal(Path("bundle"))
     assert text.endswith("no deploy file. Write one for it: aos new adapter model --in bundle")
@@ -327,6 +325,6 @@ def test_a_bundle_is_refused_with_the_deploy_file_beside_it(
     assert refusal(Path("bundle")).endswith("no deploy file. Name one that has it: rover.yaml")
 
 
-def test_a_folder_of_anything_else_is_refused_with_what_to_give(folder: Path) -> None:
+def test_a_folder_of_anything_else_is_refused_with_what_to_give(folder: Path):
     (folder / "empty").mkdir()
     assert "is a folder without a deploy file. Name a deploy file" in refusal(folder / "empty")

@@ -10,7 +10,7 @@ from aos_deploy.processes.program import programs_of_deployment
 from aos_runtime.adapters import AdapterSettings, Binding
 
 
-def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("AOS_CACHE_DIR", str(folder / "cache"))
     deployment = read(folder, f"{HEAD}watch: drop\nworld: room.yaml\nbind: {{/drive: pybullet}}\n")
     programs = {program.name: program for program in programs_of_deployment(deployment)}
@@ -36,14 +36,14 @@ def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.
     assert solver["goal_probability"] == 0.9
 
 
-def test_the_middleware_is_told_which_skills_are_played_by_their_documents(folder: Path) -> None:
+def test_the_middleware_is_told_which_skills_are_played_by_their_documents(folder: Path):
     deployment = read(folder, HEAD + 'bind: {/pick: model, /drive: external, "*": model}\n')
     programs = {program.name: program for program in programs_of_deployment(deployment)}
     assert programs["middleware"].settings["played"] == ["/pick", "*"]
     assert programs["middleware"].settings["elsewhere"] == ["/drive"]
 
 
-def test_a_command_is_started_in_the_folder_of_the_deploy_file_or_of_its_host(folder: Path) -> None:
+def test_a_command_is_started_in_the_folder_of_the_deploy_file_or_of_its_host(folder: Path):
     text = """\
 adapters: {near: {command: [./arm]}, far: {command: [./arm], host: robot@arm, folder: /opt/arm}}
 bind: {/pick: near, /place: far}
@@ -53,7 +53,7 @@ bind: {/pick: near, /place: far}
     assert (programs["far"].folder, programs["far"].host) == ("/opt/arm", "robot@arm")
 
 
-def test_adapters_get_their_paths_their_options_and_what_others_serve(folder: Path) -> None:
+def test_adapters_get_their_paths_their_options_and_what_others_serve(folder: Path):
     deployment = read(
         folder,
         HEAD

@@ -69,7 +69,7 @@ def responses(model: str) -> list[str]:
     return [rule.response for rule in mapping_of(f"project: barn\ndynamic_model:\n{model}\n").rules]
 
 
-def test_the_call_has_the_skills_name_and_its_parameters_and_the_result_the_response() -> None:
+def test_the_call_has_the_skills_name_and_its_parameters_and_the_result_the_response():
     assert mapping_of(LOOK).activation.path == "/look"
     mapping = running()
     assert fields(mapping, {"side": "Left"}) == {"side": "Left"}
@@ -80,14 +80,14 @@ def test_the_call_has_the_skills_name_and_its_parameters_and_the_result_the_resp
 
 
 @pytest.mark.parametrize(("head", "kind"), [("PlpMain", "PLP"), ("GsdlMain", "GSDL")])
-def test_the_json_dialects_derive_the_same(head: str, kind: str) -> None:
+def test_the_json_dialects_derive_the_same(head, kind):
     document = {head: {"Project": "barn", "Name": "look", "Type": kind}, **LOOK_JSON}
     bundle = load_files({"barn.ef": ENVIRONMENT.encode(), "look.json": json.dumps(document).encode()})
     assert bundle.project is not None, bundle.diagnostics
     assert without_origins(bundle.project.skills) == without_origins(project_of().skills)
 
 
-def test_responses_are_the_names_that_can_become_the_response() -> None:
+def test_responses_are_the_names_that_can_become_the_response():
     assert responses("__moduleResponse = done;") == ["done"]
     assert responses("__moduleResponse = state.at == Left ? (state__.at == Left ? a : b) : c;") == [
         "a",
@@ -103,12 +103,12 @@ def test_responses_are_the_names_that_can_become_the_response() -> None:
     ]  # fmt: skip
 
 
-def test_a_skill_that_reports_nothing_needs_no_response() -> None:
+def test_a_skill_that_reports_nothing_needs_no_response():
     mapping = running("project: barn\ndynamic_model:\nstate__.at = Left;\n")
     assert observed(mapping, {}, [], {}).response == "DefaultObservation"
 
 
-def test_a_text_response_and_reported_numbers_come_from_the_result_too() -> None:
+def test_a_text_response_and_reported_numbers_come_from_the_result_too():
     mapping = running('project: barn\ndynamic_model:\n__moduleResponseStr = state.at == Left ? "l" : "r";\n')
     assert observed(mapping, {}, [], {"response": "l"}).response == "l"
     model = "__moduleResponse = told;\n__observed.bearing = AOS.SampleNormal(state.at, 1.0);"
@@ -118,13 +118,13 @@ def test_a_text_response_and_reported_numbers_come_from_the_result_too() -> None
 
 
 @pytest.mark.parametrize("name", ["response", "request", "from", "from_", "parameters"])
-def test_a_parameter_may_have_a_name_that_the_mapping_needs(name: str) -> None:
+def test_a_parameter_may_have_a_name_that_the_mapping_needs(name):
     mapping = running(LOOK.replace("side", name))
     assert fields(mapping, {name: "Left"}) == {name: "Left"}
     assert observed(mapping, {name: "Left"}, [], {"response": "seen"}).response == "seen"
 
 
-def test_a_result_that_brings_no_response_is_told_with_its_reason() -> None:
+def test_a_result_that_brings_no_response_is_told_with_its_reason():
     mapping = mapping_of(LOOK)
     missing = no_response(mapping, {"success": True}, {})
     assert "the result of /look has no `response`: it has `success`" in missing.message
@@ -135,7 +135,7 @@ def test_a_result_that_brings_no_response_is_told_with_its_reason() -> None:
     assert str(unknown.diagnostics[0].span) == "look.sd:5:27"
 
 
-def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant() -> None:
+def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant():
     mapping = mapping_text(project="barn", skill="look")
     bundle = loaded_files(lok_am=mapping)
     errors = [
@@ -146,7 +146,7 @@ def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant() -> N
     ]  # fmt: skip
 
 
-def test_a_mapping_that_cannot_be_read_is_not_replaced() -> None:
+def test_a_mapping_that_cannot_be_read_is_not_replaced():
     bundle = loaded_files(look_am="project: barn\npath: /look\n")
     assert {finding.span.file for finding in bundle.diagnostics if finding.is_error} == {"look.am"}
 
@@ -158,14 +158,14 @@ def test_a_mapping_that_cannot_be_read_is_not_replaced() -> None:
         ("__moduleResponse = state.at;", "AOS114", "look.sd:3:1"),
     ],
 )
-def test_what_no_response_can_be_read_from_is_an_error(model: str, code: str, place: str) -> None:
+def test_what_no_response_can_be_read_from_is_an_error(model, code, place):
     bundle = loaded_files(f"project: barn\ndynamic_model:\n{model}\n")
     assert [(finding.code, str(finding.span)) for finding in bundle.diagnostics if finding.is_error] == [
         (code, place)
     ]
 
 
-def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path) -> None:
+def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path):
     project = project_of()
     shown = outline(project)
     assert "activation: skill /look(side=side)" in shown
@@ -190,12 +190,11 @@ def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path)
         (tmp_path / name).write_bytes(data)
     bundle = read_bundle(tmp_path, {})
     response = bundle.at("look.sd", 5, 27)
-    assert response is not None
     assert response.is_declaration
     assert str(response.span) == "look.sd:5:27"
 
 
-def test_a_type_with_a_name_of_cpp_is_told_where_it_stands_and_not_in_code_that_nobody_wrote() -> None:
+def test_a_type_with_a_name_of_cpp_is_told_where_it_stands_and_not_in_code_that_nobody_wrote():
     environment = ENVIRONMENT.replace("action_parameter: Side left\ncode:\nstate.left = Left;\n", "")
     files = {"barn.ef": environment.replace("Side", "class").encode()}
     files["look.sd"] = b"project: barn\nparameter: class side\n"
@@ -214,6 +213,6 @@ def test_a_type_with_a_name_of_cpp_is_told_where_it_stands_and_not_in_code_that_
         "map<Side, int> t{{Left, seen}, {Right, unseen}}; __moduleResponse = t[state.at];",
     ],
 )
-def test_responses_are_found_in_what_the_response_is_taken_out_of(code: str) -> None:
+def test_responses_are_found_in_what_the_response_is_taken_out_of(code):
     look = LOOK.partition("dynamic_model:\n")[0] + f"dynamic_model:\n{code}\n"
     assert [rule.response for rule in mapping_of(look).rules] == ["seen", "unseen"]

@@ -61,11 +61,11 @@ def fault_of(text: str) -> str:
         ("", False),
     ],
 )
-def test_fragments_are_told_from_sentences(text: str, is_right: bool) -> None:
+def test_fragments_are_told_from_sentences(text, is_right):
     assert (not fault_of(text)) is is_right
 
 
-def test_docstrings_of_every_kind_are_found() -> None:
+def test_docstrings_of_every_kind_are_found():
     source = '"""One."""\nx = 1\n"""Two."""\nclass A:\n    """Three."""\n    y: int = 0\n    """Four."""\n'
     source += (
         '    def f(self):\n        """Five."""\n        self.z = 1\n        """Six."""\nprint(x)\n"""0"""\n'
@@ -74,7 +74,7 @@ def test_docstrings_of_every_kind_are_found() -> None:
     assert [text for _, text in found] == ["One.", "Two.", "Three.", "Four.", "Five.", "Six."]
 
 
-def test_every_docstring_begins_with_a_whole_sentence() -> None:
+def test_every_docstring_begins_with_a_whole_sentence():
     names = subprocess.run(
         ["git", "ls-files", "-z", "*.py"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.split("\0")

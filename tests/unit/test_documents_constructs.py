@@ -141,13 +141,12 @@ def project_of(*documents: dict[str, Any]) -> Project:
     return loaded.project
 
 
-def test_every_construct_of_a_json_environment_is_read() -> None:
+def test_every_construct_of_a_json_environment_is_read():
     project = project_of(ENVIRONMENT, LOW_LEVEL, SKILL, MAPPING)
     environment = project.environment
     assert (environment.horizon, environment.discount, environment.is_one_state_model) == (10, 1.0, False)
     assert environment.enums[0].values == ("Here", "There")
     place, pose, sight = environment.compounds[0].fields
-    assert place.default is not None
     assert place.default.code == "There"
     assert (pose.type, pose.low_level_type, sight.default) == ("anyValue", "Pose", None)
     at, grid, raw, visits, home = environment.variables
@@ -155,19 +154,16 @@ def test_every_construct_of_a_json_environment_is_read() -> None:
     assert (grid.is_array, raw.type, visits.key_types) == (True, "vector<int>", ("Place", "(0,3,1)"))
     assert home.is_parameter_value
     (draw,) = environment.initial_belief
-    assert draw.temporary is not None
     assert (draw.temporary.enum_name, draw.temporary.enum_values) == ("Case", ("first", "second"))
-    assert draw.code is not None
     assert len(draw.code.origins) == 2
     first, second = environment.special_states
-    assert first.condition is not None
     assert (first.condition.code, first.reward, first.is_one_time) == ("state.at == There", 5.0, True)
     assert (second.condition, len(second.code)) == (None, 1)
     blocks = (environment.extrinsic_changes, environment.state_heuristic, environment.print_state)
     assert [len(block) for block in blocks] == [1, 1, 1]
 
 
-def test_every_construct_of_a_json_skill_is_read_under_the_papers_names() -> None:
+def test_every_construct_of_a_json_skill_is_read_under_the_papers_names():
     (skill,) = project_of(ENVIRONMENT, LOW_LEVEL, SKILL, MAPPING).skills
     model = skill.model
     assert [(p.name, p.type) for p in model.parameters] == [("to", "Spot")]
@@ -177,16 +173,14 @@ def test_every_construct_of_a_json_skill_is_read_under_the_papers_names() -> Non
     blocks = (model.rollout_policy, model.execution_time, model.state_given_observation)
     assert [len(block) for block in blocks] == [1, 1, 1]
     temporary, over_next, code = model.dynamic_model
-    assert temporary.temporary is not None
     assert (temporary.temporary.type, len(over_next.over_next)) == ("bool", 1)
     assert code.code is not None
 
 
-def test_every_construct_of_a_json_mapping_is_read() -> None:
+def test_every_construct_of_a_json_mapping_is_read():
     (skill,) = project_of(ENVIRONMENT, LOW_LEVEL, SKILL, MAPPING).skills
     mapping = skill.mapping
     done, failed = mapping.rules
-    assert done.condition is not None
     assert (done.condition.code, failed.condition) == ("done and not noisy", None)
     activation = mapping.activation
     assert (activation.kind, activation.path, activation.service_type) == ("ros_service", "/go", "Go")
@@ -206,19 +200,17 @@ def test_every_construct_of_a_json_mapping_is_read() -> None:
         "Noise",
         True,
     )
-    assert noisy.code is not None
     assert noisy.code.code == "if __input.level > 3:\n    return True\nreturn False"
 
 
-def test_low_level_types_and_constants_are_read() -> None:
+def test_low_level_types_and_constants_are_read():
     low_level = project_of(ENVIRONMENT, LOW_LEVEL, SKILL, MAPPING).low_level
-    assert low_level is not None
     assert low_level.types[0].fields[0].name == "x"
     (constant,) = low_level.constants
     assert (constant.name, constant.type, len(constant.code.origins)) == ("___home", "Pose", 2)
 
 
-def test_a_text_response_and_parameters_by_code_are_read_from_both_dialects() -> None:
+def test_a_text_response_and_parameters_by_code_are_read_from_both_dialects():
     skill = {
         "PlpMain": {"Project": "p", "Name": "look", "Type": "PLP"},
         "GlobalVariableModuleParameters": [{"Name": "cell", "Type": "int"}],
@@ -257,7 +249,7 @@ def test_a_text_response_and_parameters_by_code_are_read_from_both_dialects() ->
         assert len(read_skill.model.possible_parameters) == 1
 
 
-def test_null_counts_as_absent() -> None:
+def test_null_counts_as_absent():
     mapping = MAPPING | {"ModuleResponse": None}
     skill = SKILL | {"DynamicModel": {"NextStateAssignments": []}, "Preconditions": None}
     (read,) = project_of(ENVIRONMENT, LOW_LEVEL, skill, mapping).skills

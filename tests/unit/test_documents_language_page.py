@@ -22,35 +22,33 @@ def examples(root: Path, dialect: str) -> dict[str, bytes]:
     return {name: body.encode() for name, body in EXAMPLE.findall(text)}
 
 
-def test_the_sdl_examples_make_a_bundle_without_findings(root: Path) -> None:
+def test_the_sdl_examples_make_a_bundle_without_findings(root: Path):
     loaded = load_files(examples(root, "sdl"))
     assert loaded.diagnostics == ()
-    assert loaded.project is not None
     assert [skill.name for skill in loaded.project.skills] == ["heat", "pour"]
 
 
-def test_the_json_examples_make_a_bundle_without_findings(root: Path) -> None:
+def test_the_json_examples_make_a_bundle_without_findings(root: Path):
     loaded = load_files(examples(root, "json"))
     assert loaded.diagnostics == ()
-    assert loaded.project is not None
     assert loaded.project.low_level is not None
 
 
-def test_the_page_names_every_word_of_sdl(root: Path) -> None:
+def test_the_page_names_every_word_of_sdl(root: Path):
     text = (root / "docs" / "languages.md").read_text(encoding="utf-8")
     words = {word for grammar in GRAMMARS.values() for word in grammar}
     words |= {part for grammar in GRAMMARS.values() for word in grammar.values() for part in word.parts}
     assert {word for word in words if word not in text} == set()
 
 
-def test_sdl_with_our_words_says_what_the_json_examples_say(root: Path) -> None:
+def test_sdl_with_our_words_says_what_the_json_examples_say(root: Path):
     ours, json = (load_files(examples(root, dialect)) for dialect in ("ours", "json"))
     assert ours.diagnostics == ()
     assert without_origins(ours.project) == without_origins(json.project)
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
-def test_the_examples_are_models_that_run(root: Path, cache_dir: Path, dialect: str) -> None:
+def test_the_examples_are_models_that_run(root: Path, cache_dir: Path, dialect):
     project = load_files(examples(root, dialect)).project
     assert project is not None
     assert scripted(project, cache_dir).walk(1000)["steps"] == 1000

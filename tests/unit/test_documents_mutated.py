@@ -5,7 +5,7 @@ from pathlib import Path
 from mutate_documents import bundles_below, fuzz
 
 
-def test_mutated_bundles_are_accepted_or_refused_and_never_crash(bundles: Path) -> None:
+def test_mutated_bundles_are_accepted_or_refused_and_never_crash(bundles: Path):
     findings = fuzz(bundles_below(bundles), seed=7, first=0, count=150, on_progress=lambda done: None)
     assert findings.failures == []
     assert findings.outcomes["accepted"] > 0

@@ -16,7 +16,7 @@ RIGHT = {"taken": 0.9, "missed": 0.1}
 WRONG = {"taken": 0.6, "missed": 0.4}
 
 
-def test_a_skill_of_0_9_that_is_0_6_alarms_within_60_uses() -> None:
+def test_a_skill_of_0_9_that_is_0_6_alarms_within_60_uses():
     alarms = [alarm_of(seed, RIGHT, WRONG, 60, others=3) for seed in range(100)]
     assert sum(alarm is not None for alarm in alarms) >= 95
     first = next(alarm for alarm in alarms if alarm is not None)
@@ -25,16 +25,16 @@ def test_a_skill_of_0_9_that_is_0_6_alarms_within_60_uses() -> None:
     assert (first.seen < 0.8) == (first.response == "taken")
 
 
-def test_runs_of_a_right_model_stay_silent_all_skills_together() -> None:
+def test_runs_of_a_right_model_stay_silent_all_skills_together():
     assert sum(silent(seed, SKILLS, 500) for seed in range(100)) >= 99
 
 
-def test_a_skill_that_wears_out_later_is_found_too() -> None:
+def test_a_skill_that_wears_out_later_is_found_too():
     alarms = [alarm_of(seed, RIGHT, WRONG, 100, others=3, right_before=100) for seed in range(20)]
     assert sum(alarm is not None and alarm.uses > 100 for alarm in alarms) >= 18
 
 
-def test_the_wealth_of_a_right_model_stays_as_it_is_in_the_mean() -> None:
+def test_the_wealth_of_a_right_model_stays_as_it_is_in_the_mean():
     """Exactly so, over all sequences of six uses; that is what the rate of false alarms rests on."""
     mean = 0.0
     for number in range(2**6):
@@ -55,7 +55,7 @@ def wealth(tests: DriftTests) -> float:
     return sum(share * math.exp(log) for share, log in bets) + 0.2 / test.uses
 
 
-def test_what_the_model_excludes_alarms_at_once_where_it_comes_again() -> None:
+def test_what_the_model_excludes_alarms_at_once_where_it_comes_again():
     tests = begun("d", {"pick": [*RIGHT]})
     uses, alarms = 0, ()
     while not alarms and uses < 6:
@@ -67,7 +67,7 @@ def test_what_the_model_excludes_alarms_at_once_where_it_comes_again() -> None:
     )
 
 
-def test_a_belief_that_was_sampled_has_the_benefit_of_the_doubt() -> None:
+def test_a_belief_that_was_sampled_has_the_benefit_of_the_doubt():
     sampled = msgspec.structs.replace(BELIEF, error_bound=1.0, effective_states=100.0)
     tests = begun("d", {"pick": [*RIGHT]})
     predicted = tuple(PredictedObservation(name, odds) for name, odds in RIGHT.items())
@@ -84,21 +84,21 @@ def test_a_belief_that_was_sampled_has_the_benefit_of_the_doubt() -> None:
     [{"status": "timed_out", "response": ""}, {"stopped_by": "pick"}],
     ids=["not observed", "stopped"],
 )
-def test_what_says_nothing_about_the_model_is_not_tested(changes: dict[str, str]) -> None:
+def test_what_says_nothing_about_the_model_is_not_tested(changes):
     tests = begun("d", {"pick": [*RIGHT]})
     decision = decision_record(0, skill="pick", model_digest="d")
     outcome = msgspec.structs.replace(Outcome(ActivationId("m", 1), "pick", "observed", "taken"), **changes)
     assert after_use(tests, decision, msgspec.structs.replace(decision, outcome=outcome)) == tests
 
 
-def test_two_responses_are_one_test_and_one_response_is_none() -> None:
+def test_two_responses_are_one_test_and_one_response_is_none():
     tests = begun("d", {"pick": ["taken", "missed"], "look": ["a", "b", "c"], "go": ["arrived"]})
     assert tests.count == 4
     assert {test.skill for test in tests.tests} == {"pick", "look"}
     assert FALSE_ALARMS == 0.01
 
 
-def test_the_tests_of_a_mission_are_the_fold_of_its_journal() -> None:
+def test_the_tests_of_a_mission_are_the_fold_of_its_journal():
     tests = begun("d", {"look": ["left", "right"]})
     predicted = (PredictedObservation("left", 0.5), PredictedObservation("right", 0.5))
     rows = [("drift", tests)]

@@ -14,7 +14,7 @@ from aos_editor.meanings import SECTIONS
 from aos_language.reading.sdl_sections import GRAMMARS
 
 
-def test_every_word_of_the_grammar_has_a_meaning_and_no_other() -> None:
+def test_every_word_of_the_grammar_has_a_meaning_and_no_other():
     grammar = {
         (kind, word): set(section.parts)
         for kind, words in GRAMMARS.items()
@@ -26,16 +26,15 @@ def test_every_word_of_the_grammar_has_a_meaning_and_no_other() -> None:
     assert meant == grammar
 
 
-def test_a_part_is_explained_as_part_of_its_section() -> None:
+def test_a_part_is_explained_as_part_of_its_section():
     text = "project: p\nstate_variable: int n\ncode:\nstate.n = 1;\n"
     found = meaning_at("p.ef", text, 3, 2)
-    assert found is not None
     assert found[0] == "code:"
     assert "at the start" in found[1]
     assert meaning_at("p.ef", text, 4, 7) is None
 
 
-def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, tmp_path: Path) -> None:
+def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, tmp_path: Path):
     folder = tmp_path / "armadillo"
     shutil.copytree(bundles / "armadillo-finer", folder)
     (folder / "runs").mkdir()
@@ -44,20 +43,20 @@ def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, t
     assert [found for _, findings in checked.values() for found in findings if found.code == "AOS107"] == []
 
 
-def test_built_ins_are_completed_within_code() -> None:
+def test_built_ins_are_completed_within_code():
     text = "project: p\ndynamic_model:\nbool x = AOS.B\n"
     (proposal,) = proposals_at("x.sd", text, 3, 14)
     assert (proposal.text, proposal.replaced) == ("AOS.Bernoulli", 5)
 
 
-def test_the_open_sections_parts_are_proposed_before_the_sections() -> None:
+def test_the_open_sections_parts_are_proposed_before_the_sections():
     text = "project: p\n\ndefine_type: Side\n\n"
     labels = [proposal.label for proposal in proposals_at("p.ef", text, 4, 0)]
     assert labels[:2] == ["variable:", "enum_members:"]
     assert "reward_code:" in labels
 
 
-def test_the_outline_ends_each_section_before_the_next() -> None:
+def test_the_outline_ends_each_section_before_the_next():
     entries = outline("p.ef", "project: p\n\ndefine_type: Side\nenum_members: A\n\nhorizon: 3\n")
     assert [(entry.title, entry.line, entry.last_line) for entry in entries] == [
         ("p", 1, 2),
@@ -66,7 +65,7 @@ def test_the_outline_ends_each_section_before_the_next() -> None:
     ]
 
 
-def test_files_that_are_no_sdl_have_no_words() -> None:
+def test_files_that_are_no_sdl_have_no_words():
     assert meaning_at("x.json", "{}", 1, 0) is None
     assert proposals_at("x.json", "{}", 1, 0) == []
     assert outline("x.json", "{}") == ()
@@ -97,8 +96,8 @@ def rule_at(rules: list[dict[str, Any]], line: str) -> dict[str, Any]:
     ],
 )
 def test_a_grammar_for_editors_knows_which_language_a_section_holds(
-    colours: dict[str, Any], section: str, part: str | None, scope: str | None
-) -> None:
+    colours: dict[str, Any], section, part, scope
+):
     rule = rule_at(colours["patterns"], section)
     if part is not None:
         assert not re.search(rule["end"], part), "the section goes on with its part"

@@ -185,7 +185,7 @@ def model(cache_dir: Path) -> ScriptedModel:
     return scripted(text_project(files), cache_dir)
 
 
-def test_values_have_their_declared_defaults(model: ScriptedModel) -> None:
+def test_values_have_their_declared_defaults(model: ScriptedModel):
     state = model.play(initial="0").initial["state"]
     assert state["box_a.colour"] == "eGreen"
     assert state["box_a.label"] == "none"
@@ -197,20 +197,18 @@ def test_values_have_their_declared_defaults(model: ScriptedModel) -> None:
     assert state["sum"] == str(3 * (1 + 3 + 5) + 3 * (0 + 10 + 20))
 
 
-def test_an_initial_belief_may_draw_an_enum_and_change_what_it_iterates_over(model: ScriptedModel) -> None:
+def test_an_initial_belief_may_draw_an_enum_and_change_what_it_iterates_over(model: ScriptedModel):
     played = model.play(initial="1")
     assert played.initial["state"]["box_b.weight"] == "3"
     assert played.initial["state"]["box_a.weight"] == "1.5"
 
 
-def test_a_type_may_have_a_name_that_the_emitted_file_uses_itself(model: ScriptedModel) -> None:
+def test_a_type_may_have_a_name_that_the_emitted_file_uses_itself(model: ScriptedModel):
     assert "struct State_ {" in model.emitted.cpp
     assert "using State = model::State_;" in model.emitted.cpp
 
 
-def test_groundings_are_ordered_by_variable_name_and_the_first_parameter_is_outermost(
-    model: ScriptedModel,
-) -> None:
+def test_groundings_are_ordered_by_variable_name_and_the_first_parameter_is_outermost(model: ScriptedModel):
     actions = [name for name in model.describe() if name.startswith("paint")]
     assert actions == ["paint(colour=blue, box=p_box)", "paint(colour=red, box=p_box)"]
     assert model.describe()["paint(colour=blue, box=p_box)"] == {
@@ -221,9 +219,7 @@ def test_groundings_are_ordered_by_variable_name_and_the_first_parameter_is_oute
     }  # fmt: skip
 
 
-def test_loops_run_over_declared_variables_in_order_and_change_only_what_they_may(
-    model: ScriptedModel,
-) -> None:
+def test_loops_run_over_declared_variables_in_order_and_change_only_what_they_may(model: ScriptedModel):
     played = model.play("paint(colour=blue, box=p_box)|0")
     assert played.values("box_b.colour") == ["eGreen", "eBlue"]
     assert played.values("box_a.colour") == ["eGreen", "eGreen"]
@@ -231,34 +227,34 @@ def test_loops_run_over_declared_variables_in_order_and_change_only_what_they_ma
     assert played.values("box_b.weight") == ["3", "3"]
 
 
-def test_the_name_of_a_temporary_enum_stands_before_its_first_value(model: ScriptedModel) -> None:
+def test_the_name_of_a_temporary_enum_stands_before_its_first_value(model: ScriptedModel):
     assert model.play("paint(colour=red, box=p_box)|2").values("sum")[1] == "3"
 
 
-def test_return_ends_the_dynamic_model_early(model: ScriptedModel) -> None:
+def test_return_ends_the_dynamic_model_early(model: ScriptedModel):
     assert model.play("paint(colour=red, box=p_box)|1").rewards == [0]
     assert model.play("paint(colour=red, box=p_box)|0").rewards == [1]
 
 
-def test_lists_of_objects_read_like_vectors_of_pointers(model: ScriptedModel) -> None:
+def test_lists_of_objects_read_like_vectors_of_pointers(model: ScriptedModel):
     played = model.play("count")
     assert played.values("sum")[1] == str(2 + 1 + 10 + 100 + 200)
     assert played.values("box_b.label") == ["none", "2/none"]
 
 
-def test_draws_over_declared_local_and_numbered_enums_and_over_lists(model: ScriptedModel) -> None:
+def test_draws_over_declared_local_and_numbered_enums_and_over_lists(model: ScriptedModel):
     played = model.play("draw|1 1 1 2 1 0.25 2.5 1 2 1 1")
     assert played.values("sum")[1] == str(1107 + 50000 + 600000 + 4000000 + 30000000)
     assert played.values("box_a.colour")[1] == "eBlue"
     assert played.values("box_a.weight")[1] == "2.75"
 
 
-def test_a_value_without_meaning_here_can_be_set_and_asked_for(model: ScriptedModel) -> None:
+def test_a_value_without_meaning_here_can_be_set_and_asked_for(model: ScriptedModel):
     played = model.play("draw", "draw")
     assert played.rewards == [1, 0]
 
 
-def test_containers_take_what_documents_do_with_the_standard_ones(model: ScriptedModel) -> None:
+def test_containers_take_what_documents_do_with_the_standard_ones(model: ScriptedModel):
     played = model.play("shape")
     state = played.steps[0]["state"]
     assert [state[f"grid[{index}]"] for index in range(4)] == ["9", "50", "6", "7"]
@@ -281,9 +277,7 @@ def test_containers_take_what_documents_do_with_the_standard_ones(model: Scripte
         ("fail(which=2)", "AOS215", "__moduleResponse is 9, which is no response"),
     ],
 )
-def test_a_fault_of_model_code_names_its_piece(
-    model: ScriptedModel, action: str, code: str, text: str
-) -> None:
+def test_a_fault_of_model_code_names_its_piece(model: ScriptedModel, action, code, text):
     fault = model.fault(action)
     assert (fault["fault"], fault["text"]) == (code, text)
     assert model.emitted.snippets[fault["piece"] - 1].file == "fail.json"

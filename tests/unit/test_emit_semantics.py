@@ -69,7 +69,7 @@ def switch(cache_dir: Path) -> ScriptedModel:
     return scripted(text_project(SWITCH), cache_dir)
 
 
-def test_actions_are_grounded_by_the_skills_own_code(switch: ScriptedModel) -> None:
+def test_actions_are_grounded_by_the_skills_own_code(switch: ScriptedModel):
     assert switch.describe() == {
         "raise(by=-2)": {"by": -2},
         "raise(by=-1)": {"by": -1},
@@ -79,36 +79,36 @@ def test_actions_are_grounded_by_the_skills_own_code(switch: ScriptedModel) -> N
     }
 
 
-def test_the_initial_belief_draws_after_the_defaults(switch: ScriptedModel) -> None:
+def test_the_initial_belief_draws_after_the_defaults(switch: ScriptedModel):
     assert switch.play(initial="1").values("level") == ["1"]
     assert switch.play(initial="0").values("level") == ["3"]
 
 
-def test_the_three_states_are_true_copies(switch: ScriptedModel) -> None:
+def test_the_three_states_are_true_copies(switch: ScriptedModel):
     played = switch.play("raise(by=1)", initial="1")
     # `state.level` is still 1 after `state__.level` became 2; the extrinsic changes made `seen` 10.
     assert played.values("shown") == ["0", str(1 + 1000 * 10 + 100000)]
     assert played.values("level") == ["1", "2"]
 
 
-def test_a_violated_precondition_costs_its_penalty_and_the_skill_still_runs(switch: ScriptedModel) -> None:
+def test_a_violated_precondition_costs_its_penalty_and_the_skill_still_runs(switch: ScriptedModel):
     played = switch.play("raise(by=-1)", initial="1")
     assert played.steps[0]["meets_precondition"] is False
     assert played.values("level") == ["1", "0"]
     assert played.rewards == [-4 - 2 + 0.5]
 
 
-def test_rewards_of_all_phases_add_up(switch: ScriptedModel) -> None:
+def test_rewards_of_all_phases_add_up(switch: ScriptedModel):
     # extrinsic 0.5 and 100 for the action it watches, the skill -1, both special states 7 and 30
     assert switch.play("raise(by=2)", initial="0").rewards == [0.5 + 100 - 1 + 7 + 30]
 
 
-def test_a_special_state_that_stops_counts_once(switch: ScriptedModel) -> None:
+def test_a_special_state_that_stops_counts_once(switch: ScriptedModel):
     played = switch.play("raise(by=1)", "wait", initial="0")
     assert played.rewards == [0.5 - 1 + 7, 0.5]
 
 
-def test_endings_absorb(switch: ScriptedModel) -> None:
+def test_endings_absorb(switch: ScriptedModel):
     reached = switch.play("raise(by=2)", "raise(by=1)|0", initial="0")
     assert [step["ending"] for step in reached.steps] == [1, 1]
     assert reached.rewards[1] == 0
@@ -117,26 +117,26 @@ def test_endings_absorb(switch: ScriptedModel) -> None:
     assert switch.play("raise(by=-2)", initial="1").steps[0]["ending"] == 3
 
 
-def test_without_a_response_the_observation_is_the_default(switch: ScriptedModel) -> None:
+def test_without_a_response_the_observation_is_the_default(switch: ScriptedModel):
     assert switch.play("wait", "raise(by=1)|0").observations == ["DefaultObservation", "stuck"]
 
 
-def test_rollout_weights_are_never_negative(switch: ScriptedModel) -> None:
+def test_rollout_weights_are_never_negative(switch: ScriptedModel):
     played = switch.play("raise(by=2)", "raise(by=-1)", "wait")
     assert [step["rollout_weight"] for step in played.steps] == [3.0, 0, 0]
 
 
-def test_a_state_heuristic_values_a_state(switch: ScriptedModel) -> None:
+def test_a_state_heuristic_values_a_state(switch: ScriptedModel):
     played = switch.play("raise(by=1)", "wait", initial="0")
     assert [step["state_value"] for step in played.steps] == [5.5, 7.5]
 
 
-def test_only_what_code_changes_is_in_the_particle(switch: ScriptedModel) -> None:
+def test_only_what_code_changes_is_in_the_particle(switch: ScriptedModel):
     assert set(switch.play().initial["state"]) == {"seen", "shown", "level"}
     assert "inline static const int& limit = constants.limit;" in switch.emitted.cpp
 
 
-def test_a_saved_state_is_read_back_equal(switch: ScriptedModel) -> None:
+def test_a_saved_state_is_read_back_equal(switch: ScriptedModel):
     played = switch.play("raise(by=1)", "raise(by=2)", "wait")
     assert all(step["is_saved"] for step in played.steps)
 
@@ -183,16 +183,16 @@ def one_state(cache_dir: Path) -> ScriptedModel:
     return scripted(text_project(ENDED_AT_THE_START), cache_dir)
 
 
-def test_a_one_time_reward_that_holds_at_the_start_is_used_up(one_state: ScriptedModel) -> None:
+def test_a_one_time_reward_that_holds_at_the_start_is_used_up(one_state: ScriptedModel):
     assert one_state.play("step").rewards == [-1.5]
 
 
-def test_in_a_one_state_model_all_names_are_one_object(one_state: ScriptedModel) -> None:
+def test_in_a_one_state_model_all_names_are_one_object(one_state: ScriptedModel):
     # The extrinsic change is seen through `state`; the execution time was taken before it.
     assert one_state.play("step").values("copy") == ["0", str(3 * 100 + 2 * 7)]
 
 
-def test_an_ending_with_a_negative_reward_is_a_failure(one_state: ScriptedModel) -> None:
+def test_an_ending_with_a_negative_reward_is_a_failure(one_state: ScriptedModel):
     played = one_state.play("step", "step")
     assert [step["ending"] for step in played.steps] == [0, 2]
     assert played.rewards == [-1.5, -10]

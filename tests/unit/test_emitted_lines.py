@@ -26,14 +26,14 @@ def own_lines(emitted: EmittedModel) -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["armadillo-finer", "bench/tag", "bench/rocksample-7-8", "bench/pocman"])
-def test_lines_are_narrow_and_names_are_none_of_the_compilers(name: str, bundles: Path) -> None:
+def test_lines_are_narrow_and_names_are_none_of_the_compilers(name, bundles: Path):
     own = own_lines(lowered(bundle_project(bundles / name))[0])
     assert [line for line in own if len(line) > MAX_COLUMNS] == []
     reserved = {found for line in own for found in re.findall(r"(?<!\w)_[_A-Z]\w*|\b[A-Za-z]\w*__\w+", line)}
     assert {name for name in reserved if not LANGUAGE.fullmatch(name)} == set()
 
 
-def test_long_lists_go_on_in_the_next_line(bundles: Path) -> None:
+def test_long_lists_go_on_in_the_next_line(bundles: Path):
     values = ", ".join(f"place_number_{number}" for number in range(40))
     home = (
         f"project: test\nhorizon: 3\ndefine_type: Place\nenum_members: {values}\nstate_variable: Place at\n"
@@ -45,7 +45,7 @@ def test_long_lists_go_on_in_the_next_line(bundles: Path) -> None:
     assert sum("place_number_39" in line for line in own) >= 1
 
 
-def test_names_of_the_emitted_model_are_no_names_of_documents() -> None:
+def test_names_of_the_emitted_model_are_no_names_of_documents():
     home = "project: test\nhorizon: 3\nstate_variable: int aos_ending\n"
     act = "project: test\ndynamic_model:\nstate__.aos_ending = 1;\n"
     project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text()})

@@ -87,24 +87,20 @@ def ending_at(room: ScriptedModel, place: int) -> int:
 @pytest.mark.parametrize(
     ("place", "ending"), [(1, GOAL), (2, FAILURE), (6, GOAL), (7, FAILURE), (10, FAILURE)]
 )
-def test_what_is_said_of_failure_counts_whatever_the_reward(
-    room: ScriptedModel, place: int, ending: int
-) -> None:
+def test_what_is_said_of_failure_counts_whatever_the_reward(room: ScriptedModel, place, ending):
     assert ending_at(room, place) == ending
 
 
 @pytest.mark.parametrize(("place", "ending"), [(3, FAILURE), (4, OVER), (5, GOAL), (8, OVER), (9, FAILURE)])
-def test_where_nothing_is_said_of_failure_the_rewards_sign_says_it(
-    room: ScriptedModel, place: int, ending: int
-) -> None:
+def test_where_nothing_is_said_of_failure_the_rewards_sign_says_it(room: ScriptedModel, place, ending):
     assert ending_at(room, place) == ending
 
 
-def test_other_states_go_on(room: ScriptedModel) -> None:
+def test_other_states_go_on(room: ScriptedModel):
     assert [ending_at(room, place) for place in (0, 11)] == [RUNNING, RUNNING]
 
 
-def test_endings_that_their_reward_decides_are_told(room: ScriptedModel) -> None:
+def test_endings_that_their_reward_decides_are_told(room: ScriptedModel):
     found = load_files(encoded(BUNDLE)).diagnostics
     messages = {finding.span.line: finding.message for finding in found if finding.code == "AOS137"}
     lines = ROOM.splitlines()
@@ -118,7 +114,7 @@ def test_endings_that_their_reward_decides_are_told(room: ScriptedModel) -> None
     assert "neither" in messages[13]
 
 
-def test_both_dialects_say_the_same_of_failure() -> None:
+def test_both_dialects_say_the_same_of_failure():
     sdl = {"environment.ef": ROOM.encode()}
     as_json, findings = convert(sdl, Dialect.JSON)
     assert not any(finding.is_error for finding in findings)
@@ -126,7 +122,6 @@ def test_both_dialects_say_the_same_of_failure() -> None:
     assert as_json["environment.ef.json"].count('"IsFailureState": true') == 2
     back, _ = convert(encoded(as_json), Dialect.SDL)
     again = load_files({**BUNDLE_OF_SKILL, "room.ef": back["environment.ef"].encode()}).project
-    assert again is not None
     assert said(again.environment) == said(text_project(BUNDLE).environment)
 
 
@@ -155,13 +150,11 @@ def belief(goal: float, over: float, failure: float) -> BeliefSummary:
         (0.5, 0.35, 0.06, None),
     ],
 )
-def test_a_mission_that_is_surely_over_counts_as_what_it_is_at_least(
-    goal: float, over: float, failure: float, ending: Ending | None
-) -> None:
+def test_a_mission_that_is_surely_over_counts_as_what_it_is_at_least(goal, over, failure, ending):
     assert believed_ending(belief(goal, over, failure), MissionLimits(goal_probability=0.9)) is ending
 
 
-def test_a_mission_that_cannot_go_on_ends_whatever_the_rounding() -> None:
+def test_a_mission_that_cannot_go_on_ends_whatever_the_rounding():
     odds = [(goal / 100, over / 100) for goal in range(101) for over in range(101 - goal)]
     beliefs = [belief(goal, over, 1 - goal - over) for goal, over in odds]
     assert all(believed_ending(each, MissionLimits(goal_probability=0.9)) for each in beliefs)
@@ -176,9 +169,7 @@ def test_a_mission_that_cannot_go_on_ends_whatever_the_rounding() -> None:
         ((0.5, 0.45, 0.0), Ending.OVER, False),
     ],
 )
-def test_an_ending_is_no_better_than_where_nothing_ran_that_was_not_observed(
-    cautious: tuple[float, float, float], ending: Ending | None, is_kept: bool
-) -> None:
+def test_an_ending_is_no_better_than_where_nothing_ran_that_was_not_observed(cautious, ending, is_kept):
     goal, over, failure = cautious
     state = msgspec.structs.replace(belief(0.95, 0.0, 0.0), cautious=EndingOdds(goal, failure, over))
     limits = MissionLimits(goal_probability=0.9)
@@ -195,16 +186,14 @@ def test_an_ending_is_no_better_than_where_nothing_ran_that_was_not_observed(
         (0.5, 0.45, 0.05, "the mission is over, nobody can tell how, and it counts as over: "),
     ],
 )
-def test_a_mission_whose_end_is_not_known_is_not_said_to_be_without_its_goal(
-    goal: float, over: float, failure: float, said: str
-) -> None:
+def test_a_mission_whose_end_is_not_known_is_not_said_to_be_without_its_goal(goal, over, failure, said):
     limits, state = MissionLimits(goal_probability=0.9), belief(goal, over, failure)
     ending = believed_ending(state, limits)
     assert ending is not None
     assert remark_of(ending, state, limits).startswith(said)
 
 
-def test_every_ending_has_an_exit_code_of_its_own() -> None:
+def test_every_ending_has_an_exit_code_of_its_own():
     codes = {ending: exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending)) for ending in Ending}
     assert len(set(codes.values())) == len(Ending)
 
@@ -224,13 +213,13 @@ GIVES_UP, GOES_ON = Ending.NOTHING_WORTHWHILE, None
     ],
 )
 def test_a_mission_gives_up_where_the_estimate_is_bad_and_nothing_promises_more(
-    value: float, error: float, at_most: float | None, ending: Ending | None
-) -> None:
+    value, error, at_most, ending
+):
     best = ActionValue("look", value, 10, error, at_most=at_most)
     assert ending_after_planning(best, (best,), MissionLimits(stop_below_value=0.0)) is ending
 
 
-def test_a_mission_does_not_give_up_while_another_action_may_return_enough() -> None:
+def test_a_mission_does_not_give_up_while_another_action_may_return_enough():
     best, other = (
         ActionValue("look", -2.0, 10, 0.0, at_most=-1.0),
         ActionValue("ask", -9.0, 1, 0.0, at_most=30.0),

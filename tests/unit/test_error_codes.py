@@ -29,7 +29,7 @@ MORE_RULES = [
 
 
 @pytest.mark.parametrize("rule", MORE_RULES, ids=lambda rule: rule.code)
-def test_a_mistake_of_this_kind_is_told_at_its_place(rule: Rule) -> None:
+def test_a_mistake_of_this_kind_is_told_at_its_place(rule):
     files, place = bundle_of(rule)
     loaded = load_files(files)
     assert (rule.code, place) in [(finding.code, finding.span) for finding in loaded.diagnostics], found_by(
@@ -37,19 +37,19 @@ def test_a_mistake_of_this_kind_is_told_at_its_place(rule: Rule) -> None:
     )
 
 
-def test_a_bundle_beyond_the_limits_is_refused() -> None:
+def test_a_bundle_beyond_the_limits_is_refused():
     loaded = load_files({"folder/go.sd": b"project: p\n"})
     assert "AOS120" in {finding.code for finding in loaded.diagnostics}
 
 
-def test_a_message_of_another_protocol_is_refused() -> None:
+def test_a_message_of_another_protocol_is_refused():
     payload = msgspec.msgpack.encode(Envelope("9.0", 1, "somebody", msgspec.Raw(b"\x80")))
     with pytest.raises(BusError, match=r"speaks protocol 9\.0") as caught:
         open_envelope(payload)
     assert caught.value.code == "AOS603"
 
 
-async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path) -> None:
+async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path):
     nothing = Ragged(np.zeros(2, np.int64), np.zeros(0, np.int64), np.zeros(0))
     over = ExplicitModel(
         name="over", discount=0.9, states=("end",), actions=("wait",), observations=("none",),
@@ -61,14 +61,14 @@ async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path)
     assert caught.value.code == "AOS302"
 
 
-def test_runs_that_cannot_be_written_are_told(tmp_path: Path) -> None:
+def test_runs_that_cannot_be_written_are_told(tmp_path: Path):
     (tmp_path / "runs").write_text("a file where a folder should be")
     with pytest.raises(DeployError, match="no run directory") as caught:
         RunDirectory.create(tmp_path / "runs", "robot", now_ns=0)
     assert caught.value.code == "AOS805"
 
 
-def test_no_code_of_the_table_is_left_without_a_provocation(root: Path) -> None:
+def test_no_code_of_the_table_is_left_without_a_provocation(root: Path):
     provoked = {rule.code for rule in (*WARNED, *REFUSED, *MORE_RULES)}
     provoked |= {whole.code for whole in WHOLE_FILES} | {"AOS120", "AOS302", "AOS603", "AOS805"}
     this_file = Path(__file__)

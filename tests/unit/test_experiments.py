@@ -47,11 +47,10 @@ def results_of(*parts: PartResult) -> Results:
     return Results(name="t", title="T", about="A", command="aos it", surroundings=around, parts=parts)
 
 
-def test_a_mission_that_broke_counts_against_the_goal_and_in_nothing_else() -> None:
+def test_a_mission_that_broke_counts_against_the_goal_and_in_nothing_else():
     figures = figures_of(MISSIONS, {"looked": "look"}, '"has_drink": true')
     assert (figures.missions, figures.broken) == (3, 1)
     assert figures.goal.value == pytest.approx(1 / 3)
-    assert figures.world_goal is not None
     assert figures.world_goal.value == pytest.approx(1 / 3)
     means = (figures.steps, figures.value, figures.counts["looked"])
     assert [mean.value for mean in means if mean is not None] == [2.5, 9.0, 1.0]
@@ -59,33 +58,29 @@ def test_a_mission_that_broke_counts_against_the_goal_and_in_nothing_else() -> N
     assert figures.first_actions == {"pick": 2}
 
 
-def test_whether_the_goal_was_reached_in_the_world_is_asked_of_its_last_state() -> None:
+def test_whether_the_goal_was_reached_in_the_world_is_asked_of_its_last_state():
     once = Trial(seed=1, ending="goal", goal=True, states=('{"has_drink": true}', '{"has_drink": false}'))
     figures = figures_of([once], {}, '"has_drink": true')
-    assert figures.world_goal is not None
     assert figures.world_goal.value == 0
     assert figures_of([once], {}).world_goal is None
 
 
 @pytest.mark.parametrize(("stop_value", "mean"), [(None, 9.0), (-10.0, (20.0 + -2.0 + 0.9 * -10.0) / 2)])
-def test_a_mission_that_stopped_is_worth_what_stopping_is_worth(
-    stop_value: float | None, mean: float
-) -> None:
+def test_a_mission_that_stopped_is_worth_what_stopping_is_worth(stop_value, mean):
     optimum = Optimum(lower=11.0, upper=13.0, discount=0.9, stop_value=stop_value)
     regret = regret_of(optimum, MISSIONS)
-    assert regret is not None
     assert regret.value.value == pytest.approx(mean)
     assert regret.share.value == pytest.approx((12.0 - mean) / regret.scale)
     assert regret.share.low < regret.share.value < regret.share.high
 
 
-def test_missions_that_all_bring_the_same_have_no_range_to_compare_with() -> None:
+def test_missions_that_all_bring_the_same_have_no_range_to_compare_with():
     optimum = Optimum(lower=1.0, upper=1.0, discount=0.9, stop_value=None)
     assert regret_of(optimum, [SERVED, SERVED]) is None
     assert regret_of(optimum, [SERVED]) is None
 
 
-def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_path: Path) -> None:
+def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_path: Path):
     results = results_of(part_of("model"), part_of("system", (SERVED,)))
     page, whole = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
     text = page.read_text()
@@ -100,13 +95,13 @@ def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_
     assert "<svg" in whole.read_text()
 
 
-def test_a_part_whose_optimum_cannot_be_worked_out_says_why_beside_the_others(tmp_path: Path) -> None:
+def test_a_part_whose_optimum_cannot_be_worked_out_says_why_beside_the_others(tmp_path: Path):
     part = msgspec.structs.replace(part_of("model"), no_optimum="what is observed are numbers")
     page, _ = write_report(results_of(part), {}, tmp_path)
     assert "| one | 3 |  |  | what is observed are numbers |  |  |" in page.read_text()
 
 
-def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path) -> None:
+def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path):
     results = results_of(part_of("system", (SERVED,)))
     page, _ = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
     text = page.read_text()
@@ -114,13 +109,13 @@ def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path) -
     assert "| one | system | 2.00 | goal 1 | pick 1 |" in text
 
 
-def test_less_and_greater_in_a_text_are_text_in_the_page(tmp_path: Path) -> None:
+def test_less_and_greater_in_a_text_are_text_in_the_page(tmp_path: Path):
     results = msgspec.structs.replace(results_of(part_of("model")), about="value <b of it> is small")
     _, whole = write_report(results, {}, tmp_path)
     assert "value &lt;b of it&gt; is small" in whole.read_text()
 
 
-def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_path: Path) -> None:
+def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_path: Path):
     results = results_of(part_of("model"), part_of("system", (SERVED, GAVE_UP)))
     first, again = (draw_plots(results, tmp_path / name) for name in ("first", "again"))
     assert set(first) == {
@@ -136,19 +131,18 @@ def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_pa
     assert ">one (system, 2)<" in drawn
 
 
-def test_the_picture_is_the_last_one_of_the_first_mission_that_has_some(tmp_path: Path) -> None:
+def test_the_picture_is_the_last_one_of_the_first_mission_that_has_some(tmp_path: Path):
     for seed, steps in ((2, 2), (3, 1)):
         pictures = tmp_path / "runs" / f"seed-{seed}" / "a-run" / "pictures"
         pictures.mkdir(parents=True)
         for step in range(1, steps + 1):
             (pictures / f"step-{step:03}.png").write_text(f"{seed} {step}")
     kept = keep_picture(tmp_path / "runs", (1, 2, 3), tmp_path / "kept" / "one.png")
-    assert kept is not None
     assert kept.read_text() == "2 2"
     assert keep_picture(tmp_path / "runs", (1,), tmp_path / "other.png") is None
 
 
-def test_statistics_tell_what_came_back_and_what_each_step_changed() -> None:
+def test_statistics_tell_what_came_back_and_what_each_step_changed():
     def mission(response: str, place: str) -> RecordedMission:
         steps = (
             RecordedStep("go", "there", (("at", "table"), ("can", "table"))),
@@ -167,7 +161,7 @@ def test_statistics_tell_what_came_back_and_what_each_step_changed() -> None:
     assert list(steps_of("script", [])) == []
 
 
-def test_a_dot_stands_at_its_share_between_the_ticks(tmp_path: Path) -> None:
+def test_a_dot_stands_at_its_share_between_the_ticks(tmp_path: Path):
     results = results_of(part_of("model", (SERVED, GAVE_UP)))
     drawn = draw_plots(results, tmp_path)["share of missions that reach the goal"].read_text()
     (dot,) = (float(x) for x in re.findall(r'"M([\d.]+) \d+h0"', drawn))

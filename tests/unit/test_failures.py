@@ -56,7 +56,7 @@ class Mission:
         return set(self.failures.set_aside(self.now_s, self.announced))
 
 
-def test_a_skill_is_set_aside_whatever_ran_between() -> None:
+def test_a_skill_is_set_aside_whatever_ran_between():
     mission = Mission()
     for _ in range(2):
         assert not mission.take("take")
@@ -67,7 +67,7 @@ def test_a_skill_is_set_aside_whatever_ran_between() -> None:
     assert mission.set_aside == {"take"}
 
 
-def test_a_refusal_because_another_skill_may_move_counts_for_that_one() -> None:
+def test_a_refusal_because_another_skill_may_move_counts_for_that_one():
     mission = Mission(skills={"look": SkillRule(set_aside_after=2)})
     mission.take("take", "timed_out")
     may_move = Fault("AOS512", "/take may still be moving")
@@ -77,7 +77,7 @@ def test_a_refusal_because_another_skill_may_move_counts_for_that_one() -> None:
     assert mission.set_aside == {"take"}
 
 
-def test_an_observed_end_ends_the_row() -> None:
+def test_an_observed_end_ends_the_row():
     mission = Mission()
     for _ in range(5):
         mission.take("take")
@@ -86,7 +86,7 @@ def test_an_observed_end_ends_the_row() -> None:
     assert not mission.set_aside
 
 
-def test_reports_that_the_model_excludes_are_failures() -> None:
+def test_reports_that_the_model_excludes_are_failures():
     mission = Mission(failure_limit=4)
     for _ in range(3):
         mission.take("take", "observed", fault=None, excluded=True)
@@ -98,9 +98,7 @@ def test_reports_that_the_model_excludes_are_failures() -> None:
 
 
 @pytest.mark.parametrize(("probability", "failures"), [(0.01, 3), (0.1, 3), (0.2, 5), (0.5, 10)])
-def test_what_a_rule_told_of_a_failure_counts_by_how_improbable_it_was(
-    probability: float, failures: int
-) -> None:
+def test_what_a_rule_told_of_a_failure_counts_by_how_improbable_it_was(probability, failures):
     mission = Mission(failure_limit=3)
     count = 0
     while not mission.set_aside:
@@ -110,14 +108,14 @@ def test_what_a_rule_told_of_a_failure_counts_by_how_improbable_it_was(
     assert not mission.failures.to_end
 
 
-def test_an_expected_failure_never_sets_a_skill_aside() -> None:
+def test_an_expected_failure_never_sets_a_skill_aside():
     mission = Mission()
     for _ in range(1000):
         mission.take("look", "observed", surprise=0.0)
     assert not mission.set_aside
 
 
-def test_a_pause_ends_in_time_and_with_an_adapter_that_comes_anew() -> None:
+def test_a_pause_ends_in_time_and_with_an_adapter_that_comes_anew():
     mission = Mission(set_aside_after=1, set_aside_s=60.0)
     mission.announced = {"take": 1}
     mission.take("take")
@@ -132,7 +130,7 @@ def test_a_pause_ends_in_time_and_with_an_adapter_that_comes_anew() -> None:
     assert not mission.set_aside
 
 
-def test_a_new_adapter_begins_a_new_row() -> None:
+def test_a_new_adapter_begins_a_new_row():
     mission = Mission()
     mission.announced = {"take": 1}
     mission.take("take")
@@ -143,7 +141,7 @@ def test_a_new_adapter_begins_a_new_row() -> None:
 
 
 @pytest.mark.parametrize("outcome", ["unknown", "timed_out"], ids=["ends", "has to be ended"])
-def test_an_adapter_that_ends_in_or_after_each_call_is_no_new_one(outcome: str) -> None:
+def test_an_adapter_that_ends_in_or_after_each_call_is_no_new_one(outcome):
     mission = Mission()
     for start in (1, 2, 3):
         mission.announced = {"take": start}
@@ -154,7 +152,7 @@ def test_an_adapter_that_ends_in_or_after_each_call_is_no_new_one(outcome: str) 
     assert not mission.set_aside
 
 
-def test_somebody_who_starts_an_adapter_again_after_a_row_of_timeouts_ends_the_pause() -> None:
+def test_somebody_who_starts_an_adapter_again_after_a_row_of_timeouts_ends_the_pause():
     mission = Mission()
     mission.announced = {"take": 1}
     for _ in range(3):
@@ -165,7 +163,7 @@ def test_somebody_who_starts_an_adapter_again_after_a_row_of_timeouts_ends_the_p
     assert not mission.take("take", "timed_out"), "a new row"
 
 
-def test_a_skills_own_numbers_count_before_the_missions() -> None:
+def test_a_skills_own_numbers_count_before_the_missions():
     rules = {"take": SkillRule(set_aside_after=1, set_aside_s=5.0), "look": SkillRule(set_aside_after=4)}
     mission = Mission(skills=rules)
     assert "take is set aside for 5 s after a failure" in mission.take("take")
@@ -173,7 +171,7 @@ def test_a_skills_own_numbers_count_before_the_missions() -> None:
         assert not mission.take("look")
 
 
-def test_tries_count_too_and_end_with_the_pause() -> None:
+def test_tries_count_too_and_end_with_the_pause():
     mission = Mission(skills={"take": SkillRule(on_failure="retry", retries=5)})
     mission.take("take")
     assert mission.failures.to_retry is not None
@@ -183,7 +181,7 @@ def test_tries_count_too_and_end_with_the_pause() -> None:
     assert mission.set_aside == {"take"}
 
 
-def test_whoever_lets_a_mission_go_on_has_looked_after_the_skill() -> None:
+def test_whoever_lets_a_mission_go_on_has_looked_after_the_skill():
     mission = Mission(skills={"take": SkillRule(on_failure="hold")})
     for _ in range(5):
         mission.take("take")
@@ -195,7 +193,7 @@ def test_whoever_lets_a_mission_go_on_has_looked_after_the_skill() -> None:
     ("status", "usual", "given"),
     [("refused", 0.0, 0.0), ("failed", 0.0, 0.8), ("timed_out", 0.5, 0.8), ("unknown", 0.5, 0.8)],
 )
-def test_how_probable_it_is_that_a_skill_ran(status: str, usual: float, given: float) -> None:
+def test_how_probable_it_is_that_a_skill_ran(status, usual, given):
     lost = outcome("take", status)
     assert Failures().ran_probability(lost) == usual
     rules = FailureRules(skills={"take": SkillRule(ran_probability=0.8)})

@@ -8,7 +8,7 @@ from aos_runtime.adapters.expressions import check_expression, translated
 GOAL = {"goal": {"x": 1.5, "y": -2.0, "parts": [{"name": "arm"}]}, "yaw": 0.5, "success": True}
 
 
-def test_fields_pass_as_they_are_where_nothing_else_is_said() -> None:
+def test_fields_pass_as_they_are_where_nothing_else_is_said():
     assert translated(None, GOAL, "a call") == GOAL
 
 
@@ -25,16 +25,16 @@ def test_fields_pass_as_they_are_where_nothing_else_is_said() -> None:
         (" 0.25", 0.25),
     ],
 )
-def test_an_expression_sees_the_fields_that_come_in(expression: str, value: object) -> None:
+def test_an_expression_sees_the_fields_that_come_in(expression, value):
     assert check_expression(expression) == ""
     assert translated({"field": expression}, GOAL, "a call") == {"field": value}
 
 
-def test_with_expressions_nothing_else_passes() -> None:
+def test_with_expressions_nothing_else_passes():
     assert translated({}, GOAL, "a call") == {}
 
 
-def test_a_field_that_cannot_be_computed_is_named_with_those_there_are() -> None:
+def test_a_field_that_cannot_be_computed_is_named_with_those_there_are():
     with pytest.raises(SkillError) as error:
         translated({"x": "pose.x"}, GOAL, "a call of /go")
     assert error.value.code == "AOS502"
@@ -43,5 +43,5 @@ def test_a_field_that_cannot_be_computed_is_named_with_those_there_are() -> None
 
 
 @pytest.mark.parametrize("text", ["goal.", "x = 1", "1 +", ""])
-def test_what_is_no_expression_is_found_when_the_file_is_read(text: str) -> None:
+def test_what_is_no_expression_is_found_when_the_file_is_read(text):
     assert check_expression(text) != ""

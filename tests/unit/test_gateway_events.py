@@ -17,7 +17,7 @@ from aos_protocol.messages import History
 RECORDS = 200
 
 
-async def test_others_have_their_turn_while_a_long_past_is_told() -> None:
+async def test_others_have_their_turn_while_a_long_past_is_told():
     async def page(mission: str, since: int) -> History:
         return History(mission, tuple(decision_record(number) for number in range(RECORDS)))
 
@@ -42,6 +42,6 @@ async def test_others_have_their_turn_while_a_long_past_is_told() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "7", ":7", "m:", "m:-1", "m:1e3", "m:\u0667", "m:" + "9" * 5000])
-def test_what_is_no_id_of_an_event_begins_with_the_first(text: str) -> None:
+def test_what_is_no_id_of_an_event_begins_with_the_first(text):
     assert place_of("a:b:7") == ("a:b", 7)
     assert place_of(text) == ("", 0)

@@ -24,7 +24,7 @@ def observed(step: int, status: str = "observed", **others: Any) -> DecisionReco
     return decision_record(2 * step - 1, outcome=outcome, **others)
 
 
-def test_a_counter_has_help_type_and_escaped_labels() -> None:
+def test_a_counter_has_help_type_and_escaped_labels():
     counter = Counter("aos_things_total", "Things, of a\\b.")
     counter.add(robot='the "first"\nof\\two')
     counter.add(0.5, robot="b")
@@ -36,7 +36,7 @@ def test_a_counter_has_help_type_and_escaped_labels() -> None:
     )
 
 
-def test_a_histogram_counts_up_to_each_bound_and_a_bound_itself_is_within() -> None:
+def test_a_histogram_counts_up_to_each_bound_and_a_bound_itself_is_within():
     histogram = Histogram("aos_s", "Seconds.", (0.1, 1.0))
     for value in (0.05, 0.1, 0.5, 7.0):
         histogram.observe(value, robot="a")
@@ -49,11 +49,11 @@ def test_a_histogram_counts_up_to_each_bound_and_a_bound_itself_is_within() -> N
     ]
 
 
-def test_nothing_is_told_of_what_was_never_counted() -> None:
+def test_nothing_is_told_of_what_was_never_counted():
     assert exposition(Families().all) == b""
 
 
-def test_a_decision_adds_its_seconds_and_the_simulations_of_all_its_searches() -> None:
+def test_a_decision_adds_its_seconds_and_the_simulations_of_all_its_searches():
     searches = (SearchMade("pomcp", (100, 50), known=30), SearchMade("pomcp", (7,), is_dropped=True))
     samples = counted(decision_record(0, planning_s=0.3, searches=searches), observed(1, searches=searches))
     assert samples['aos_simulations_total{robot="r2"}'] == "157"
@@ -62,7 +62,7 @@ def test_a_decision_adds_its_seconds_and_the_simulations_of_all_its_searches() -
     assert samples['aos_decision_seconds_count{robot="r2",chosen_by="planner"}'] == "1"
 
 
-def test_surprise_is_that_of_observations_and_an_impossible_one_is_counted_apart() -> None:
+def test_surprise_is_that_of_observations_and_an_impossible_one_is_counted_apart():
     samples = counted(observed(1, surprise=0.7), observed(2, "failed"), observed(3, is_impossible=True))
     assert samples['aos_steps_total{robot="r2"}'] == samples['aos_activations_total{robot="r2",skill="look"}']
     assert samples['aos_steps_total{robot="r2"}'] == "3"
@@ -71,7 +71,7 @@ def test_surprise_is_that_of_observations_and_an_impossible_one_is_counted_apart
     assert samples['aos_impossible_outcomes_total{robot="r2",skill="look"}'] == "1"
 
 
-def test_a_refusal_because_another_skill_may_move_is_no_failure_of_the_one_refused() -> None:
+def test_a_refusal_because_another_skill_may_move_is_no_failure_of_the_one_refused():
     record = observed(1, "refused")
     assert record.outcome is not None
     outcome = msgspec.structs.replace(record.outcome, fault=Fault("AOS512", "/take may still be moving"))
@@ -80,14 +80,14 @@ def test_a_refusal_because_another_skill_may_move_is_no_failure_of_the_one_refus
     ]
 
 
-def test_an_alarm_of_drift_counts_when_it_begins_and_not_while_it_stands() -> None:
+def test_an_alarm_of_drift_counts_when_it_begins_and_not_while_it_stands():
     alarm = ModelDrift("look", "red", 0.9, 0.6, 40, is_new=True)
     standing = ModelDrift("look", "red", 0.9, 0.6, 41)
     samples = counted(observed(1, drift=(alarm,)), observed(2, drift=(standing,)))
     assert samples['aos_drift_alarms_total{robot="r2",skill="look",response="red"}'] == "1"
 
 
-def test_engines_that_start_anew_count_also_with_a_new_model_and_a_new_solver() -> None:
+def test_engines_that_start_anew_count_also_with_a_new_model_and_a_new_solver():
     def restarts(*starts: tuple[str, int]) -> str:
         records = (
             decision_record(2 * place, model_digest=model, engine_starts=number)

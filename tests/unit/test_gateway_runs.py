@@ -30,7 +30,7 @@ class EndingRun(RemoteRun):
         return self._silent_client()
 
 
-async def test_nobody_waits_for_the_answer_of_a_run_that_has_ended() -> None:
+async def test_nobody_waits_for_the_answer_of_a_run_that_has_ended():
     run = EndingRun("tcp/10.0.0.7:7447", "tiger")
     with pytest.raises(GatewayError, match="is over") as caught:
         async with run.asking():
@@ -38,7 +38,7 @@ async def test_nobody_waits_for_the_answer_of_a_run_that_has_ended() -> None:
     assert caught.value.code == "AOS905"
 
 
-def test_systems_of_one_robot_at_files_of_one_name_have_names_of_their_own() -> None:
+def test_systems_of_one_robot_at_files_of_one_name_have_names_of_their_own():
     endpoints = ("tcp/10.0.0.7:7447", "unixsock-stream//run/a/bus", "unixsock-stream//run/b/bus")
     shelf = RunShelf([], [RemoteRun(endpoint, "tiger") for endpoint in endpoints])
     assert [name for name in shelf.runs() if "@" in name] == [
@@ -46,7 +46,7 @@ def test_systems_of_one_robot_at_files_of_one_name_have_names_of_their_own() -> 
     ]
 
 
-def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path) -> None:
+def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path):
     shelf = RunShelf([tmp_path])
     record = RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1)
     usual_s = sys.getswitchinterval()
@@ -64,7 +64,7 @@ def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path) -> None:
         sys.setswitchinterval(usual_s)
 
 
-async def test_a_system_that_stays_names_its_first_mission_before_that_begins(tmp_path: Path) -> None:
+async def test_a_system_that_stays_names_its_first_mission_before_that_begins(tmp_path: Path):
     run = RunDirectory.create(tmp_path, "r", 0)
     run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1))
     make_folder_of_missions(run.path)

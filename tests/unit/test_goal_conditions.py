@@ -54,11 +54,11 @@ def counted(code: str, *, is_expression: bool = False) -> str:
         ),
     ],
 )
-def test_conditions_of_rewards_and_goals_are_counted(code: str, expected: str) -> None:
+def test_conditions_of_rewards_and_goals_are_counted(code, expected):
     assert counted(code) == expected
 
 
-def test_conditions_of_a_special_state_are_counted() -> None:
+def test_conditions_of_a_special_state_are_counted():
     expected = "+(state.a == 1) & +(state.b == 2) & +(state.c)"
     assert counted("state.a == 1 && state.b == 2 && state.c", is_expression=True) == expected
 
@@ -74,10 +74,10 @@ def test_conditions_of_a_special_state_are_counted() -> None:
         "if (AOS.Bernoulli(state.p) && AOS.Bernoulli(state.q) && AOS.Bernoulli(state.r)) __reward = 5;",
     ],
 )
-def test_what_is_asked_for_by_fewer_than_three_conditions_or_by_a_loss_is_left_as_it_is(code: str) -> None:
+def test_what_is_asked_for_by_fewer_than_three_conditions_or_by_a_loss_is_left_as_it_is(code):
     assert counted(code) == ""
 
 
-def test_what_may_fail_is_asked_only_after_what_guards_it() -> None:
+def test_what_may_fail_is_asked_only_after_what_guards_it():
     code = "if (state.a > 0 && 10 / state.a == 2 && state.b) __reward = 5;"
     assert counted(code) == "if (+(state.a > 0) && +(10 / state.a == 2) & +(state.b)) __reward = 5;"

@@ -124,11 +124,11 @@ def rows(entries: list[Entry]) -> list[JournalRow]:
     ]
 
 
-def test_a_history_that_can_be_breaks_no_rule() -> None:
+def test_a_history_that_can_be_breaks_no_rule():
     assert History().broken_rules() == set()
 
 
-def test_times_before_the_clock_was_set_back_say_nothing_of_the_mission_s_end() -> None:
+def test_times_before_the_clock_was_set_back_say_nothing_of_the_mission_s_end():
     """Nobody knows either what starts while it holds."""
     history = History()
     day_ns = 86_400 * 10**9
@@ -141,7 +141,7 @@ def test_times_before_the_clock_was_set_back_say_nothing_of_the_mission_s_end() 
     assert check.check_histories([mission], rows(history.middleware), files).set_back_ns > day_ns - 1000
 
 
-def test_a_mission_that_was_killed_at_any_row_breaks_no_rule() -> None:
+def test_a_mission_that_was_killed_at_any_row_breaks_no_rule():
     """The ledgers of a killed run are those of the time when it was killed."""
     whole = History()
     for end in range(len(whole.journal)):
@@ -153,7 +153,7 @@ def test_a_mission_that_was_killed_at_any_row_breaks_no_rule() -> None:
         assert history.broken_rules() == set(), end
 
 
-def test_a_new_solver_replays_what_an_older_model_had_handed_over() -> None:
+def test_a_new_solver_replays_what_an_older_model_had_handed_over():
     """The steps before the takeover are explained by the newer model then."""
     for by, broken in (("import", set()), ("replay", {"belief"})):
         history = History()
@@ -173,7 +173,7 @@ def test_a_new_solver_replays_what_an_older_model_had_handed_over() -> None:
         assert history.broken_rules() == broken, by
 
 
-def test_a_new_solver_asks_again_with_the_same_id_and_a_new_middleware_takes_it_up() -> None:
+def test_a_new_solver_asks_again_with_the_same_id_and_a_new_middleware_takes_it_up():
     history = History()
     again = history.place("intended", 1) + 1
     history.journal.insert(again, Entry(225, "intended", replace(intended(2), epoch=2)))
@@ -192,7 +192,7 @@ def test_a_new_solver_asks_again_with_the_same_id_and_a_new_middleware_takes_it_
     assert history.broken_rules() == set()
 
 
-def test_a_mission_that_was_steered_breaks_no_rule() -> None:
+def test_a_mission_that_was_steered_breaks_no_rule():
     """Step 1 is asked for while somebody holds, 2 is the step that they let the planner make."""
     history = History()
     for number in (0, 1):
@@ -380,23 +380,23 @@ BREAKS: dict[Callable[[History], None], str] = {
 @pytest.mark.parametrize(
     ("spoil", "rule"), BREAKS.items(), ids=lambda value: getattr(value, "__name__", value)
 )
-def test_a_history_that_cannot_be_is_caught(spoil: Callable[[History], None], rule: str) -> None:
+def test_a_history_that_cannot_be_is_caught(spoil, rule):
     history = History()
     spoil(history)
     assert rule in history.broken_rules()
 
 
-def test_each_rule_is_broken_by_some_history() -> None:
+def test_each_rule_is_broken_by_some_history():
     by_an_engine = {"replay"}  # test_replayed_history.py
     assert set(BREAKS.values()) == RULES.keys() - by_an_engine
 
 
-def test_the_page_has_each_rule(root: Path) -> None:
+def test_the_page_has_each_rule(root: Path):
     page = (root / "docs" / "reliability.md").read_text()
     assert all(f"| `{name}` | {sentence} |" in page for name, sentence in RULES.items())
 
 
-def test_a_journal_that_had_no_space_for_its_end_agrees_with_a_summary_that_tells_it() -> None:
+def test_a_journal_that_had_no_space_for_its_end_agrees_with_a_summary_that_tells_it():
     history = History()
     del history.journal[-1]
     account = Account()
@@ -409,7 +409,7 @@ def test_a_journal_that_had_no_space_for_its_end_agrees_with_a_summary_that_tell
     assert history.broken_rules() == {"verdict"}
 
 
-def test_a_removed_row_is_caught() -> None:
+def test_a_removed_row_is_caught():
     history = History()
     left = [row for row in rows(history.journal) if row.seq != 4]
     found = check.check_histories([check.History(MISSION, left)]).violations
@@ -417,7 +417,7 @@ def test_a_removed_row_is_caught() -> None:
     assert found[0].row == 5
 
 
-def test_a_journal_that_cannot_be_read_is_a_violation(tmp_path: Path) -> None:
+def test_a_journal_that_cannot_be_read_is_a_violation(tmp_path: Path):
     with Journal.open(tmp_path / "journal.db") as journal:
         for entry in History().journal:
             journal.append(entry.kind, entry.payload)

@@ -33,7 +33,7 @@ def sequences(journal: Path, since: int, limit: int = 0) -> tuple[list[int], boo
 
 
 @pytest.mark.parametrize("limit", [1, 2, 7, COUNT - 1, COUNT])
-def test_page_after_page_has_every_record_once_and_in_order(journal: Path, limit: int) -> None:
+def test_page_after_page_has_every_record_once_and_in_order(journal: Path, limit):
     numbers: list[int] = []
     has_more = True
     while has_more:
@@ -44,24 +44,22 @@ def test_page_after_page_has_every_record_once_and_in_order(journal: Path, limit
 
 
 @pytest.mark.parametrize("since", range(-1, COUNT + 2))
-def test_a_page_begins_where_it_is_asked_to(journal: Path, since: int) -> None:
+def test_a_page_begins_where_it_is_asked_to(journal: Path, since):
     assert sequences(journal, since) == (list(range(max(since, 0), COUNT)), False)
 
 
-def test_a_page_is_no_larger_than_its_size_and_one_record(
-    journal: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_page_is_no_larger_than_its_size_and_one_record(journal: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(history, "PAGE_BYTES", 1)
     assert sequences(journal, 5) == ([5], True)
     assert sequences(journal, COUNT - 1) == ([COUNT - 1], False)
 
 
-def test_a_mission_without_a_decision_has_an_empty_history(tmp_path: Path) -> None:
+def test_a_mission_without_a_decision_has_an_empty_history(tmp_path: Path):
     with Journal.open(tmp_path / "journal.db"):
         assert sequences(tmp_path / "journal.db", 0) == ([], False)
 
 
-def test_a_damaged_record_is_told_with_its_row(journal: Path) -> None:
+def test_a_damaged_record_is_told_with_its_row(journal: Path):
     journal.write_bytes(journal.read_bytes().replace(b'"sequence":5,', b'"sequence":x,'))
     with pytest.raises(StorageError, match=r"row 13 is damaged") as raised:
         sequences(journal, 5)

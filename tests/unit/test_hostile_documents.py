@@ -28,14 +28,14 @@ def loaded(code: str = "", **replaced: str) -> LoadedBundle:
 
 
 @pytest.mark.parametrize("sign", ["(", "{", "[", "#a\n", '"\n'])
-def test_a_mistake_at_each_character_is_told_a_thousand_times(sign: str) -> None:
+def test_a_mistake_at_each_character_is_told_a_thousand_times(sign):
     found = loaded(sign * 50_000).diagnostics
     assert MAX_OF_A_SEVERITY < len(found) < MAX_OF_A_SEVERITY + 20
     assert any("the rest is not told" in one.message for one in found)
     assert {one.span.file for one in found} == {"press.sd"}
 
 
-def test_many_warnings_hide_no_error() -> None:
+def test_many_warnings_hide_no_error():
     findings = Findings()
     for column in range(3000):
         findings.warning("AOS127", "odd", Span("a.sd", 1, column))
@@ -44,13 +44,13 @@ def test_many_warnings_hide_no_error() -> None:
     assert findings.sorted()[-1].message == "wrong"
 
 
-def test_raw_strings_that_are_never_closed_are_one_mistake() -> None:
+def test_raw_strings_that_are_never_closed_are_one_mistake():
     (fault,) = read_cpp('R"x(' * 100_000).faults
     assert "never closed" in fault.message
     assert not read_cpp('state.name = R"x(a " ( { )y" )x";').faults
 
 
-def test_code_that_takes_the_parser_long_is_a_mistake(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_that_takes_the_parser_long_is_a_mistake(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(tree, "MAX_CPU_S", 0.05)
     code = "".join(f"foo{number}: 1\n" for number in range(5000))
     (fault,) = read_cpp(code).faults
@@ -59,19 +59,19 @@ def test_code_that_takes_the_parser_long_is_a_mistake(monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("horizon", ["0", "1e300", "10001", "1.5", "9" * 5000])
-def test_a_horizon_that_no_search_has_is_refused_at_its_line(horizon: str) -> None:
+def test_a_horizon_that_no_search_has_is_refused_at_its_line(horizon):
     (found,) = [one for one in loaded(**{"horizon: 2": f"horizon: {horizon}"}).diagnostics if one.is_error]
     assert (found.code, found.span.file, found.span.line) == ("AOS106", "lamp.ef", 2)
 
 
 @pytest.mark.parametrize("name", ["a\n.zip", "a\x1b[2J.sd", "a\0.zip", "é" * 190 + ".zip", "\u202e.sd"])
-def test_an_upload_with_a_name_that_no_file_has_is_refused(name: str) -> None:
+def test_an_upload_with_a_name_that_no_file_has_is_refused(name):
     with pytest.raises(DocumentError, match="a name that no document has") as caught:
         files_of_upload(name, b"project: p\n")
     assert caught.value.message.isprintable()
 
 
-def test_projects_whose_names_look_alike_are_kept_apart(tmp_path: Path) -> None:
+def test_projects_whose_names_look_alike_are_kept_apart(tmp_path: Path):
     names = ["éé", "öö", "--", "..", "x" * 100, "x" * 101]
     kept = {keep_project(tmp_path, name, {}).deploy_file for name in names}
     assert len(kept) == len(names)
@@ -79,7 +79,7 @@ def test_projects_whose_names_look_alike_are_kept_apart(tmp_path: Path) -> None:
     assert keep_project(tmp_path, "errand", {}).project == "errand"
 
 
-def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys: pytest.CaptureFixture[str]):
     found = Diagnostic(
         Severity.ERROR,
         "AOS110",
@@ -99,7 +99,7 @@ def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys: pytest.Captur
     assert "and 100 more" in said
 
 
-async def test_a_watched_folder_that_cannot_be_looked_into_is_told(tmp_path: Path) -> None:
+async def test_a_watched_folder_that_cannot_be_looked_into_is_told(tmp_path: Path):
     async def take(_: Path) -> None:
         raise AssertionError
 

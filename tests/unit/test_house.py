@@ -75,7 +75,7 @@ def sources() -> dict[str, list[Function]]:
     return {str(path.relative_to(ROOT)): list(functions_of(path)) for path in paths}
 
 
-def test_no_function_is_longer_than_a_screen(sources: dict[str, list[Function]]) -> None:
+def test_no_function_is_longer_than_a_screen(sources: dict[str, list[Function]]):
     assert len(sources) > 400
     long = [
         f"{path}:{function.lineno}: {function.name} has {lines_of(function)} lines"
@@ -86,7 +86,7 @@ def test_no_function_is_longer_than_a_screen(sources: dict[str, list[Function]])
     assert not long
 
 
-def test_no_function_but_a_command_has_many_parameters(sources: dict[str, list[Function]]) -> None:
+def test_no_function_but_a_command_has_many_parameters(sources: dict[str, list[Function]]):
     many = [
         f"{path}:{function.lineno}: {function.name} has {len(parameters_of(function))} parameters"
         for path, functions in sources.items()
@@ -97,7 +97,7 @@ def test_no_function_but_a_command_has_many_parameters(sources: dict[str, list[F
     assert not many
 
 
-def test_a_function_that_breaks_a_limit_is_noticed(tmp_path: Path) -> None:
+def test_a_function_that_breaks_a_limit_is_noticed(tmp_path: Path):
     path = tmp_path / "wide.py"
     path.write_text("def wide(a, b, c, d, e, f, g, *, h=1):\n" + "    pass\n" * MOST_LINES)
     (wide,) = functions_of(path)
@@ -105,13 +105,13 @@ def test_a_function_that_breaks_a_limit_is_noticed(tmp_path: Path) -> None:
     assert not is_command(wide, options_in(path))
 
 
-def test_the_files_that_git_tracks_are_small_together() -> None:
+def test_the_files_that_git_tracks_are_small_together():
     if not (ROOT / ".git").exists():
         pytest.skip("needs a checkout of git")
     assert 0 < tracked_bytes(ROOT) < MOST_TRACKED_BYTES
 
 
-def test_a_tracked_file_counts_and_another_one_does_not(tmp_path: Path) -> None:
+def test_a_tracked_file_counts_and_another_one_does_not(tmp_path: Path):
     subprocess.run(["git", "init", "-q", tmp_path], check=True)
     (tmp_path / "tracked").write_bytes(b"1234")
     (tmp_path / "other").write_bytes(b"12345678")
@@ -119,14 +119,14 @@ def test_a_tracked_file_counts_and_another_one_does_not(tmp_path: Path) -> None:
     assert tracked_bytes(tmp_path) == 4
 
 
-def test_every_command_of_contributing_can_be_imported() -> None:
+def test_every_command_of_contributing_can_be_imported():
     named = sorted(set(re.findall(r"python -m (tests\.[\w.]+\w)", (ROOT / "CONTRIBUTING.md").read_text())))
     modules = [f"{name}.__main__" if (ROOT / name.replace(".", "/")).is_dir() else name for name in named]
     assert len(modules) > 10
     subprocess.run([sys.executable, "-c", f"import {', '.join(modules)}"], cwd=ROOT, check=True)
 
 
-def test_the_walks_of_contributing_lead_to_files() -> None:
+def test_the_walks_of_contributing_lead_to_files():
     table = (ROOT / "CONTRIBUTING.md").read_text().partition("| Question | Walk |\n| --- | --- |\n")[2]
     rows = table.partition("\n\n")[0].splitlines()
     walks = ["/".join(re.findall("`([^`]+)`", row.split("|")[2])) for row in rows]

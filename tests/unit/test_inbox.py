@@ -6,7 +6,7 @@ from functools import partial
 from aos_runtime.bus.inbox import Inbox
 
 
-async def test_messages_keep_their_order_and_leave_time_for_the_rest() -> None:
+async def test_messages_keep_their_order_and_leave_time_for_the_rest():
     loop = asyncio.get_running_loop()
     done = loop.create_future()
     taken: list[int] = []

@@ -34,7 +34,7 @@ VALUES = st.recursive(
 
 @settings(max_examples=150, deadline=None)
 @given(VALUES, st.booleans())
-def test_whatever_is_json_reads_as_the_standard_library_reads_it(value: object, ascii_only: bool) -> None:
+def test_whatever_is_json_reads_as_the_standard_library_reads_it(value: object, ascii_only: bool):
     text = json.dumps(value, ensure_ascii=ascii_only, indent=1)
     result, findings = parsed(text)
     assert findings == ()
@@ -43,7 +43,7 @@ def test_whatever_is_json_reads_as_the_standard_library_reads_it(value: object, 
 
 @settings(max_examples=200, deadline=None)
 @given(st.text(alphabet='{}[]",:\\/*truefalsn0123.eE-+ \n'))
-def test_any_text_gives_a_value_or_an_error(text: str) -> None:
+def test_any_text_gives_a_value_or_an_error(text: str):
     result, findings = parsed(text)
     assert (result is None) == any(finding.code == "AOS104" and finding.is_error for finding in findings) or (
         result is not None
@@ -71,7 +71,7 @@ def test_any_text_gives_a_value_or_an_error(text: str) -> None:
         ("", "1:1", "expected a value, found the end of the file"),
     ],
 )
-def test_what_cannot_be_read_is_said_with_its_place(text: str, place: str, message: str) -> None:
+def test_what_cannot_be_read_is_said_with_its_place(text, place, message):
     result, (finding, *_) = parsed(text)
     assert result is None
     assert (str(finding.span), finding.message) == (f"a.json:{place}", message)
@@ -85,24 +85,24 @@ def test_what_cannot_be_read_is_said_with_its_place(text: str, place: str, messa
         ('{"a": "x, "b": 1}', "A text ended before it: is a quote missing there?"),
     ],
 )
-def test_what_is_missing_before_that_place_is_told(text: str, hint: str) -> None:
+def test_what_is_missing_before_that_place_is_told(text, hint):
     _, (finding,) = parsed(text)
     assert finding.hint.startswith(hint)
 
 
-def test_a_forgotten_comma_does_not_stop_the_reader() -> None:
+def test_a_forgotten_comma_does_not_stop_the_reader():
     result, (finding,) = parsed('{"a": 1\n "b": [1 2]}'.replace("1 2", "1, 2"))
     assert plain(result) == {"a": 1, "b": [1, 2]}
     assert (finding.message, str(finding.span)) == ("a comma is missing here", "a.json:1:8")
 
 
-def test_the_first_of_two_equal_keys_counts_and_the_second_is_an_error() -> None:
+def test_the_first_of_two_equal_keys_counts_and_the_second_is_an_error():
     result, (finding,) = parsed('{"a": 1,\n "a": 2}')
     assert plain(result) == {"a": 1}
     assert (finding.code, str(finding.span)) == ("AOS103", "a.json:2:2")
 
 
-def test_each_character_of_a_string_has_its_place() -> None:
+def test_each_character_of_a_string_has_its_place():
     text = '["a\\"b\\u00e9c\\ud83d\\ude00d"]'
     result, _ = parsed(text)
     assert isinstance(result, JsonArray)
@@ -112,7 +112,7 @@ def test_each_character_of_a_string_has_its_place() -> None:
     assert [text[value.offset_of(index)] for index in range(7)] == ["a", "\\", "b", "\\", "c", "\\", "d"]
 
 
-def test_lines_of_code_come_from_where_they_stand_in_the_string() -> None:
+def test_lines_of_code_come_from_where_they_stand_in_the_string():
     text = '["if (a)\\n\\tx = \\"y\\" + z;",\n "last"]'
     result, _ = parsed(text)
     assert isinstance(result, JsonArray)

@@ -26,7 +26,7 @@ sys.exit(code)
 
 
 @pytest.mark.parametrize("signal", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_signal_after_the_end_leaves_the_exit_code(signal: str) -> None:
+def test_a_signal_after_the_end_leaves_the_exit_code(signal):
     ended = subprocess.run(
         [sys.executable, "-c", RUN.format(signal=signal)], timeout=HANG_S, capture_output=True, check=False
     )
@@ -56,7 +56,7 @@ asyncio.run(run_until_interrupted(Goes(), asyncio.Event()))
 """
 
 
-def test_a_signal_that_comes_twice_at_once_is_one() -> None:
+def test_a_signal_that_comes_twice_at_once_is_one():
     ended = subprocess.run(
         [sys.executable, "-c", TWICE], timeout=HANG_S, capture_output=True, check=False, text=True
     )
@@ -76,7 +76,7 @@ sys.exit(7 if is_unread.is_set() else 1)
 """
 
 
-def test_a_terminal_that_is_closed_reads_no_more() -> None:
+def test_a_terminal_that_is_closed_reads_no_more():
     terminal, inside = pty.openpty()
     with subprocess.Popen(
         [sys.executable, "-c", TELLS], stdin=subprocess.PIPE, stdout=inside, stderr=subprocess.PIPE

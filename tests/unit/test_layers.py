@@ -18,11 +18,11 @@ def broken(root: Path, configuration: Path) -> list[str]:
     return sorted(re.findall(r"^(.+) BROKEN$", done.stdout, re.MULTILINE))
 
 
-def test_each_foreign_library_is_imported_through_its_door_alone(root: Path) -> None:
+def test_each_foreign_library_is_imported_through_its_door_alone(root: Path):
     assert broken(root, root / "pyproject.toml") == []
 
 
-def test_an_import_past_a_door_would_be_noticed(root: Path, tmp_path: Path) -> None:
+def test_an_import_past_a_door_would_be_noticed(root: Path, tmp_path: Path):
     text = (root / "pyproject.toml").read_text()
     doors = re.findall(r'^name = "(The door to .+)"$', text, re.MULTILINE)
     assert len(doors) >= 7

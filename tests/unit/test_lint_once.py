@@ -25,7 +25,7 @@ from aos_protocol.diagnostics import Severity
         (("mapping", "response_rule: True", "response_rule True"), 3, "response_rule"),
     ],
 )
-def test_a_missing_colon_is_one_error(text: tuple[str, str, str], line: int, word: str) -> None:
+def test_a_missing_colon_is_one_error(text, line, word):
     document, before, after = text
     whole = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}[document]
     (only,) = finding_texts(**{document: whole.replace(before, after)})
@@ -41,9 +41,7 @@ def test_a_missing_colon_is_one_error(text: tuple[str, str, str], line: int, wor
         ("hall.ef", "project: hall\n", "a line\nproject: hall\n", []),
     ],
 )
-def test_the_compiler_may_tell_of_all_but_declarations_that_are_wrong(
-    file: str, before: str, after: str, skills: list[str]
-) -> None:
+def test_the_compiler_may_tell_of_all_but_declarations_that_are_wrong(file, before, after, skills):
     files = {"hall.ef": ENVIRONMENT, "walk.sd": SKILL, "run.sd": SKILL, "walk.am": MAPPING}
     files[file] = files[file].replace(before, after)
     loaded = load_files(encoded(files))
@@ -51,7 +49,7 @@ def test_the_compiler_may_tell_of_all_but_declarations_that_are_wrong(
     assert [skill.name for skill in loaded.draft.skills] == skills if loaded.draft else not skills
 
 
-def test_a_condition_that_sets_what_may_only_be_read_is_one_error() -> None:
+def test_a_condition_that_sets_what_may_only_be_read_is_one_error():
     (only,) = found(environment=ENVIRONMENT.replace("state.second.x == 3", "state.second.x = 3"))
     assert (only.code, only.hint) == ("AOS123", "It may only be read. To compare, write `==`")
 
@@ -85,23 +83,23 @@ def test_a_condition_that_sets_what_may_only_be_read_is_one_error() -> None:
         ),
     ],
 )
-def test_what_other_languages_write_is_told_once(code: str, told: str) -> None:
+def test_what_other_languages_write_is_told_once(code, told):
     assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == [told]
 
 
 @pytest.mark.parametrize("name", ["__reward", "2fast", "__LINE__"])
-def test_a_refused_name_is_told_once(name: str) -> None:
+def test_a_refused_name_is_told_once(name):
     block = f"assignment:\ntemporary_variable: int {name}\ncode:\nint n = {name};\nassignment:\ncode:\n"
     (only,) = found(environment=ENVIRONMENT.replace("initial_belief:\n", f"initial_belief:\n{block}"))
     assert only.code == "AOS126"
 
 
-def test_code_that_uses_a_variable_with_a_refused_name_is_not_wrong_as_well() -> None:
+def test_code_that_uses_a_variable_with_a_refused_name_is_not_wrong_as_well():
     codes = {finding.code for finding in found(environment=ENVIRONMENT.replace("near", "__reward"))}
     assert codes == {"AOS126"}
 
 
-def test_a_number_that_cannot_be_read_hides_no_other_mistake_and_brings_no_remark() -> None:
+def test_a_number_that_cannot_be_read_hides_no_other_mistake_and_brings_no_remark():
     header = {"Project": "hall", "Name": "environment", "Type": "Environment"}
     special = {"StateConditionCode": "state.second.y == 3", "Reward": "much", "IsGoalState": True}
     environment = {
@@ -126,7 +124,7 @@ def test_a_number_that_cannot_be_read_hides_no_other_mistake_and_brings_no_remar
     assert sorted(told) == ["AOS106", "AOS106", "AOS110"]
 
 
-def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told() -> None:
+def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told():
     mapping = MAPPING.replace("parameter: steps\ncode:\nsteps\n", "parameter: steps\ncode:\nsteps\n" * 2)
     mapping = mapping.replace("local_variable: steps\n", "local_variable: steps\ntype: imt\n")
     assert finding_texts(mapping=mapping) == [
@@ -135,7 +133,7 @@ def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told() 
     ]
 
 
-def test_names_to_import_that_are_no_list_are_one_error() -> None:
+def test_names_to_import_that_are_no_list_are_one_error():
     mapping = {
         "PlpMain": {"Project": "hall", "Name": "walk", "Type": "Glue"},
         "ModuleActivation": {"Skill": {"ServicePath": "/walk", "ImportCode": [{"From": "m", "Import": "N"}]}},
@@ -147,12 +145,12 @@ def test_names_to_import_that_are_no_list_are_one_error() -> None:
     ]
 
 
-def test_a_misspelt_truth_of_a_source_is_one_error() -> None:
+def test_a_misspelt_truth_of_a_source_is_one_error():
     mapping = MAPPING + "\nlocal_variable: ok\nfrom_ros_service_response: ture\ncode:\nok = __input.ok\n"
     assert [told.split(" ", 2)[1] for told in finding_texts(mapping=mapping)] == ["AOS106"]
 
 
-def test_a_bare_name_is_told_beside_a_wrong_declaration_of_the_environment() -> None:
+def test_a_bare_name_is_told_beside_a_wrong_declaration_of_the_environment():
     environment = ENVIRONMENT.replace("horizon: 4", "horizon: four")
     skill = SKILL.replace(
         "dynamic_model:\n", "dynamic_model:\nint lenght = steps;\nif (length > 1) __reward = 1;\n"
@@ -161,7 +159,7 @@ def test_a_bare_name_is_told_beside_a_wrong_declaration_of_the_environment() -> 
     assert any("unknown name `length`. Did you mean `lenght`?" in line for line in lines), lines
 
 
-def test_shared_code_that_is_no_cpp_is_an_error_that_no_compiler_follows() -> None:
+def test_shared_code_that_is_no_cpp_is_an_error_that_no_compiler_follows():
     shared = "shared_code:\nint twice(int n) { retrun n * 2; }\nint one() { return twice(1); }\n"
     files = {"hall.ef": f"{ENVIRONMENT}\n{shared}", "walk.sd": SKILL, "walk.am": MAPPING}
     loaded = load_files(encoded(files))

@@ -11,11 +11,11 @@ from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
 
 
-def test_the_bundle_itself_is_clean() -> None:
+def test_the_bundle_itself_is_clean():
     assert finding_texts() == []
 
 
-def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code() -> None:
+def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code():
     mapping = MAPPING.replace("local_variable: steps", "local_variable: path").replace(
         "code:\nsteps", "code:\npath"
     )
@@ -25,11 +25,10 @@ def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code() -> None
 
 
 @pytest.mark.parametrize("comment", ["# the door is open", "    #the door's open"])
-def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment: str) -> None:
+def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment):
     for code in (f"{comment}\n__moduleResponse", f"int n = 1; {comment}\n__moduleResponse"):
         (only,) = found(skill=SKILL.replace("__moduleResponse", code))
         assert (only.code, only.hint) == ("AOS108", "Write `//` instead")
-        assert only.mend is not None
         assert (only.mend.length, only.mend.text) == (1, "//")
 
 
@@ -43,24 +42,20 @@ def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment: str) -> None:
         (("skill", "__meetPrecondition", "meetPrecondition"), "meetPrecondition", "__meetPrecondition"),
     ],
 )
-def test_a_name_of_the_language_without_its_underscores_is_recognized(
-    text: tuple[str, str, str], written: str, meant: str
-) -> None:
+def test_a_name_of_the_language_without_its_underscores_is_recognized(text, written, meant):
     document, before, after = text
     whole = {"environment": ENVIRONMENT, "skill": SKILL}[document]
     errors = [finding for finding in found(**{document: whole.replace(before, after)}) if finding.is_error]
     assert [(error.message, error.hint) for error in errors] == [
         (f"unknown name `{written}`", f"Did you mean `{meant}`?")
     ]
-    assert errors[0].mend is not None
     assert errors[0].mend.text == meant
 
 
-def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -> None:
+def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant():
     skill = SKILL.replace("state__.second.x =", "if (steps == 1) __reward = 1;\nstate__.second.x ==")
     (only,) = found(skill=skill)
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 10, 18)
-    assert only.mend is not None
     assert (only.mend.length, only.mend.text) == (2, "=")
     code = "steps == 1 ? void(__reward = 1) : void();\n__reward == steps > 0 ? 1 : 2;"
     (only,) = found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x ="))
@@ -76,9 +71,7 @@ def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant() -
         ("state__.second.x =", "__isGoalState", "there is no `__isGoalState` in the dynamic model"),
     ],
 )
-def test_a_name_of_the_language_in_another_section_is_told_with_those_that_have_it(
-    before: str, name: str, told: str
-) -> None:
+def test_a_name_of_the_language_in_another_section_is_told_with_those_that_have_it(before, name, told):
     texts = {
         key: text.replace(before, f"{name} = 0;\n{before}")
         for key, text in (("environment", ENVIRONMENT), ("skill", SKILL))
@@ -98,20 +91,19 @@ def test_a_name_of_the_language_in_another_section_is_told_with_those_that_have_
         ("int n = 0; __reward = (n = 1) ? 2 : 3;", 26),
     ],
 )
-def test_a_condition_that_sets_is_told_with_the_sign_that_was_meant(code: str, column: int) -> None:
+def test_a_condition_that_sets_is_told_with_the_sign_that_was_meant(code, column):
     (only,) = found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x ="))
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 9, column)
-    assert only.mend is not None
     assert (only.mend.length, only.mend.text) == (1, "==")
 
 
-def test_the_condition_of_a_loop_over_variables_that_sets_is_told() -> None:
+def test_the_condition_of_a_loop_over_variables_that_sets_is_told():
     loop = "assignment:\nloop_next: Cell each\nloop_condition: each.x = 1\nloop_body:\n__reward = 1;\n"
     (only,) = found(skill=SKILL.replace("dynamic_model:\n", f"dynamic_model:\n{loop}assignment:\ncode:\n"))
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 11, 24)
 
 
-def test_a_condition_that_sets_in_brackets_of_its_own_is_meant_so() -> None:
+def test_a_condition_that_sets_in_brackets_of_its_own_is_meant_so():
     code = "int n = 0; if ((n = steps)) __reward = n; while ((n = n - 1) > 0) n--;"
     assert found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == ()
 
@@ -126,24 +118,24 @@ def test_a_condition_that_sets_in_brackets_of_its_own_is_meant_so() -> None:
         'const char* text = R"(\nif it rains:\n)"; __reward = text[0];',
     ],
 )
-def test_code_of_cpp_is_no_python_and_no_decimal(code: str) -> None:
+def test_code_of_cpp_is_no_python_and_no_decimal(code):
     assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
 
 
-def test_a_penalty_above_0_is_told() -> None:
+def test_a_penalty_above_0_is_told():
     assert finding_texts(skill=SKILL.replace("violate_penalty: -1", "violate_penalty: 2.5")) == [
         "5 AOS147 walk earns 2.5 where this does not hold. A penalty is added to the reward: write -2.5"
     ]
 
 
-def test_a_skill_that_may_always_be_used_needs_no_penalty() -> None:
+def test_a_skill_that_may_always_be_used_needs_no_penalty():
     skill = SKILL.replace("violate_penalty: -1\n", "")
     assert any("AOS147" in told for told in finding_texts(skill=skill))
     always = re.sub(r"__meetPrecondition = .*", "__meetPrecondition = true;", skill)
     assert not any("AOS147" in told for told in finding_texts(skill=always))
 
 
-def test_a_kind_of_type_in_capitals_is_read_and_no_type_is_unknown() -> None:
+def test_a_kind_of_type_in_capitals_is_read_and_no_type_is_unknown():
     types = [{"TypeName": "Side", "Type": "Enum", "EnumValues": ["Left", "Right"]}]
     variables = [{"Name": "side", "Type": "Side", "Default": "Right"}]
     environment = {
@@ -158,19 +150,19 @@ def test_a_kind_of_type_in_capitals_is_read_and_no_type_is_unknown() -> None:
     assert [f.message for f in load_files(files).diagnostics if f.code != "AOS139"] == ["the kind Enum"]
 
 
-def test_an_assignment_in_a_condition_is_told_what_to_write() -> None:
+def test_an_assignment_in_a_condition_is_told_what_to_write():
     special = "special_state:\nstate_condition: state.second.x = 3\nreward: 10\nis_goal_state: true\n"
     environment = ENVIRONMENT[: ENVIRONMENT.index("reward_code:")] + special
     (only,) = (finding for finding in found(environment=environment) if finding.is_error)
     assert only.hint == "It may only be read. To compare, write `==`"
 
 
-def test_own_variables_may_be_called_like_names_of_the_language_without_underscores() -> None:
+def test_own_variables_may_be_called_like_names_of_the_language_without_underscores():
     skill = SKILL.replace("__moduleResponse", "int reward = 0;\nreward += 1;\n__moduleResponse")
     assert finding_texts(skill=skill) == []
 
 
-def test_names_may_begin_with_underscores() -> None:
+def test_names_may_begin_with_underscores():
     environment = ENVIRONMENT.replace(
         "initial_belief:\n",
         "initial_belief:\nassignment:\ntemporary_variable: int __S\ncode:\n__S = 1;\nassignment:\ncode:\n",
@@ -178,30 +170,30 @@ def test_names_may_begin_with_underscores() -> None:
     assert finding_texts(environment=environment) == []
 
 
-def test_a_mission_without_a_goal_is_remarked() -> None:
+def test_a_mission_without_a_goal_is_remarked():
     (only,) = found(environment=ENVIRONMENT.replace("__isGoalState = true; ", ""))
     assert (only.code, only.severity) == ("AOS139", Severity.REMARK)
 
 
 @pytest.mark.parametrize("reward", ["__reward = -10;", "__reward -= 3;", ""])
-def test_endings_that_are_all_penalised_are_a_warning(reward: str) -> None:
+def test_endings_that_are_all_penalised_are_a_warning(reward):
     findings = found(environment=ENVIRONMENT.replace("__reward = 10;", reward))
     assert [finding.severity for finding in findings if finding.code == "AOS139"] == [Severity.WARNING]
 
 
-def test_an_ending_that_a_skill_may_pay_for_is_remarked() -> None:
+def test_an_ending_that_a_skill_may_pay_for_is_remarked():
     environment = ENVIRONMENT.replace("__reward = 10;", "")
     findings = found(environment=environment, skill=SKILL + "__reward = 10;\n")
     assert [finding.severity for finding in findings if finding.code == "AOS139"] == [Severity.REMARK]
 
 
 @pytest.mark.parametrize("reward", ["__reward += 3;", "__reward = near;", "__isFailureState = false;"])
-def test_an_ending_that_may_be_a_goal_is_none(reward: str) -> None:
+def test_an_ending_that_may_be_a_goal_is_none(reward):
     environment = ENVIRONMENT.replace("__reward = 10;", reward.replace("near", "state.near"))
     assert "AOS139" not in [finding.code for finding in found(environment=environment)]
 
 
-def test_a_parameter_that_the_mapping_never_passes_on_is_told() -> None:
+def test_a_parameter_that_the_mapping_never_passes_on_is_told():
     mapping = MAPPING.partition("parameter:")[0]
     (only,) = found(mapping=mapping)
     assert (only.code, only.severity, only.span.file, only.span.line) == (
@@ -212,7 +204,7 @@ def test_a_parameter_that_the_mapping_never_passes_on_is_told() -> None:
     )
 
 
-def test_defaults_that_set_the_same_element_are_told() -> None:
+def test_defaults_that_set_the_same_element_are_told():
     both = ENVIRONMENT.replace("state.second.x = 2;", "state.second.x = 2;\nstate.first.x = 3;")
     (only,) = finding_texts(environment=both)
     assert only.startswith("14 AOS141 the defaults of first and second both set `state.first.x`")
@@ -221,7 +213,7 @@ def test_defaults_that_set_the_same_element_are_told() -> None:
     assert only.startswith("13 AOS141 the default of second sets `state.first.x`, and not the variable")
 
 
-def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one_either() -> None:
+def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one_either():
     skill = SKILL.replace("__meetPrecondition = state.first.x > 0", "state.first.x = 1")
     one = ENVIRONMENT.replace("horizon: 4", "horizon: 4\none_state_model: true")
     for environment in (ENVIRONMENT, one):
@@ -236,7 +228,7 @@ def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one
         ('__isGoalState = "true";', 28, "__isGoalState"),
     ],
 )
-def test_a_text_is_no_truth_although_the_compiler_takes_it(statement: str, line: int, name: str) -> None:
+def test_a_text_is_no_truth_although_the_compiler_takes_it(statement, line, name):
     environment = ENVIRONMENT.replace("variable: int x 0", "variable: int x 0\nvariable: bool is_wet false")
     environment = environment.replace(
         "initial_belief:",
@@ -258,7 +250,7 @@ def test_a_text_is_no_truth_although_the_compiler_takes_it(statement: str, line:
 EXTRINSIC = "\nextrinsic_code:\nif (pour != NULL && AOS.Bernoulli(0.5)) state_.second.x = 1;\n"
 
 
-def test_a_skill_that_was_left_out_counts_as_never_chosen() -> None:
+def test_a_skill_that_was_left_out_counts_as_never_chosen():
     (only,) = found(environment=ENVIRONMENT + EXTRINSIC)
     assert (only.code, only.severity, only.message) == (
         "AOS110",
@@ -270,7 +262,7 @@ def test_a_skill_that_was_left_out_counts_as_never_chosen() -> None:
     assert found(environment=ENVIRONMENT + misspelt)[0].hint == "Did you mean `walk`?"
 
 
-def test_parameters_of_a_skill_that_was_left_out_are_an_error() -> None:
+def test_parameters_of_a_skill_that_was_left_out_are_an_error():
     looking = EXTRINSIC.replace("AOS.Bernoulli(0.5)", "pour->cups > 1")
     assert [finding.severity for finding in found(environment=ENVIRONMENT + looking)] == [
         Severity.WARNING,
@@ -294,21 +286,17 @@ def test_parameters_of_a_skill_that_was_left_out_are_an_error() -> None:
         ("aos.bernoulli(0.1)", "unknown name `aos`", "AOS.Bernoulli"),
     ],
 )
-def test_a_draw_that_is_not_written_as_aos_writes_it_is_told_with_the_right_words(
-    written: str, message: str, right: str
-) -> None:
+def test_a_draw_that_is_not_written_as_aos_writes_it_is_told_with_the_right_words(written, message, right):
     (only,) = found(skill=SKILL.replace("state.second.x + steps", f"steps + {written}"))
     assert (only.severity, only.code, only.message) == (Severity.ERROR, "AOS110", message)
     assert (only.span.line, only.span.column, only.hint) == (9, 28, f"Write `{right}`")
-    assert only.mend is not None
     assert only.mend.text == right
 
 
-def test_a_draw_that_is_written_as_the_emitted_model_writes_it_is_told_how_documents_do() -> None:
+def test_a_draw_that_is_written_as_the_emitted_model_writes_it_is_told_how_documents_do():
     (only,) = found(skill=SKILL.replace("state.second.x + steps", "AOS.SampleDiscrete<Side>({0.5, 0.5})"))
     assert (only.code, only.message) == ("AOS110", "`AOS.SampleDiscrete<Side>` is not how documents write it")
     assert only.hint == "Write `AOS.SampleDiscrete(Side, {weights})`"
-    assert only.mend is not None
     assert only.mend.text == "AOS.SampleDiscrete(Side, "
 
 
@@ -320,13 +308,13 @@ def test_a_draw_that_is_written_as_the_emitted_model_writes_it_is_told_how_docum
         "double level = sqrt(2.0) + round(1.5) + std::max(1, 2);\nsteps + level",
     ],
 )
-def test_functions_of_ones_own_and_of_cpp_are_left_alone(code: str) -> None:
+def test_functions_of_ones_own_and_of_cpp_are_left_alone(code):
     before, value = code.split("\n")
     changed = f"{before}\nstate__.second.x = {value}"
     assert finding_texts(skill=SKILL.replace("state__.second.x = state.second.x + steps", changed)) == []
 
 
-def test_a_model_that_never_says_what_comes_back_is_an_error_with_what_to_add() -> None:
+def test_a_model_that_never_says_what_comes_back_is_an_error_with_what_to_add():
     (only,) = finding_texts(skill=SKILL.replace("__moduleResponse = walked;\n", ""))
     message = "the dynamic model of walk never sets __moduleResponse, so that every response is impossible"
     assert only == f"9 AOS117 {message}. Add `__moduleResponse = walked;`"
@@ -334,7 +322,7 @@ def test_a_model_that_never_says_what_comes_back_is_an_error_with_what_to_add() 
     assert message in nothing
 
 
-def test_a_text_that_the_model_never_gives_is_an_error_too() -> None:
+def test_a_text_that_the_model_never_gives_is_an_error_too():
     text = "response_local_variable: steps\n"
     mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", text)
     skill = SKILL.replace("__moduleResponse = walked;\n", "")
@@ -343,7 +331,7 @@ def test_a_text_that_the_model_never_gives_is_an_error_too() -> None:
 
 
 @pytest.mark.parametrize("rules", ["", "response: DefaultObservation\nresponse_rule: True\n"])
-def test_a_skill_that_observes_nothing_needs_no_response(rules: str) -> None:
+def test_a_skill_that_observes_nothing_needs_no_response(rules):
     mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", rules)
     errors = found(mapping=mapping, skill=SKILL.replace("__moduleResponse = walked;\n", ""))
     assert [error.message for error in errors if error.is_error] == []
@@ -358,7 +346,7 @@ def test_a_skill_that_observes_nothing_needs_no_response(rules: str) -> None:
         ("[steps for steps in (1, 2) if steps == 1]", None),
     ],
 )
-def test_a_mapping_that_takes_an_enum_for_a_number_is_told(code: str, hint: str | None) -> None:
+def test_a_mapping_that_takes_an_enum_for_a_number_is_told(code, hint):
     environment = ENVIRONMENT + "\ndefine_type: Side\nenum_members: Left, Right\n"
     skill = SKILL.replace("int steps", "Side steps")
     told = found(

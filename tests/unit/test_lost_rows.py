@@ -54,7 +54,7 @@ def refusal(run: Path) -> AosError:
 
 
 @pytest.mark.parametrize("ledger", ["middleware.db", "adapter-arm.db"])
-def test_a_journal_that_did_not_intend_what_was_asked_for_is_refused(tmp_path: Path, ledger: str) -> None:
+def test_a_journal_that_did_not_intend_what_was_asked_for_is_refused(tmp_path: Path, ledger):
     run = tmp_path / MISSION
     write_run(run, STEPS - 1, ledger)
     error = refusal(run)
@@ -63,7 +63,7 @@ def test_a_journal_that_did_not_intend_what_was_asked_for_is_refused(tmp_path: P
 
 
 @pytest.mark.parametrize("ledger", ["middleware.db", "adapter-arm.db"])
-def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path: Path, ledger: str) -> None:
+def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path: Path, ledger):
     run = tmp_path / MISSION
     write_run(run, STEPS, ledger)
     assert "gone.yaml" in str(refusal(run)), "the deploy file is looked for after the journal"
@@ -71,8 +71,8 @@ def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path: Path, ledge
 
 @pytest.mark.parametrize("is_closed", [True, False], ids=["closed", "killed"])
 def test_a_flipped_bit_of_a_journal_is_refused_or_changes_nothing_but_the_last_rows(
-    tmp_path: Path, is_closed: bool
-) -> None:
+    tmp_path: Path, is_closed
+):
     """`python -m tests.chaos.bits` flips a thousand bits of a real run's journal."""
     run = tmp_path / MISSION
     write_run(run, STEPS, "middleware.db")
@@ -108,7 +108,7 @@ def rows_read(run: Path) -> list[JournalRow] | None:
         return None if error.code == "AOS702" else []
 
 
-def test_who_takes_up_a_run_in_a_simulated_world_is_told_that_the_world_begins_anew(root: Path) -> None:
+def test_who_takes_up_a_run_in_a_simulated_world_is_told_that_the_world_begins_anew(root: Path):
     text = worlds_text(read_deploy_file(root / "deploy" / "armadillo.yaml"))
     assert text.startswith("the world of pybullet begins anew")
     assert worlds_text(without_a_robot(read_deploy_file(root / "deploy" / "armadillo.yaml"))) == ""

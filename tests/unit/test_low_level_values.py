@@ -91,7 +91,7 @@ def loaded(rules: str) -> LoadedMapping:
 # --- where they begin ---
 
 
-def test_they_begin_as_the_constants_that_types_and_variables_have_by_default() -> None:
+def test_they_begin_as_the_constants_that_types_and_variables_have_by_default():
     assert default_constants(text_project(GARDEN)) == {
         "home": "___origin",
         "roses.near.pose": "___origin",
@@ -99,7 +99,7 @@ def test_they_begin_as_the_constants_that_types_and_variables_have_by_default() 
     }
 
 
-def test_a_field_that_a_low_level_type_has_not_is_a_warning_where_it_is_set() -> None:
+def test_a_field_that_a_low_level_type_has_not_is_a_warning_where_it_is_set():
     files = GARDEN | {"garden.lf": GARDEN["garden.lf"].replace("___gate.x", "___gate.z")}
     loaded = load_files(encoded(files))
     found = [f for f in loaded.diagnostics if "`z`" in f.message]
@@ -109,20 +109,20 @@ def test_a_field_that_a_low_level_type_has_not_is_a_warning_where_it_is_set() ->
     assert loaded.project is not None
 
 
-def test_the_original_armadillos_places_have_their_constants(corpus: Path) -> None:
+def test_the_original_armadillos_places_have_their_constants(corpus: Path):
     constants = default_constants(project_in(corpus / "armadillo-finer"))
     assert constants["locationCorridor.actual_location"] == "___locationCorridor"
     assert len(constants) == 3
 
 
-def test_a_parameter_finds_the_value_of_the_variable_it_stands_for() -> None:
+def test_a_parameter_finds_the_value_of_the_variable_it_stands_for():
     constants = {"gate.pose": "___gate", "shed.pose": "___shed"}
     parameters, low_level = LowLevelValues().arguments(request({"to": "gate"}), constants)
     assert parameters == {"to": {"pose": "___gate", "number": 1}}
     assert low_level == {}
 
 
-def test_a_computed_parameter_stands_for_no_variable_and_stays_as_it_is() -> None:
+def test_a_computed_parameter_stands_for_no_variable_and_stays_as_it_is():
     parameters, _ = LowLevelValues().arguments(request(), {"gate.pose": "___gate"})
     assert parameters == request().parameters
 
@@ -130,26 +130,24 @@ def test_a_computed_parameter_stands_for_no_variable_and_stays_as_it_is() -> Non
 # --- new ones ---
 
 
-def test_what_a_response_gave_is_found_by_later_activations_and_after_a_restart() -> None:
+def test_what_a_response_gave_is_found_by_later_activations_and_after_a_restart():
     values = LowLevelValues([outcome(gate__pose={"x": 4.5}), outcome(shed__pose={"x": 9.0})])
     values.take(outcome(gate__pose={"x": 4.6}))
     _, low_level = values.arguments(request({"to": "gate"}), {})
     assert low_level == {"to.pose": {"x": 4.6}}
 
 
-def test_a_path_may_start_with_a_parameter_or_with_a_state_variable() -> None:
+def test_a_path_may_start_with_a_parameter_or_with_a_state_variable():
     given = {"to.pose": 1, "shed.pose": 2, "state.home": 3}
     assert assigned_variables(given, request({"to": "gate"})) == {"gate.pose": 1, "shed.pose": 2, "home": 3}
 
 
-def test_what_is_assigned_to_a_computed_parameter_is_dropped_with_a_warning(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+def test_what_is_assigned_to_a_computed_parameter_is_dropped_with_a_warning(caplog: pytest.LogCaptureFixture):
     assert assigned_variables({"to.pose": 1}, request()) == {}
     assert "to stands for no state variable" in caplog.text
 
 
-def test_only_the_rule_that_holds_gives_values() -> None:
+def test_only_the_rule_that_holds_gives_values():
     mapping = loaded(
         "response: near\nresponse_rule: seen < 2\nassign_variable: to.pose\nvalue: {'x': pose.x + seen}\n"
         "response: far\nresponse_rule: True\nassign_variable: home\nvalue: pose\n"
@@ -161,7 +159,7 @@ def test_only_the_rule_that_holds_gives_values() -> None:
     assert (far.response, far.assigned) == ("far", {"home": {"x": 1.0}})
 
 
-def test_a_value_that_cannot_be_kept_fails_at_its_place_in_the_document() -> None:
+def test_a_value_that_cannot_be_kept_fails_at_its_place_in_the_document():
     rules = "response: near\nresponse_rule: True\nassign_variable: to.pose\nvalue: print\n"
     answer = observed(loaded(rules), 1)
     assert isinstance(answer, Raised)

@@ -63,21 +63,21 @@ def particle_of(act: str, home: str = "") -> list[str]:
         ("int read = state__.count + state.total;", []),
     ],
 )
-def test_a_particle_holds_what_code_may_change(act: str, particle: list[str]) -> None:
+def test_a_particle_holds_what_code_may_change(act, particle):
     assert particle_of(act) == particle
 
 
-def test_what_an_initial_belief_sets_is_in_the_particle() -> None:
+def test_what_an_initial_belief_sets_is_in_the_particle():
     assert particle_of("", "initial_belief:\nstate.lamp = On;\n") == ["lamp"]
 
 
-def test_everything_from_a_drawn_default_on_is_in_the_particle() -> None:
+def test_everything_from_a_drawn_default_on_is_in_the_particle():
     drawn = "state_variable: bool lucky\ncode:\nstate.lucky = AOS.Bernoulli(0.5);\n"
     after = "state_variable: bool as_well\ncode:\nstate.as_well = state.lucky;\n"
     assert particle_of("", drawn + after) == ["lucky", "as_well"]
 
 
-def test_the_state_digest_is_of_the_declared_state() -> None:
+def test_the_state_digest_is_of_the_declared_state():
     plain = emit(program_of(project_of("state__.total = 1;")))
     other_code = emit(program_of(project_of("state__.count = 2;")))
     more = emit(program_of(project_of("state__.total = 1;", "state_variable: bool extra\n")))
@@ -94,18 +94,18 @@ def test_the_state_digest_is_of_the_declared_state() -> None:
         ("std::mt19937 own; state__.total = own();", "mt19937"),
     ],
 )
-def test_code_that_cannot_be_repeated_exactly_is_refused(act: str, word: str) -> None:
+def test_code_that_cannot_be_repeated_exactly_is_refused(act, word):
     program, diagnostics = lower(project_of(act))
     assert program is None
     assert diagnostics[0].code == "AOS124"
     assert str(diagnostics[0].span) == f"act.sd:3:{act.index(word) + 1}"
 
 
-def test_a_constant_static_and_a_variable_called_time_are_fine() -> None:
+def test_a_constant_static_and_a_variable_called_time_are_fine():
     assert lower(project_of("static const int two = 2; int time = two; state__.total = time;"))[0] is not None
 
 
-def test_a_state_given_an_observation_takes_the_local_variables_that_it_names() -> None:
+def test_a_state_given_an_observation_takes_the_local_variables_that_it_names():
     text = 'state___.total = answer == "much" ? 9 : 0;'
     project = project_of("__reward = 1;", given=text)
     program = program_of(project)
@@ -114,7 +114,7 @@ def test_a_state_given_an_observation_takes_the_local_variables_that_it_names() 
     assert [variable.name for variable in program.particle] == ["total"], "what it writes is no constant"
 
 
-def test_a_local_variable_of_a_state_variables_name_and_type_is_told() -> None:
+def test_a_local_variable_of_a_state_variables_name_and_type_is_told():
     project = project_of("__reward = 1;")
     skill = project.skills[0]
     variable = msgspec.structs.replace(skill.mapping.local_variables[0], name="total", type="int")
@@ -126,7 +126,7 @@ def test_a_local_variable_of_a_state_variables_name_and_type_is_told() -> None:
     assert program_of(project).skills[0].reported == ()
 
 
-def test_names_that_cpp_needs_are_refused_at_their_places() -> None:
+def test_names_that_cpp_needs_are_refused_at_their_places():
     project = project_of()
     variables = tuple(
         msgspec.structs.replace(variable, name="operator" if variable.name == "total" else variable.name)
@@ -137,14 +137,14 @@ def test_names_that_cpp_needs_are_refused_at_their_places() -> None:
     assert [(d.code, d.span) for d in found] == [("AOS126", variables[-1].span)]
 
 
-def test_a_word_of_the_emitted_file_is_refused_only_where_it_would_be_in_the_way() -> None:
+def test_a_word_of_the_emitted_file_is_refused_only_where_it_would_be_in_the_way():
     kinds = "define_type: Kind\nenum_members: model, ground, main\nstate_variable: Kind model\n"
     assert lower(project_of("state__.model = ground;", kinds))[0] is not None
     (refusal,) = errors_of(project_of("", "define_type: model\nvariable: int age\n"))
     assert (refusal.code, refusal.span.line) == ("AOS126", HOME.count("\n") + 1)
 
 
-def test_code_that_could_leave_its_function_is_refused() -> None:
+def test_code_that_could_leave_its_function_is_refused():
     project = project_of()
     skill = project.skills[0]
     block = skill.model.dynamic_model[0]
@@ -156,7 +156,7 @@ def test_code_that_could_leave_its_function_is_refused() -> None:
 
 
 @pytest.mark.parametrize("stored", ["tuple<int,int>", "deque<int>", "vector<int*>"])
-def test_what_no_state_can_hold_is_refused(stored: str) -> None:
+def test_what_no_state_can_hold_is_refused(stored):
     text = json_text(
         {
             "EnvironmentGeneral": {"Horizon": 3, "Discount": 0.9},

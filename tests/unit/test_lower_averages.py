@@ -54,13 +54,11 @@ def averaged(act: str, extrinsic: str = "", special: str = "") -> list[bool]:
         ("__reward = AOS.Bernoulli(0.5) + AOS.SampleNormal(0, 1);", [False, True]),
     ],
 )
-def test_a_draw_counts_by_its_mean_where_the_reward_is_linear_in_it_and_nothing_else_sees_it(
-    act: str, expected: list[bool]
-) -> None:
+def test_a_draw_counts_by_its_mean_where_the_reward_is_linear_in_it_and_nothing_else_sees_it(act, expected):
     assert averaged(act) == expected
 
 
-def test_code_elsewhere_that_looks_at_the_reward_is_reckoned_with() -> None:
+def test_code_elsewhere_that_looks_at_the_reward_is_reckoned_with():
     act = "__reward = AOS.SampleNormal(0, 1);"
     assert averaged(act, extrinsic="__reward -= 1;") == [True]
     assert averaged(act, extrinsic="if (__reward < 0) state_.level = 1;") == [False]

@@ -27,27 +27,27 @@ def capacities_of(*snippets: str) -> Capacities:
         ("state.box.grid = {1, 2, 3, 4}; state.box.grid[2] = 5;", 4),
     ],
 )
-def test_literal_sizes_give_exactly_their_capacity(code: str, capacity: int) -> None:
+def test_literal_sizes_give_exactly_their_capacity(code, capacity):
     assert capacities_of(code).capacity("grid") == capacity
 
 
-def test_the_longest_list_counts_over_all_code() -> None:
+def test_the_longest_list_counts_over_all_code():
     assert capacities_of("state.grid = {1};", "state__.grid = {1, 2, 3, 4};").capacity("grid") == 4
 
 
-def test_nested_lists_give_a_room_for_each_level() -> None:
+def test_nested_lists_give_a_room_for_each_level():
     capacities = capacities_of("state.table = {{1, 2, 3}, {4}};")
     assert (capacities.capacity("table", 0), capacities.capacity("table", 1)) == (2, 3)
 
 
-def test_a_vector_that_grows_gets_room_to_grow() -> None:
+def test_a_vector_that_grows_gets_room_to_grow():
     assert capacities_of("state__.path.push_back(x);").capacity("path") == GROWING_CAPACITY
     assert capacities_of("state.path.assign(4 * n, 0);").capacity("path") == GROWING_CAPACITY
     assert capacities_of("state.path = vector<int>(4 + n);").capacity("path") == GROWING_CAPACITY
     assert capacities_of("state.a = {" + "1, " * 39 + "1}; state.a.push_back(2);").capacity("a") == 80
 
 
-def test_a_vector_grows_through_a_reference_too() -> None:
+def test_a_vector_grows_through_a_reference_too():
     capacities = capacities_of(
         "state.table = {{1, 2}}; state.path = {1};",
         "vector<int>& path = state__.path; path.push_back(2);",
@@ -57,23 +57,23 @@ def test_a_vector_grows_through_a_reference_too() -> None:
     assert (capacities.capacity("table", 0), capacities.capacity("table", 1)) == (1, GROWING_CAPACITY)
 
 
-def test_loop_bounds_tell_how_far_a_vector_grows() -> None:
+def test_loop_bounds_tell_how_far_a_vector_grows():
     code = "for (int i = 0; i < 30; i++) for (int j = 0; j < 40; j++) state.cells.push_back(0);"
     assert capacities_of(code).capacity("cells") == 1200
 
 
 @pytest.mark.parametrize("code", ["", "state.map = {};"])
-def test_a_vector_that_the_robots_data_fill_has_room_for_them(code: str) -> None:
+def test_a_vector_that_the_robots_data_fill_has_room_for_them(code):
     capacities = capacities_of(code)
     capacities.fill_by_report("map")
     assert capacities.capacity("map") == REPORTED_CAPACITY
 
 
-def test_a_vector_of_data_with_a_length_at_the_start_has_room_for_twice_as_many() -> None:
+def test_a_vector_of_data_with_a_length_at_the_start_has_room_for_twice_as_many():
     capacities = capacities_of("state.map = vector<int>(100, -1);")
     capacities.fill_by_report("map")
     assert capacities.capacity("map") == 200
 
 
-def test_a_vector_that_nothing_fills_still_has_room() -> None:
+def test_a_vector_that_nothing_fills_still_has_room():
     assert capacities_of("x = 1;").capacity("grid") == GROWING_CAPACITY

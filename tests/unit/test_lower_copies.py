@@ -39,7 +39,7 @@ def copies(act: str, extrinsic: str = "") -> Copies:
         "int n = std::abs(state.level); const bool is_full = state.cup.full; state__.level = is_full + n;",
     ],
 )
-def test_one_object_does_where_all_is_read_before_it_is_written(act: str) -> None:
+def test_one_object_does_where_all_is_read_before_it_is_written(act):
     assert copies(act) == Copies(keeps_state=False, keeps_state_=False)
 
 
@@ -71,7 +71,7 @@ def test_one_object_does_where_all_is_read_before_it_is_written(act: str) -> Non
         "std::span<int> row(state__.row); row[0] = 5; __reward = state.row[0];",
     ],
 )
-def test_the_old_state_is_kept_where_it_may_be_read_afterwards(act: str) -> None:
+def test_the_old_state_is_kept_where_it_may_be_read_afterwards(act):
     assert copies(act).keeps_state
 
 
@@ -85,5 +85,5 @@ def test_the_old_state_is_kept_where_it_may_be_read_afterwards(act: str) -> None
         ("", "state_.level = 1; __reward = state.level;", (True, False)),
     ],
 )
-def test_extrinsic_changes_come_between_two_copies(act: str, extrinsic: str, kept: tuple[bool, bool]) -> None:
+def test_extrinsic_changes_come_between_two_copies(act, extrinsic, kept):
     assert copies(act or "__reward = 1;", extrinsic) == Copies(*kept)

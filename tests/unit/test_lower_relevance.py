@@ -102,25 +102,23 @@ ALL = {"known", "count", "row", "cup"}
         ("std::stringstream text; text << state.known; int n; text >> n; __reward = n;", {"known"}),
     ],
 )  # fmt: skip
-def test_a_variable_matters_if_what_is_earned_or_observed_may_depend_on_it(
-    act: str, matters: set[str]
-) -> None:
+def test_a_variable_matters_if_what_is_earned_or_observed_may_depend_on_it(act, matters):
     assert idle(act) == ALL - matters
 
 
-def test_what_the_rollout_policy_reads_does_not_matter() -> None:
+def test_what_the_rollout_policy_reads_does_not_matter():
     assert idle("state__.known = state.level;", policy="__heuristicValue = state.known;") == ALL
 
 
-def test_extrinsic_changes_count() -> None:
+def test_extrinsic_changes_count():
     assert idle("", extrinsic="if (state.known) state_.level = state.count;") == {"row", "cup"}
 
 
-def test_code_that_cannot_be_read_makes_everything_matter() -> None:
+def test_code_that_cannot_be_read_makes_everything_matter():
     assert idle("state__.count = = 1;") == set()
 
 
-def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Path) -> None:
+def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Path):
     project = bundle_project(bundles / "bench" / "rocksample-7-8")
     assert {"worth", "unsampled", "promising", "looking_good"} <= irrelevant_variables(project)
     assert not {"x", "y", "is_good", "has_left"} & irrelevant_variables(project)
@@ -162,9 +160,7 @@ NOISE = "state__.level = state.level; if (AOS.Bernoulli(0.2)) __moduleResponse =
         ("auto f = [&] { return AOS.Bernoulli(0.5); }; state__.level = f();", [False]),
     ],
 )
-def test_a_draw_shapes_only_observations_where_nothing_else_can_depend_on_it(
-    act: str, expected: list[bool]
-) -> None:
+def test_a_draw_shapes_only_observations_where_nothing_else_can_depend_on_it(act, expected):
     assert shaping(act) == expected
 
 
@@ -183,11 +179,11 @@ def test_a_draw_shapes_only_observations_where_nothing_else_can_depend_on_it(
         ("int* place = &at; state__.level += *place;", False),
     ],
 )
-def test_groundings_are_alike_where_parameters_shape_only_what_is_observed(act: str, are_alike: bool) -> None:
+def test_groundings_are_alike_where_parameters_shape_only_what_is_observed(act, are_alike):
     assert looking(act) == ({"act"} if are_alike else set())
 
 
-def test_groundings_differ_where_the_precondition_or_the_world_asks_for_them() -> None:
+def test_groundings_differ_where_the_precondition_or_the_world_asks_for_them():
     look = "__moduleResponse = state.row[at] > 1 ? done : NULL;"
     assert looking(look, extrinsic="state_.level += 1;") == {"act"}
     assert looking(look, extrinsic="if (act != NULL) state_.level += act.at;") == set()
@@ -206,11 +202,11 @@ def test_groundings_differ_where_the_precondition_or_the_world_asks_for_them() -
         ("bool hit = AOS.Bernoulli(0.9); __moduleResponse = hit; if (hit) __reward = -1;", False),
     ],
 )
-def test_a_reward_is_certain_where_draws_shape_only_what_is_observed(act: str, is_certain: bool) -> None:
+def test_a_reward_is_certain_where_draws_shape_only_what_is_observed(act, is_certain):
     assert certain(grounded(act)) == ({"act"} if is_certain else set())
 
 
-def test_no_reward_is_certain_where_the_world_draws() -> None:
+def test_no_reward_is_certain_where_the_world_draws():
     assert certain(grounded("__reward = -1;", extrinsic="state_.level += 1;")) == {"act"}
     assert certain(grounded("__reward = -1;", extrinsic="state_.level += AOS.Bernoulli(0.5);")) == set()
 

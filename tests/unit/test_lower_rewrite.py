@@ -45,7 +45,7 @@ def piece_of(code: str) -> Piece:
         "vector<int> local; vector<int>& row = local;",
     ],
 )
-def test_plain_code_stands_as_it_is(code: str) -> None:
+def test_plain_code_stands_as_it_is(code):
     assert rewritten(code) == code
 
 
@@ -94,11 +94,11 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
         ),
     ],
 )  # fmt: skip
-def test_what_documents_may_write_becomes_cpp(code: str, text: str) -> None:
+def test_what_documents_may_write_becomes_cpp(code, text):
     assert rewritten(code) == text
 
 
-def test_columns_lead_back_through_edits() -> None:
+def test_columns_lead_back_through_edits():
     piece = piece_of("x = 1;\nc = AOS.SampleDiscrete(tColour, {wrong, 2}) + bad;")
     line = piece.text.split("\n")[1]
     for word in ("wrong", "bad", "AOS"):
@@ -107,7 +107,7 @@ def test_columns_lead_back_through_edits() -> None:
         assert piece.locate(2, column) == Span("a.sd", 11, source)
 
 
-def test_a_column_in_an_edit_leads_to_the_edited_place() -> None:
+def test_a_column_in_an_edit_leads_to_the_edited_place():
     piece = piece_of("c = AOS.SampleDiscrete(tColour, {1, 2});")
     assert piece.locate(1, piece.text.index("template") + 3) == Span("a.sd", 10, 9)
     assert piece.locate(1, piece.text.index("tColour") + 3) == Span("a.sd", 10, 26)

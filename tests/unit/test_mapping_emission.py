@@ -49,7 +49,7 @@ def function(python: str, name: str) -> str:
     return python[start:].split("\n\n\n")[0].rstrip()
 
 
-def test_a_function_names_only_the_local_variables_that_it_reads() -> None:
+def test_a_function_names_only_the_local_variables_that_it_reads():
     python = emitted_with("""\
 parameter: limit
 code:
@@ -69,7 +69,7 @@ return __input.level
     assert "def observe(level):" in python
 
 
-def test_falling_off_the_end_of_a_topics_code_keeps_the_value() -> None:
+def test_falling_off_the_end_of_a_topics_code_keeps_the_value():
     python = emitted_with("""\
 local_variable: has_arrived
 topic: /log
@@ -86,7 +86,7 @@ if __input.text == 'arrived':
     ]
 
 
-def test_code_that_always_returns_gets_no_second_return() -> None:
+def test_code_that_always_returns_gets_no_second_return():
     python = emitted_with("""\
 local_variable: side
 topic: /log
@@ -100,7 +100,7 @@ else:
     assert function(python, "side_from_topic").endswith("return 'right'")
 
 
-def test_rules_become_one_condition_each_up_to_the_one_that_is_always_true() -> None:
+def test_rules_become_one_condition_each_up_to_the_one_that_is_always_true():
     python = emitted_with("""\
 response: a
 response_rule: one or two
@@ -124,11 +124,11 @@ action_parameter: two
     ]
 
 
-def test_a_mapping_without_rules_has_the_default_observation() -> None:
+def test_a_mapping_without_rules_has_the_default_observation():
     assert 'return "DefaultObservation"' in emitted(HEAD).python
 
 
-def test_a_response_variable_is_answered_as_text_whatever_the_rules_say() -> None:
+def test_a_response_variable_is_answered_as_text_whatever_the_rules_say():
     python = emitted_with("""\
 local_variable: board
 from_ros_service_response: true
@@ -139,7 +139,7 @@ response_local_variable: board
     assert "return None if board is None else str(board)" in python
 
 
-def test_indentation_inside_a_text_is_left_alone() -> None:
+def test_indentation_inside_a_text_is_left_alone():
     python = emitted_with("""\
 local_variable: word
 topic: /log
@@ -154,13 +154,13 @@ code:
     assert lines[2:5] == ["    known = '''one", "  two'''", "    if __input.text in known:"]
 
 
-def test_an_import_stands_in_for_what_is_not_installed() -> None:
+def test_an_import_stands_in_for_what_is_not_installed():
     python = emitted(HEAD.replace("path:", "imports: from: geometry_msgs.msg import: Point\npath:")).python
     assert "    from geometry_msgs.msg import Point\nexcept ImportError:\n" in python
     assert '    Point = stand_in("Point", "geometry_msgs.msg")' in python
 
 
-def test_what_an_unknown_star_import_has_to_bring_is_what_the_code_calls() -> None:
+def test_what_an_unknown_star_import_has_to_bring_is_what_the_code_calls():
     python = emitted(
         HEAD.replace("path:", "imports: from: robot.srv import: *\npath:")
         + "parameter: goal\ncode:\nGoal(x=float(x), y=str(len(y)))\n"
@@ -169,7 +169,7 @@ def test_what_an_unknown_star_import_has_to_bring_is_what_the_code_calls() -> No
     assert python.count("stand_in(") == 1
 
 
-def test_low_level_constants_are_left_out_where_no_parameter_can_bring_one() -> None:
+def test_low_level_constants_are_left_out_where_no_parameter_can_bring_one():
     span = Span("environment.json", 3, 1)
     low_level = LowLevelDocument(
         "garden",
@@ -182,7 +182,7 @@ def test_low_level_constants_are_left_out_where_no_parameter_can_bring_one() -> 
     assert "___door" not in emitted(HEAD, low_level).python
 
 
-def test_document_text_never_becomes_template_or_comment_source() -> None:
+def test_document_text_never_becomes_template_or_comment_source():
     text = HEAD + "parameter: a\ncode:\n'{{ 7 * 7 }} {% raw %}'\n"
     skill = skill_of(text)
     activation = replace(skill.mapping.activation, path='x"""\nimport os')
@@ -195,7 +195,7 @@ def test_document_text_never_becomes_template_or_comment_source() -> None:
 # --- places ---
 
 
-def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path) -> None:
+def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path):
     project = project_in(bundles / "armadillo-finer")
     mapping = next(generated for generated in emit_project(project) if generated.skill == "observe_holding")
     source = (bundles / "armadillo-finer" / "observe_holding.am").read_text().splitlines()
@@ -206,7 +206,7 @@ def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path)
     assert source[span.line - 1][span.column - 1 :].startswith("min(__input.left_force_n")
 
 
-def test_each_line_of_a_snippet_knows_its_line_and_column_in_a_json_document() -> None:
+def test_each_line_of_a_snippet_knows_its_line_and_column_in_a_json_document():
     folder = Path(__file__).parents[1] / "golden" / "python" / "valves"
     (mapping,) = emit_project(project_in(folder))
     source = (folder / "inspect_valve glue.json").read_text().splitlines()
@@ -217,13 +217,13 @@ def test_each_line_of_a_snippet_knows_its_line_and_column_in_a_json_document() -
         assert source[span.line - 1][span.column - 1 :].startswith(code)
 
 
-def test_generated_lines_stand_for_the_document_part_that_made_them() -> None:
+def test_generated_lines_stand_for_the_document_part_that_made_them():
     mapping = emitted_with("local_variable: level\naction_parameter: tank.level\n")
     line = mapping.python.splitlines().index('        "level": parameters["tank"]["level"],') + 1
     assert str(mapping.locate(line)).startswith("look.am:4")
 
 
-def test_a_line_that_no_document_part_made_stands_for_the_mapping() -> None:
+def test_a_line_that_no_document_part_made_stands_for_the_mapping():
     mapping = emitted(HEAD)
     assert mapping.locate(1) == mapping.locate(10_000) == mapping.mapping.span
 
@@ -231,7 +231,7 @@ def test_a_line_that_no_document_part_made_stands_for_the_mapping() -> None:
 # --- mistakes ---
 
 
-def test_every_mistake_of_a_mapping_is_found_in_one_run() -> None:
+def test_every_mistake_of_a_mapping_is_found_in_one_run():
     found = mistakes(
         HEAD
         + """\
@@ -252,7 +252,7 @@ return 3
     assert [place.rsplit(":", 1)[0] for place, _ in found] == [f"look.am:{line}" for line in (6, 8, 12, 15)]
 
 
-def test_a_mistake_in_a_json_document_is_found_at_its_line_and_column() -> None:
+def test_a_mistake_in_a_json_document_is_found_at_its_line_and_column():
     folder = Path(__file__).parents[1] / "golden" / "python" / "valves"
     files = {path.name: path.read_bytes() for path in folder.glob("*.json")}
     name = "inspect_valve glue.json"
@@ -264,7 +264,7 @@ def test_a_mistake_in_a_json_document_is_found_at_its_line_and_column() -> None:
     assert source[mistake.span.line - 1][mistake.span.column - 1 :].startswith("and drops")
 
 
-def test_what_only_shows_in_the_whole_module_is_found_too() -> None:
+def test_what_only_shows_in_the_whole_module_is_found_too():
     found = mistakes(
         HEAD
         + """\
@@ -280,19 +280,19 @@ level = 1
 
 
 @pytest.mark.parametrize("code", ["yield 1", "x = [(yield)]", "return 1) + (2", "def f(:"])
-def test_code_that_is_no_function_body_is_refused(code: str) -> None:
+def test_code_that_is_no_function_body_is_refused(code):
     assert mistakes(HEAD + f"local_variable: level\ntopic: /level\nmessage_type: Level\ncode:\n{code}\n")
 
 
 @pytest.mark.parametrize("code", ["a = 1", "1)(", "print(1); print(2)", "yield", "x for x in", "\u0000"])
-def test_what_is_no_expression_is_refused(code: str) -> None:
+def test_what_is_no_expression_is_refused(code):
     mapping = mapping_of(HEAD)
     field = ActivationField("a", Snippet(code, (Span("look.am", 6, 1),)))
     refusal = refusal_of(replace(mapping, activation=replace(mapping.activation, fields=(field,))))
     assert [finding.code for finding in refusal.diagnostics] == ["AOS121"]
 
 
-def test_names_that_would_break_the_module_are_refused() -> None:
+def test_names_that_would_break_the_module_are_refused():
     mapping = mapping_of(HEAD + "local_variable: level\naction_parameter: level\n")
     (variable,) = mapping.local_variables
     for name in ("class", "__input", "parameters", "a b", "x\n"):
@@ -300,7 +300,7 @@ def test_names_that_would_break_the_module_are_refused() -> None:
         assert refusal.diagnostics[0].code == "AOS126"
 
 
-def test_an_import_that_is_none_is_refused() -> None:
+def test_an_import_that_is_none_is_refused():
     mapping = mapping_of(HEAD)
     for module, name in (("os; import sys", "x"), ("os", "x\nimport sys"), ("", "1")):
         bad = Import(module, (name,), Span("look.am", 2, 1))
@@ -318,7 +318,7 @@ CODE = st.lists(st.sampled_from([*BRACKETS, *BLANKS, *WORDS]), max_size=12).map(
 @given(CODE, CODE)
 def test_any_text_is_either_refused_or_becomes_a_module_with_a_place_for_each_line(
     expression: str, body: str
-) -> None:
+):
     mapping = mapping_of(HEAD + "local_variable: x\ntopic: /t\nmessage_type: T\ncode:\npass\n")
 
     def snippet(code: str) -> Snippet:

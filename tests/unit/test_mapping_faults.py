@@ -1,7 +1,6 @@
 """Faults of mapping code: what is said, and at which place of the document."""
 
 import math
-from typing import Any
 
 import pytest
 from mapping_runs import emitted_with, loaded, observed, raised, running
@@ -9,7 +8,7 @@ from mapping_runs import emitted_with, loaded, observed, raised, running
 from aos_middleware.workers.frames import Begin, Finish, Raised, Take
 
 
-def test_an_exception_is_placed_at_the_innermost_line_of_the_mapping() -> None:
+def test_an_exception_is_placed_at_the_innermost_line_of_the_mapping():
     emission = emitted_with("""\
 local_variable: level
 topic: /level
@@ -24,14 +23,14 @@ return of(__input)
     assert str(emission.locate(answer.line, answer.column)) == "look.am:9:12"
 
 
-def test_columns_count_characters_not_bytes() -> None:
+def test_columns_count_characters_not_bytes():
     emission = emitted_with("parameter: a\ncode:\n'äöü' + nothing\n")
     answer = loaded(emission).answer(Begin({}))
     assert isinstance(answer, Raised)
     assert str(emission.locate(answer.line, answer.column)) == "look.am:6:9"
 
 
-def test_a_rule_over_a_silent_topic_says_which_variable_has_no_value() -> None:
+def test_a_rule_over_a_silent_topic_says_which_variable_has_no_value():
     mapping = running("""\
 response: high
 response_rule: level > 3
@@ -46,7 +45,7 @@ return __input.data
     assert answer.local_variables == {"level": "null"}
 
 
-def test_a_result_without_a_value_is_told_and_not_the_silent_topic_beside_it() -> None:
+def test_a_result_without_a_value_is_told_and_not_the_silent_topic_beside_it():
     mapping = running("""\
 response: high
 response_rule: level is not None and level > 3 or weight > 3
@@ -64,7 +63,7 @@ weight = None
     assert answer.unset == ("weight",)
 
 
-def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place() -> None:
+def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place():
     emission = emitted_with("""\
 local_variable: success
 from_ros_service_response: true
@@ -77,7 +76,7 @@ succes = __input.success
 
 
 @pytest.mark.parametrize("success", ["yes", "", math.nan, -1, [True], {"ok": True}])
-def test_what_is_neither_true_nor_false_is_no_value_of_the_type_bool(success: Any) -> None:
+def test_what_is_neither_true_nor_false_is_no_value_of_the_type_bool(success):
     emission = emitted_with("""\
 response: done
 response_rule: success
@@ -97,7 +96,7 @@ success = __input.success
         assert observed(mapping, {}, [], {"success": value}).response == response
 
 
-def test_leaving_the_program_ends_only_the_evaluation() -> None:
+def test_leaving_the_program_ends_only_the_evaluation():
     mapping = loaded(emitted_with("parameter: a\ncode:\n__import__('sys').exit(3)\n"))
     for _ in range(2):
         answer = mapping.answer(Begin({}))

@@ -108,7 +108,7 @@ def finding_texts(**texts: str) -> list[str]:
         {"topic": "return heard if __input.text is None else answer"},
     ],
 )  # fmt: skip
-def test_what_python_allows_is_not_told(texts: dict[str, str]) -> None:
+def test_what_python_allows_is_not_told(texts):
     assert finding_texts(**texts) == []
 
 
@@ -130,31 +130,29 @@ def test_what_python_allows_is_not_told(texts: dict[str, str]) -> None:
          "shop.lf:6:10", "`math`."),
     ],
 )  # fmt: skip
-def test_a_name_that_nothing_gives_is_an_error_at_its_place(
-    texts: dict[str, str], place: str, rest: str
-) -> None:
+def test_a_name_that_nothing_gives_is_an_error_at_its_place(texts, place, rest):
     (found,) = finding_texts(**texts)
     assert found.startswith(f"{place}: error: no local variable gives {rest}")
 
 
-def test_an_operator_of_cpp_in_a_rule_is_told_with_pythons_word() -> None:
+def test_an_operator_of_cpp_in_a_rule_is_told_with_pythons_word():
     (found,) = finding_texts(rule="answer && heard")
     assert found.startswith("sell.am:3:24: error: this is not Python")
     assert found.endswith("Python writes `and`, `or`, `not`")
 
 
-def test_an_assignment_in_a_rule_is_told_with_the_comparison() -> None:
+def test_an_assignment_in_a_rule_is_told_with_the_comparison():
     (found,) = finding_texts(rule="answer = heard")
     assert found.startswith("sell.am:3:23: error: this is not Python")
     assert found.endswith("To compare, write `==`")
 
 
-def test_a_rule_that_is_never_tried_fails_in_no_run() -> None:
+def test_a_rule_that_is_never_tried_fails_in_no_run():
     warned = "sell.am:5:16: warning: no local variable gives `unknown_name`."
     assert any(text.startswith(warned) for text in finding_texts(rule="True", second="unknown_name"))
 
 
-def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning() -> None:
+def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning():
     mapping = (
         "project: shop\nresponse: sold\nresponse_rule: True\nmodule_activation: skill\n"
         "path: /sell\nparameter: what\ncode:\nPoint(x=goal_x)\n"

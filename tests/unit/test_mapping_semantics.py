@@ -26,14 +26,14 @@ def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
 # --- sources of local variables ---
 
 
-def test_parameters_reach_the_call_through_dotted_paths(bundles: Path) -> None:
+def test_parameters_reach_the_call_through_dotted_paths(bundles: Path):
     project = project_in(bundles / "armadillo-finer")
     navigate = next(mapping for mapping in emit_project(project) if mapping.skill == "navigate")
     parameters = {"destination": {"place": "EasyTable", "x": 0.5, "y": 2.0, "yaw": 1.57}}
     assert fields(loaded(navigate), parameters) == {"x": 0.5, "y": 2.0, "yaw": 1.57}
 
 
-def test_the_result_of_the_call_gives_service_variables() -> None:
+def test_the_result_of_the_call_gives_service_variables():
     mapping = running("""\
 response: done
 response_rule: success
@@ -60,7 +60,7 @@ success = __input.success
         "near = [1 for far in ()]\nif __input.m > 5:\n    far = near",
     ],
 )
-def test_what_the_code_of_a_result_does_not_assign_has_no_value(code: str) -> None:
+def test_what_the_code_of_a_result_does_not_assign_has_no_value(code):
     mapping = running(f"""\
 response: done
 response_rule: far is None
@@ -81,13 +81,13 @@ code:
         "if __input.m > 5:\n    return None\nelse:\n    far = 1",
     ],
 )
-def test_a_variable_that_is_set_on_every_way_is_not_kept(code: str) -> None:
+def test_a_variable_that_is_set_on_every_way_is_not_kept(code):
     read = read_body(Snippet(code, (Span("a.am", 1, 1),)))
     assert isinstance(read, PythonCode)
     assert "far" in read.surely_assigns
 
 
-def test_topic_messages_are_evaluated_in_the_order_in_which_they_came() -> None:
+def test_topic_messages_are_evaluated_in_the_order_in_which_they_came():
     mapping = running("""\
 response: three
 response_rule: seen == [1, 2, 3]
@@ -102,7 +102,7 @@ return seen + [__input.data]
     assert observed(mapping, {}, messages, {}).response == "three"
 
 
-def test_one_message_updates_its_variables_in_the_documents_order() -> None:
+def test_one_message_updates_its_variables_in_the_documents_order():
     mapping = running("""\
 local_variable: first
 topic: /n
@@ -118,7 +118,7 @@ return first * 10
     assert observed(mapping, {}, [("/n", {"data": 4})], {}).local_variables == {"first": "4", "second": "40"}
 
 
-def test_the_result_is_evaluated_after_all_topic_messages() -> None:
+def test_the_result_is_evaluated_after_all_topic_messages():
     mapping = running("""\
 local_variable: total
 from_ros_service_response: true
@@ -134,7 +134,7 @@ return __input.data
     assert variables["total"] == "5"
 
 
-def test_every_service_variable_is_evaluated_and_may_read_those_before_it() -> None:
+def test_every_service_variable_is_evaluated_and_may_read_those_before_it():
     mapping = running("""\
 local_variable: a
 from_ros_service_response: true
@@ -148,12 +148,12 @@ b = a + 1
     assert observed(mapping, {}, [], {"x": 1}).local_variables == {"a": "1", "b": "2"}
 
 
-def test_messages_of_topics_that_the_mapping_does_not_name_change_nothing() -> None:
+def test_messages_of_topics_that_the_mapping_does_not_name_change_nothing():
     mapping = loaded(emitted(HEAD))
     assert observed(mapping, {}, [("/other", {"x": 1})], {}).response == "DefaultObservation"
 
 
-def test_initial_values_are_evaluated_anew_for_each_activation() -> None:
+def test_initial_values_are_evaluated_anew_for_each_activation():
     mapping = running("""\
 response: one
 response_rule: len(seen) == 1
@@ -168,7 +168,7 @@ seen.append(__input.data)
         assert observed(mapping, {}, [("/n", {"data": 1})], {}).response == "one"
 
 
-def test_a_topic_that_says_nothing_in_this_activation_keeps_no_value_of_the_last() -> None:
+def test_a_topic_that_says_nothing_in_this_activation_keeps_no_value_of_the_last():
     mapping = running("""\
 response: heard
 response_rule: level is not None
@@ -185,7 +185,7 @@ return __input.data
 
 
 @pytest.mark.parametrize(("code", "value"), [("pass", '"old"'), ("return", "null"), ("return None", "null")])
-def test_a_topic_value_becomes_none_only_by_an_explicit_return(code: str, value: str) -> None:
+def test_a_topic_value_becomes_none_only_by_an_explicit_return(code, value):
     mapping = running(f"""\
 local_variable: text
 topic: /n
@@ -200,7 +200,7 @@ code:
 # --- rules ---
 
 
-def test_the_first_rule_that_holds_wins_also_with_an_or_in_a_later_one() -> None:
+def test_the_first_rule_that_holds_wins_also_with_an_or_in_a_later_one():
     mapping = running("""\
 response: low
 response_rule: level < 3
@@ -215,7 +215,7 @@ level = __input.level
     assert answers == ["low", "any", "any", None]
 
 
-def test_a_response_variable_without_a_value_is_no_response() -> None:
+def test_a_response_variable_without_a_value_is_no_response():
     mapping = running("""\
 response_local_variable: board
 local_variable: board
@@ -230,7 +230,7 @@ board = __input.state
 # --- imports and low-level values ---
 
 
-def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value() -> None:
+def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value():
     (emission,) = emit_project(project_in(VALVES))
     parameters = {"oStand": {"number": 2, "place": "___place_a"}}
     assert fields(loaded(emission), parameters) == {
@@ -240,7 +240,7 @@ def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value() -> 
     }
 
 
-def test_what_one_activation_does_to_a_constant_does_not_reach_the_next() -> None:
+def test_what_one_activation_does_to_a_constant_does_not_reach_the_next():
     span = Span("environment.json", 1, 1)
     door = LowLevelConstant("___door", "Door", Snippet("___door.x = 1", (span,)), span)
     low_level = LowLevelDocument("garden", span, constants=(door,))
@@ -251,7 +251,7 @@ def test_what_one_activation_does_to_a_constant_does_not_reach_the_next() -> Non
         assert fields(mapping, {"goal": "___door"}) == {"x": 2}
 
 
-def test_a_module_that_is_installed_is_used_itself() -> None:
+def test_a_module_that_is_installed_is_used_itself():
     mapping = loaded(
         emitted(
             HEAD.replace("path:", "imports: from: fractions import: Fraction\npath:")
@@ -261,7 +261,7 @@ def test_a_module_that_is_installed_is_used_itself() -> None:
     assert fields(mapping, {}) == {"half": "1/2"}
 
 
-def test_an_import_that_the_deployment_does_not_allow_is_refused_and_nothing_stands_in() -> None:
+def test_an_import_that_the_deployment_does_not_allow_is_refused_and_nothing_stands_in():
     mapping = emitted(HEAD.replace("path:", "imports: from: socket import: socket\npath:"))
     with pytest.raises(Exception, match="does not allow mappings to import socket"):
         loaded(mapping, allowed_imports=("math",))
@@ -272,7 +272,7 @@ def test_an_import_that_the_deployment_does_not_allow_is_refused_and_nothing_sta
 
 
 @pytest.mark.corpus
-def test_the_papers_navigation_hears_its_topic(corpus: Path) -> None:
+def test_the_papers_navigation_hears_its_topic(corpus: Path):
     for bundle in ("paper-example-sdl", "paper-example-json"):
         mapping = original(corpus, bundle, "navigate")
         place = {"oDesiredLocation": {"x": 1.0, "y": 2.0, "z": 0.0}}
@@ -284,7 +284,7 @@ def test_the_papers_navigation_hears_its_topic(corpus: Path) -> None:
 
 
 @pytest.mark.corpus
-def test_the_original_armadillo_drives_to_a_low_level_constant(corpus: Path) -> None:
+def test_the_original_armadillo_drives_to_a_low_level_constant(corpus: Path):
     mapping = original(corpus, "armadillo-finer", "navigate")
     parameters = {
         "oDesiredLocation": {"discrete_location": "eCorridor", "actual_location": "___locationCorridor"}
@@ -294,7 +294,7 @@ def test_the_original_armadillo_drives_to_a_low_level_constant(corpus: Path) -> 
 
 
 @pytest.mark.corpus
-def test_the_board_of_tic_tac_toe_is_answered_as_text(corpus: Path) -> None:
+def test_the_board_of_tic_tac_toe_is_answered_as_text(corpus: Path):
     for bundle, skill in (("tic-tac-toe-sdl", "detect"), ("tic-tac-toe-json", "detect_board_state")):
         mapping = original(corpus, bundle, skill)
         assert observed(mapping, {}, [], {"state": "??X?O????"}).response == "??X?O????"

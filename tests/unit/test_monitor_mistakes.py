@@ -35,7 +35,7 @@ def findings(**changed: tuple[str, str]) -> list[str]:
     ]
 
 
-def test_the_bundle_has_no_findings() -> None:
+def test_the_bundle_has_no_findings():
     assert findings() == []
 
 
@@ -69,12 +69,12 @@ def test_the_bundle_has_no_findings() -> None:
          "error AOS105 drive.ef:24:10 the monitor battery has no model"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_told_at_its_line(file: str, find: str, put: str, finding: str) -> None:
+def test_a_mistake_is_told_at_its_line(file, find, put, finding):
     told = findings(**{file: (find, put)})
     assert any(each.startswith(finding) for each in told), told
 
 
-def test_a_monitor_without_rules_or_topics_says_what_it_lacks() -> None:
+def test_a_monitor_without_rules_or_topics_says_what_it_lacks():
     text = "project: battery\nmonitor: battery\n"
     told = findings(battery_am=(BATTERY["battery.am"], text))
     assert [each.partition(".am:")[2] for each in told if ".am:" in each] == [
@@ -83,7 +83,7 @@ def test_a_monitor_without_rules_or_topics_says_what_it_lacks() -> None:
     ]
 
 
-def test_a_skill_that_says_nothing_of_being_stopped_is_told_where_a_monitor_may_stop_it() -> None:
+def test_a_skill_that_says_nothing_of_being_stopped_is_told_where_a_monitor_may_stop_it():
     go = (
         BATTERY["go.am"]
         .replace("__skill_status == 'stopped'", "there == 2")
@@ -93,7 +93,7 @@ def test_a_skill_that_says_nothing_of_being_stopped_is_told_where_a_monitor_may_
     assert told == ["warning AOS116 battery.am:7:12 no rule says what is observed where this stops go"]
 
 
-def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path) -> None:
+def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path):
     write_texts(BATTERY, tmp_path)
     places: dict[str, list[str]] = {}
     for occurrence in read_bundle(tmp_path, {}).occurrences:
@@ -106,7 +106,7 @@ def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path) -> None:
     assert "battery.am:7:12" in places["local variable battery level"]
 
 
-def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused() -> None:
+def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused():
     files = encoded(BATTERY)
     files["again.am"] = files["battery.am"]
     told = [f"{finding.code} {finding.span}" for finding in load_files(files).diagnostics]
@@ -115,7 +115,7 @@ def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused() -
     assert "AOS111 drive.ef:24:10" in [f"{each.code} {each.span}" for each in load_files(files).diagnostics]
 
 
-def test_both_dialects_say_the_same() -> None:
+def test_both_dialects_say_the_same():
     files = read_bundle_files(Path(__file__).parents[1] / "data" / "bundles" / "battery")[0]
     original = without_origins(project_of(files))
     json = encoded(convert(files, Dialect.JSON)[0])
@@ -123,7 +123,7 @@ def test_both_dialects_say_the_same() -> None:
     assert without_origins(project_of(json)) == original == without_origins(project_of(sdl))
 
 
-def test_a_model_is_another_one_with_other_responses_of_a_monitor_and_without_it() -> None:
+def test_a_model_is_another_one_with_other_responses_of_a_monitor_and_without_it():
     files = dict(BATTERY)
     digests = {emitted(files)}
     files["battery.am"] = files["battery.am"].replace(

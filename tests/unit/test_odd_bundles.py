@@ -29,14 +29,14 @@ def picked(state: Mapping[str, Any], *names: str) -> list[Any]:
 
 
 @pytest.mark.parametrize("bundle", ["warehouse", "orchard"])
-def test_odd_spellings_are_told_and_none_is_an_error(root: Path, bundle: str) -> None:
+def test_odd_spellings_are_told_and_none_is_an_error(root: Path, bundle):
     loaded = load_bundle(root / "tests/data/bundles" / bundle)
     assert loaded.project is not None
     codes = {"AOS122", "AOS124", "AOS125", "AOS127", "AOS137", "AOS140"}
     assert {finding.code for finding in loaded.diagnostics} <= codes
 
 
-def test_odd_bundles_walk_a_thousand_steps(warehouse: ScriptedModel, orchard: ScriptedModel) -> None:
+def test_odd_bundles_walk_a_thousand_steps(warehouse: ScriptedModel, orchard: ScriptedModel):
     assert warehouse.walk(1000)["steps"] == 1000
     assert orchard.walk(1000)["steps"] == 1000
 
@@ -44,7 +44,7 @@ def test_odd_bundles_walk_a_thousand_steps(warehouse: ScriptedModel, orchard: Sc
 # --- AOS 1.x JSON ---
 
 
-def test_defaults_and_draws_of_json_set_the_first_state(warehouse: ScriptedModel) -> None:
+def test_defaults_and_draws_of_json_set_the_first_state(warehouse: ScriptedModel):
     state = warehouse.play(initial="1 2 0").initial["state"]
     assert picked(state, "robot.at.label", "data", "index", "board[2]") == ["dock;1", "start!", "1", "X"]
     assert picked(state, "shelves[2].x", "shelves[1].side", "matrix[1][1]") == ["2", "right", "5"]
@@ -52,7 +52,7 @@ def test_defaults_and_draws_of_json_set_the_first_state(warehouse: ScriptedModel
     assert picked(state, "pairs[left,right]", "pairs[left,left]") == ["7", "0"]
 
 
-def test_a_long_dynamic_model_of_json_does_every_line(warehouse: ScriptedModel) -> None:
+def test_a_long_dynamic_model_of_json_does_every_line(warehouse: ScriptedModel):
     played = warehouse.play(f"{TO_THE_RIGHT}|0 1 0 1", "wait_a_bit|3", initial="1 2 0")
     state = played.steps[0]["state"]
     assert picked(state, "robot.at.x", "robot.at.side", "robot.count", "robot.battery") == [
@@ -69,7 +69,7 @@ def test_a_long_dynamic_model_of_json_does_every_line(warehouse: ScriptedModel) 
     assert played.observations == ["eSuccess", "??????X?X"]
 
 
-def test_return_within_an_assignment_ends_the_skills_model(warehouse: ScriptedModel) -> None:
+def test_return_within_an_assignment_ends_the_skills_model(warehouse: ScriptedModel):
     played = warehouse.play("wait_a_bit", "wait_a_bit|3", f"{TO_SHELF_A}|3", initial="1 2 0")
     assert played.steps[1]["meets_precondition"] is True
     refused = warehouse.play(f"{TO_THE_RIGHT}|0 1 0 1", f"{TO_SHELF_A}|3", initial="1 2 0").steps[1]
@@ -77,7 +77,7 @@ def test_return_within_an_assignment_ends_the_skills_model(warehouse: ScriptedMo
     assert refused["observation"] == "eSuccess"
 
 
-def test_an_extrinsic_change_marks_a_cell_by_a_temporary_enum(warehouse: ScriptedModel) -> None:
+def test_an_extrinsic_change_marks_a_cell_by_a_temporary_enum(warehouse: ScriptedModel):
     played = warehouse.play("wait_a_bit|0", "wait_a_bit|1", initial="1 2 0")
     assert [step["observation"] for step in played.steps] == ["??X??????", "?OX??????"]
     assert played.rewards[1] == pytest.approx(-0.6)
@@ -86,7 +86,7 @@ def test_an_extrinsic_change_marks_a_cell_by_a_temporary_enum(warehouse: Scripte
 # --- SDL ---
 
 
-def test_defaults_and_draws_of_sdl_set_the_first_state(orchard: ScriptedModel) -> None:
+def test_defaults_and_draws_of_sdl_set_the_first_state(orchard: ScriptedModel):
     state = orchard.play(initial="2 2 1").initial["state"]
     assert picked(state, "windy", "first.ripe", "second.ripe", "second.x") == ["true", "2", "1", "3"]
     assert picked(state, "first.name", "second.name", "row[2].fruit") == [
@@ -97,25 +97,25 @@ def test_defaults_and_draws_of_sdl_set_the_first_state(orchard: ScriptedModel) -
     assert picked(state, "first.branches[2]", "at", "log") == ["3", "0", ""]
 
 
-def test_listed_parameters_of_text_are_text(orchard: ScriptedModel) -> None:
+def test_listed_parameters_of_text_are_text(orchard: ScriptedModel):
     actions = orchard.describe()
     assert actions["pick(fruit=apple, hand=left)"] == {"fruit": "apple", "hand": "left"}
     assert len(actions) == 3 * 2 + 2
 
 
-def test_a_pointer_that_waits_for_its_object_finds_it(orchard: ScriptedModel) -> None:
+def test_a_pointer_that_waits_for_its_object_finds_it(orchard: ScriptedModel):
     played = orchard.play("pick(fruit=apple, hand=right)", "pick(fruit=quince, hand=left)", initial="2 2 1")
     state = played.steps[0]["state"]
     assert picked(state, "first.ripe", "basket.content[0]", "basket.last.name") == ["1", "apple", "old; tree"]
     assert played.rewards == [1.25, -1]
 
 
-def test_an_enum_goes_into_a_text_as_its_number(orchard: ScriptedModel) -> None:
+def test_an_enum_goes_into_a_text_as_its_number(orchard: ScriptedModel):
     played = orchard.play("pick(fruit=pear, hand=left)", "pick(fruit=quince, hand=left)", initial="2 2 1")
     assert played.observations == ["Left:1x1", "Nothing"]
 
 
-def test_the_last_of_two_sections_counts_and_its_lines_break_where_they_like(orchard: ScriptedModel) -> None:
+def test_the_last_of_two_sections_counts_and_its_lines_break_where_they_like(orchard: ScriptedModel):
     played = orchard.play("walk(speed=fast)|1 0 1 0", "walk(speed=slow)|1", initial="2 2 1")
     assert played.observations == ["tripped", "arrived"]
     assert played.values("log") == ["", "ouch 0", "walked 2"]

@@ -136,7 +136,7 @@ switch (kind) { case kScrew: __moduleResponse = ok ? yes : no; break; default: {
 }
 
 
-def test_code_of_many_kinds_does_what_it_says(cache_dir: Path) -> None:
+def test_code_of_many_kinds_does_what_it_says(cache_dir: Path):
     model = scripted(text_project(BENCH), cache_dir)
     assert model.walk(500)["steps"] == 500
     played = model.play("poke(kind=screw)|0 1", initial="2 0 1")

@@ -14,26 +14,26 @@ def lines_of(folder: Path, text: str) -> list[int]:
     return [int(found.partition(":")[0]) for found in findings(folder, HEAD + text)]
 
 
-def test_aliases_that_would_grow_without_end_are_refused_at_their_lines(folder: Path) -> None:
+def test_aliases_that_would_grow_without_end_are_refused_at_their_lines(folder: Path):
     grown = "".join(f"  x{number}: &x{number} [{f'*x{number - 1},' * 9}]\n" for number in range(1, 60))
     assert lines_of(folder, f"adapters:\n  x0: &x0 [1]\n{grown}")[0] == 5
     assert lines_of(folder, "adapters: {x: &x [*x]}\n") == [4, 4]
 
 
 @pytest.mark.parametrize("nested", ["[" * 100_000, "{a: " * 2000, "[" * 40 + "]" * 40])
-def test_what_is_nested_without_end_is_refused_at_its_line(folder: Path, nested: str) -> None:
+def test_what_is_nested_without_end_is_refused_at_its_line(folder: Path, nested):
     (found,) = findings(folder, f"{HEAD}adapters: {nested}\n")
     assert found.startswith("4:")
     assert "AOS104 nested in more than 32" in found
 
 
 @pytest.mark.parametrize("number", ["0x" + "f" * 6000, "9" * 6000, "-0b1" + "0" * 64, str(2**63)])
-def test_a_number_that_no_machine_has_is_refused_at_its_line(folder: Path, number: str) -> None:
+def test_a_number_that_no_machine_has_is_refused_at_its_line(folder: Path, number):
     for text in (f"mission: {{step_limit: {number}}}", f"mission: {{set: {{a: {number}}}}}"):
         assert "4:" in findings(folder, f"{HEAD}{text}\n")[0][:2]
 
 
-def test_a_time_that_no_clock_has_is_refused(folder: Path) -> None:
+def test_a_time_that_no_clock_has_is_refused(folder: Path):
     (found,) = findings(folder, HEAD + "mission: {hold_s: 1e300}\n")
     assert found == "4:19 AOS106 mission.hold_s is 1e+300; it must be a number of at most 1000000000"
 
@@ -43,21 +43,21 @@ def test_a_time_that_no_clock_has_is_refused(folder: Path) -> None:
     "text", ['world: "a%sb"', 'runs: "a%sb"', '"a%sb": 1', 'programs: {sim: {command: ["a%sb"]}}']
 )
 def test_a_text_with_a_character_that_nothing_is_named_by_is_refused_at_its_line(
-    folder: Path, text: str, character: str
-) -> None:
+    folder: Path, text, character
+):
     found = findings(folder, HEAD + text % character + "\n")
     assert any(one.startswith("4:") and "cannot have the character" in one for one in found)
     assert all(one.isprintable() for one in found)
 
 
-def test_a_raw_control_character_is_refused_at_its_line(folder: Path) -> None:
+def test_a_raw_control_character_is_refused_at_its_line(folder: Path):
     assert findings(folder, HEAD + "runs: a\x1b[2J\n") == [
         "4:0 AOS104 a text cannot have the character U+001B"
     ]
 
 
 @pytest.mark.parametrize("name", ["x" * 10_000, "x/" * 3000, "loop", "loop/x"])
-def test_paths_that_no_file_has_are_no_files(folder: Path, name: str) -> None:
+def test_paths_that_no_file_has_are_no_files(folder: Path, name):
     (folder / "loop").symlink_to("loop")
     (found,) = findings(folder, HEAD.replace("[bundle]", f"[{name}]"))
     assert "AOS101 there is no bundle folder" in found
@@ -66,12 +66,12 @@ def test_paths_that_no_file_has_are_no_files(folder: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("expression", ["(" * 5000, "a{99999999999}", "["])
-def test_a_line_to_look_for_that_is_no_expression_is_refused(folder: Path, expression: str) -> None:
+def test_a_line_to_look_for_that_is_no_expression_is_refused(folder: Path, expression):
     part = f"programs: {{sim: {{command: [a], ready: {{line: '{expression}'}}}}}}\n"
     assert lines_of(folder, part) == [4]
 
 
-def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path) -> None:
+def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path):
     (tmp_path / "rover.yaml").symlink_to("/dev/zero")
     with pytest.raises(DeployError) as caught:
         read_deploy_file(tmp_path / "rover.yaml")
@@ -79,7 +79,7 @@ def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["x" * 10_000, "a\0b", "loop"])
-def test_a_deploy_file_that_cannot_be_is_not_there(tmp_path: Path, name: str) -> None:
+def test_a_deploy_file_that_cannot_be_is_not_there(tmp_path: Path, name):
     (tmp_path / "loop").symlink_to("loop")
     with pytest.raises(DeployError) as caught:
         read_deploy_file(tmp_path / name)

@@ -36,22 +36,20 @@ def emitted(*mappings: dict[str, Any]) -> tuple[EmittedMapping, ...]:
 TO_HOME = {"to": {"pose": "___home"}}
 
 
-def test_an_empty_condition_always_holds(mapping: dict[str, Any]) -> None:
+def test_an_empty_condition_always_holds(mapping: dict[str, Any]):
     (go,) = emitted(mapping)
     assert observed(loaded(go), TO_HOME, [], {"success": False}).response == "eFailed"
 
 
 @pytest.mark.parametrize("name", ["e Done", "e*"])
-def test_a_response_is_a_word(mapping: dict[str, Any], name: str) -> None:
+def test_a_response_is_a_word(mapping: dict[str, Any], name):
     mapping["ModuleResponse"]["ResponseRules"][0]["Response"] = name
     found = load(ENVIRONMENT, LOW_LEVEL, SKILL, mapping).diagnostics
     assert "AOS126" in [finding.code for finding in found if finding.is_error]
 
 
 @pytest.mark.parametrize("type_name", [None, "Bool", "bool", "int[]"])
-def test_the_type_of_a_variable_changes_nothing_of_its_value(
-    mapping: dict[str, Any], type_name: str | None
-) -> None:
+def test_the_type_of_a_variable_changes_nothing_of_its_value(mapping: dict[str, Any], type_name):
     done = mapping["LocalVariablesInitialization"][1]
     del done["VariableType"]
     if type_name is not None:
@@ -60,7 +58,7 @@ def test_the_type_of_a_variable_changes_nothing_of_its_value(
     assert observed(loaded(go), TO_HOME, [], {"success": True}).local_variables["done"] == "true"
 
 
-def test_code_may_be_a_list_of_lines_with_tabs(mapping: dict[str, Any]) -> None:
+def test_code_may_be_a_list_of_lines_with_tabs(mapping: dict[str, Any]):
     noisy = mapping["LocalVariablesInitialization"][2]
     noisy["AssignmentCode"] = ["if __input.level > 3:", "\treturn True", "return False"]
     (go,) = emitted(mapping)
@@ -68,9 +66,7 @@ def test_code_may_be_a_list_of_lines_with_tabs(mapping: dict[str, Any]) -> None:
     assert (result.response, result.local_variables["noisy"]) == ("eFailed", "true")
 
 
-def test_variables_of_one_name_in_two_mappings_have_nothing_to_do_with_each_other(
-    mapping: dict[str, Any],
-) -> None:
+def test_variables_of_one_name_in_two_mappings_have_nothing_to_do_with_each_other(mapping: dict[str, Any]):
     other = copy.deepcopy(mapping)
     other["GsdlMain"]["Name"] = "come"
     other["LocalVariablesInitialization"][1] |= {
@@ -85,7 +81,7 @@ def test_variables_of_one_name_in_two_mappings_have_nothing_to_do_with_each_othe
     assert texts == {"go": "true", "come": '"done is True"'}
 
 
-def test_imports_are_those_of_the_mapping_alone(mapping: dict[str, Any]) -> None:
+def test_imports_are_those_of_the_mapping_alone(mapping: dict[str, Any]):
     other = copy.deepcopy(mapping)
     other["GsdlMain"]["Name"] = "come"
     other["ModuleActivation"]["RosService"]["ImportCode"] = [{"Import": ["cmath"]}]
@@ -94,7 +90,7 @@ def test_imports_are_those_of_the_mapping_alone(mapping: dict[str, Any]) -> None
     assert "import math" not in modules["come"]
 
 
-def test_fields_are_computed_from_all_local_variables(mapping: dict[str, Any]) -> None:
+def test_fields_are_computed_from_all_local_variables(mapping: dict[str, Any]):
     service = mapping["ModuleActivation"]["RosService"]
     service["ServiceParameters"] = [{"ServiceFieldName": "loud", "AssignServiceFieldCode": "not noisy"}]
     (go,) = emitted(mapping)

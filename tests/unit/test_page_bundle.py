@@ -25,19 +25,19 @@ def files_in(folder: Path) -> dict[str, bytes]:
     return {path.stem: gzip.decompress(path.read_bytes()) for path in folder.glob("*.gz")}
 
 
-def test_scripts_are_small_when_compressed(root: Path) -> None:
+def test_scripts_are_small_when_compressed(root: Path):
     scripts = list((root / MADE).glob("*.js.gz"))
     assert scripts
     assert sum(script.stat().st_size for script in scripts) <= MOST_SCRIPT_BYTES
 
 
-def test_licences_of_what_is_bundled_come_along(root: Path) -> None:
+def test_licences_of_what_is_bundled_come_along(root: Path):
     text = files_in(root / MADE)["licences.txt"].decode()
     for library in ("preact", "htm", "@preact/signals"):
         assert f"\n{library} " in f"\n{text}"
 
 
-def test_the_page_asks_no_other_server(root: Path) -> None:
+def test_the_page_asks_no_other_server(root: Path):
     files = files_in(root / MADE)
     for name in ("index.html", "page.js", "page.css"):
         text = files[name].decode()
@@ -45,7 +45,7 @@ def test_the_page_asks_no_other_server(root: Path) -> None:
         assert not {address for address in named if not address.startswith("http://www.w3.org/")}, name
 
 
-def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path: Path, cache_dir: Path) -> None:
+def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path: Path, cache_dir: Path):
     libraries = installed_sources(root, cache_dir) / "node_modules"
     sources = tmp_path / "page"
     shutil.copytree(root / SOURCES, sources, ignore=shutil.ignore_patterns("node_modules"))
@@ -59,7 +59,7 @@ def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path: Path
 
 
 @pytest.mark.parametrize("name", ["page.js", "page.css", "licences.txt", "index.html"])
-def test_a_browser_gets_a_file_as_it_understands_it(name: str, root: Path) -> None:
+def test_a_browser_gets_a_file_as_it_understands_it(name, root: Path):
     files = files_in(root / MADE)
     (route,) = (each for each in page_routes() if each.path == ("/" if name == "index.html" else f"/{name}"))
     packed, plain = (
@@ -74,7 +74,7 @@ def test_a_browser_gets_a_file_as_it_understands_it(name: str, root: Path) -> No
 
 def test_a_page_that_is_made_anew_is_what_a_browser_gets_next(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     def body() -> bytes:
         return bytes(asyncio.run(route.endpoint(Request({"type": "http", "headers": []}))).body)
 

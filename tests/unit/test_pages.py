@@ -47,14 +47,14 @@ def is_broken(page: Path, link: str) -> bool:
     return bool(anchor) and target.suffix == ".md" and anchor not in anchors(target)
 
 
-def test_every_link_of_a_page_leads_to_a_file_and_a_heading_that_are_there() -> None:
+def test_every_link_of_a_page_leads_to_a_file_and_a_heading_that_are_there():
     broken = [
         f"{name_of(page)}: {link}" for page in PAGES for link in local_links(page) if is_broken(page, link)
     ]
     assert broken == []
 
 
-def test_a_link_to_a_file_or_heading_that_is_not_there_is_found() -> None:
+def test_a_link_to_a_file_or_heading_that_is_not_there_is_found():
     page = ROOT / "docs" / "README.md"
     links = [
         "limits.md#missions",
@@ -67,7 +67,7 @@ def test_a_link_to_a_file_or_heading_that_is_not_there_is_found() -> None:
     assert [link for link in links if is_broken(page, link)] == links[2:]
 
 
-def test_no_table_is_cut_by_an_empty_line() -> None:
+def test_no_table_is_cut_by_an_empty_line():
     """The rest of such a table has no head, and is shown as text."""
     cut = re.compile(r"^\|.*\n\n+\|.*\n(?!\|[ :|-]+\|$)", re.MULTILINE)
     texts = {page: FENCED.sub("", page.read_text(encoding="utf-8")) for page in PAGES}
@@ -75,7 +75,7 @@ def test_no_table_is_cut_by_an_empty_line() -> None:
     assert cut.search("| a |\n| --- |\n| b |\n\n| c |\n")
 
 
-def test_pages_of_reference_have_a_date_only_at_the_head_of_their_figures() -> None:
+def test_pages_of_reference_have_a_date_only_at_the_head_of_their_figures():
     dated = []
     for page in PAGES:
         if not name_of(page).startswith(DIARIES):
@@ -88,7 +88,7 @@ def test_pages_of_reference_have_a_date_only_at_the_head_of_their_figures() -> N
     assert dated == []
 
 
-def test_the_index_leads_to_every_page() -> None:
+def test_the_index_leads_to_every_page():
     """The index has a link to a page itself, or to the list of its folder."""
     index = ROOT / "docs" / "README.md"
     linked = {(index.parent / link.partition("#")[0]).resolve() for link in local_links(index)}
@@ -97,7 +97,7 @@ def test_the_index_leads_to_every_page() -> None:
     assert [name_of(page) for page in pages if page not in linked and folders.isdisjoint(page.parents)] == []
 
 
-def test_the_laboratory_lists_every_page_of_its_own() -> None:
+def test_the_laboratory_lists_every_page_of_its_own():
     listed = [ROOT / "docs/lab" / link for link in local_links(ROOT / "docs/lab/README.md")]
     assert sorted(listed) == [
         page for page in PAGES if page.parent.name == "lab" and page.name != "README.md"
@@ -106,7 +106,7 @@ def test_the_laboratory_lists_every_page_of_its_own() -> None:
 
 def test_a_measured_table_takes_the_place_of_the_old_one_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.syspath_prepend(ROOT / "docs")
     figures = importlib.import_module("figures")
     page = tmp_path / "page.md"
@@ -119,7 +119,7 @@ def test_a_measured_table_takes_the_place_of_the_old_one_alone(
         figures.paste("new", page)
 
 
-def test_every_page_that_can_be_measured_has_a_place_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_page_that_can_be_measured_has_a_place_for_it(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.syspath_prepend(ROOT / "docs")
     measured = importlib.import_module("figures").FIGURES
     with_figures = [page.stem for page in PAGES if FIGURES.search(page.read_text(encoding="utf-8"))]

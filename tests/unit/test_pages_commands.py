@@ -70,14 +70,14 @@ def typed() -> list[tuple[str, str]]:
     ]
 
 
-def test_each_command_and_option_of_a_page_is_there(options: Options) -> None:
+def test_each_command_and_option_of_a_page_is_there(options: Options):
     lines = typed()
     assert sum(CALL.match(line) is not None for _, line in lines) > 250
     wrong = [(page, line) for page, line in lines if unknown_in(line, options)]
     assert wrong == []
 
 
-def test_each_module_and_target_of_a_page_is_there() -> None:
+def test_each_module_and_target_of_a_page_is_there():
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
     wrong = []
     for page, line in typed():
@@ -101,5 +101,5 @@ def test_each_module_and_target_of_a_page_is_there() -> None:
         ("aos mission start --set target=bob --belief keep   # --with a comment", ""),
     ],
 )
-def test_what_is_not_there_is_found(options: Options, line: str, unknown: str) -> None:
+def test_what_is_not_there_is_found(options: Options, line, unknown):
     assert unknown_in(line, options) == unknown

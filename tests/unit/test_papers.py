@@ -29,7 +29,7 @@ def requirements(lock: Path) -> dict[str, list[str]]:
     }
 
 
-def test_readme_shows_exactly_two_commands_on_its_first_screen(root: Path) -> None:
+def test_readme_shows_exactly_two_commands_on_its_first_screen(root: Path):
     first_screen = (root / "README.md").read_text(encoding="utf-8").splitlines()[:FIRST_SCREEN_LINES]
     commands = [line for line in first_screen if line.startswith("./setup.sh")]
     assert commands == [
@@ -39,7 +39,7 @@ def test_readme_shows_exactly_two_commands_on_its_first_screen(root: Path) -> No
 
 
 @pytest.mark.parametrize("number", [1, 2])
-def test_scripts_find_each_command_in_readme(root: Path, number: int) -> None:
+def test_scripts_find_each_command_in_readme(root: Path, number):
     script = [str(root / "tests" / "readme_command.sh"), str(number)]
     found = subprocess.run(script, capture_output=True, text=True, check=True).stdout
     assert found.startswith("./setup.sh")
@@ -47,17 +47,17 @@ def test_scripts_find_each_command_in_readme(root: Path, number: int) -> None:
 
 
 @pytest.mark.parametrize("script", ["setup.sh", "tests/check.sh", "tests/newcomer.sh", ".ci/run"])
-def test_scripts_can_be_run(root: Path, script: str) -> None:
+def test_scripts_can_be_run(root: Path, script):
     assert (root / script).stat().st_mode & 0o111
 
 
-def test_generated_pages_are_current(root: Path) -> None:
+def test_generated_pages_are_current(root: Path):
     command = [sys.executable, str(root / "docs" / "write_reference.py"), "--check"]
     check = subprocess.run(command, capture_output=True, text=True, check=False)
     assert check.returncode == 0, check.stderr
 
 
-def test_the_table_of_keys_holds_every_key_that_can_be_built() -> None:
+def test_the_table_of_keys_holds_every_key_that_can_be_built():
     robot = Keys("ROBOT")
     built = {robot.live("SERVICE"), robot.activate("SKILL"), robot.call("PATH"), robot.topic("PATH")}
     built |= {robot.cancel("PATH"), robot.progress("PATH")}
@@ -82,14 +82,14 @@ def test_the_table_of_keys_holds_every_key_that_can_be_built() -> None:
     assert not documented
 
 
-def test_every_message_in_the_table_of_keys_exists() -> None:
+def test_every_message_in_the_table_of_keys_exists():
     said = re.findall(r"\b[A-Z]\w+$|\b[A-Z]\w+(?= ->)", keys.__doc__ or "", re.MULTILINE)
     assert said
     for name in said:
         assert issubclass(getattr(messages, name), messages.Message)
 
 
-def test_every_error_code_that_is_used_has_a_meaning(root: Path) -> None:
+def test_every_error_code_that_is_used_has_a_meaning(root: Path):
     sources = [
         *(root / "protocol").rglob("*.py"),
         *(root / "services").rglob("*.?pp"),
@@ -102,7 +102,7 @@ def test_every_error_code_that_is_used_has_a_meaning(root: Path) -> None:
     assert used <= CODES.keys()
 
 
-def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.syspath_prepend(root / "docs")
     table = importlib.import_module("limits_table")
     assert table.value_at("aos_runtime.bus.config.LEASE_S") == 2.0
@@ -113,9 +113,7 @@ def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: 
 
 
 @pytest.mark.parametrize("part", [DeployFile, BusPart, MissionPart, SolverPart, SkillPart])
-def test_the_page_of_the_deploy_file_has_every_key_with_its_default(
-    root: Path, part: type[msgspec.Struct]
-) -> None:
+def test_the_page_of_the_deploy_file_has_every_key_with_its_default(root: Path, part):
     page = (root / "docs" / "deploy-file.md").read_text(encoding="utf-8")
     rows = [line for line in page.splitlines() if line.startswith(("| ", "## "))]
     for field in msgspec.structs.fields(part):
@@ -125,19 +123,19 @@ def test_the_page_of_the_deploy_file_has_every_key_with_its_default(
             assert f"{default:g}" in row if isinstance(default, float) else str(default) in row
 
 
-def test_the_changelog_knows_the_version(root: Path) -> None:
+def test_the_changelog_knows_the_version(root: Path):
     assert __version__ in (root / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", LOCKS)
-def test_locks_pin_by_hash_and_hold_no_address(root: Path, name: str) -> None:
+def test_locks_pin_by_hash_and_hold_no_address(root: Path, name):
     lock = root / "deploy" / "lock" / f"{name}.txt"
     assert "://" not in lock.read_text(encoding="utf-8")
     for package, hashes in requirements(lock).items():
         assert hashes, f"{package} has no hash"
 
 
-def test_locks_hold_every_dependency(root: Path) -> None:
+def test_locks_hold_every_dependency(root: Path):
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
     runtime, dev, compiler = (
@@ -153,7 +151,7 @@ def test_locks_hold_every_dependency(root: Path) -> None:
             assert pinned[canonical(wanted.name)] in wanted.specifier, line
 
 
-def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path) -> None:
+def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path):
     runtime, dev = (pins(root / "deploy" / "lock" / f"{name}.txt") for name in ("runtime", "dev"))
     assert runtime.keys().isdisjoint(dev)
 
@@ -172,13 +170,11 @@ def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path
         ("https://a.b/numpy-2.4.6-cp311-cp311-manylinux_2_31_riscv64.whl", False),
     ],
 )
-def test_locks_have_the_wheels_of_the_machines_and_pythons_that_aos_runs_with(
-    root: Path, wheel: str, can_run: bool
-) -> None:
+def test_locks_have_the_wheels_of_the_machines_and_pythons_that_aos_runs_with(root: Path, wheel, can_run):
     assert lock_files(root).can_run(wheel) is can_run
 
 
-def test_locks_have_sources_only_of_what_may_have_to_be_built(root: Path) -> None:
+def test_locks_have_sources_only_of_what_may_have_to_be_built(root: Path):
     def hashed(*wheels: str) -> list[str]:
         files = [{"url": f"https://a.b/{name}", "hashes": {"sha256": name}} for name in (*wheels, "x.tar.gz")]
         return list(lock_files(root).digests({"wheels": files[:-1], "sdist": files[-1]}))

@@ -29,7 +29,7 @@ def joint(model: ExplicitModel) -> Floats:
     return dense
 
 
-def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read(problems: Path) -> None:
+def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read(problems: Path):
     model = read_problem(problems / "tiger.pomdp")
     assert model.states == ("left", "right")
     assert model.discount == 0.95
@@ -39,7 +39,7 @@ def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read(problems: Path
     np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5])
 
 
-def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read(problems: Path) -> None:
+def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read(problems: Path):
     model = read_problem(problems / "costs.pomdp")
     np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5, 0])
     # From s0 `go` reaches s1 in 3 of 4 cases, and from s1 always s2, where it is light for sure.
@@ -48,7 +48,7 @@ def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read(proble
     np.testing.assert_allclose(joint(model)[1, 1, 2], [0, 1])
 
 
-def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path) -> None:
+def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path):
     model = read_problem(problems / "rover.pomdpx")
     assert model.states == ("home,s0", "home,s1", "rock,s0", "rock,s1", "away,s0", "away,s1")
     assert model.actions == ("look", "move", "take")
@@ -66,7 +66,7 @@ def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path) 
     np.testing.assert_allclose(model.rewards[2:4, 2], [-10, 10])
 
 
-def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Path) -> None:
+def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Path):
     """Also where an edge has named that value, and beside a parent that has the same values."""
     text = (problems / "rover.pomdpx").read_text()
     kept = '<SubDAG type="persistent" var="{}"/>'
@@ -100,7 +100,7 @@ def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("name", ["tiger.pomdp", "costs.pomdp", "rover.pomdpx"])
-def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, name: str) -> None:
+def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, name):
     model = read_problem(problems / name)
     endings = (".pomdpx",) if len(model.starts) > 1 else (".pomdp", ".pomdpx")
     for ending in endings:
@@ -115,14 +115,14 @@ def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, na
         assert sorted(start.weight for start in again.starts) == [start.weight for start in model.starts]
 
 
-def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tmp_path: Path) -> None:
+def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tmp_path: Path):
     model = read_problem(problems / "rover.pomdpx")
     with pytest.raises(PlanningError, match=r"told at the start .* which \.pomdp cannot say") as caught:
         write_problem(model, tmp_path / "rover.pomdp")
     assert caught.value.code == "AOS320"
 
 
-def test_an_observation_of_the_step_itself_splits_the_state_that_follows() -> None:
+def test_an_observation_of_the_step_itself_splits_the_state_that_follows():
     """The observation tells which of two states was left; problem files know only the state that is
     entered."""
     ragged = Ragged(np.array([0, 1, 2]), np.array([0, 0]), np.array([1.0, 1.0]))
@@ -182,9 +182,7 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("rover.pomdpx", replaced("<Instance>- -<", "<Instance>- - -<"), "58:30 AOS106 the Instance has 3"),
     ],
 )
-def test_a_mistake_is_told_at_its_place(
-    problems: Path, tmp_path: Path, name: str, change: Callable[[str], str], finding: str
-) -> None:
+def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path: Path, name, change, finding):
     broken = tmp_path / name
     broken.write_text(change((problems / name).read_text()))
     with pytest.raises(DocumentError) as caught:
@@ -194,9 +192,7 @@ def test_a_mistake_is_told_at_its_place(
     assert text.startswith(finding), text
 
 
-def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(
-    problems: Path, tmp_path: Path
-) -> None:
+def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(problems: Path, tmp_path: Path):
     broken = tmp_path / "rover.pomdpx"
     text = (problems / "rover.pomdpx").read_text()
     broken.write_text(text.replace("<Terminal>0.8</Terminal>", "<Terminal>0.7</Terminal>"))
@@ -204,7 +200,7 @@ def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(
         read_problem(broken)
 
 
-def test_too_many_states_are_told(problems: Path, tmp_path: Path) -> None:
+def test_too_many_states_are_told(problems: Path, tmp_path: Path):
     (tmp_path / "wide.pomdpx").write_text(
         (problems / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>9999999<")
     )
@@ -215,7 +211,7 @@ def test_too_many_states_are_told(problems: Path, tmp_path: Path) -> None:
     assert caught.value.code == "AOS220"
 
 
-def test_the_published_problems_have_their_known_sizes(root: Path) -> None:
+def test_the_published_problems_have_their_known_sizes(root: Path):
     folder = root.parent / "shared" / "problems"
     if not folder.is_dir():
         pytest.skip("needs the published problem files in ../shared/problems, not part of this project")

@@ -33,7 +33,7 @@ def _frequent_collections() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("_frequent_collections")
-def test_threads_that_parse_at_once_do_not_disturb_each_other() -> None:
+def test_threads_that_parse_at_once_do_not_disturb_each_other():
     faults: list[BaseException] = []
 
     def parse() -> None:

@@ -195,19 +195,19 @@ def found_by(loaded: LoadedBundle) -> list[str]:
 
 
 @pytest.mark.parametrize("files", [JSON, SDL], ids=["json", "sdl"])
-def test_the_bundles_of_the_rules_have_no_findings(files: Mapping[str, str]) -> None:
+def test_the_bundles_of_the_rules_have_no_findings(files):
     assert found_by(load_files(encoded(files))) == []
 
 
 @pytest.mark.parametrize("rule", ACCEPTED, ids=named)
-def test_this_is_accepted_without_a_word(rule: Rule) -> None:
+def test_this_is_accepted_without_a_word(rule):
     loaded = load_files(bundle_of(rule)[0])
     assert found_by(loaded) == []
     assert loaded.project is not None
 
 
 @pytest.mark.parametrize("rule", WARNED, ids=named)
-def test_this_is_accepted_with_one_warning_at_its_place(rule: Rule) -> None:
+def test_this_is_accepted_with_one_warning_at_its_place(rule):
     files, place = bundle_of(rule)
     loaded = load_files(files)
     assert loaded.project is not None, found_by(loaded)
@@ -216,7 +216,7 @@ def test_this_is_accepted_with_one_warning_at_its_place(rule: Rule) -> None:
 
 
 @pytest.mark.parametrize("rule", REFUSED, ids=named)
-def test_this_is_refused_at_its_place(rule: Rule) -> None:
+def test_this_is_refused_at_its_place(rule):
     files, place = bundle_of(rule)
     loaded = load_files(files)
     assert loaded.project is None
@@ -277,7 +277,7 @@ WHOLE_FILES = [
 ]  # fmt: skip
 
 
-def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path: Path) -> None:
+def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path: Path):
     for name, text in SDL.items():
         (tmp_path / "bundle" / name).parent.mkdir(exist_ok=True)
         (tmp_path / "bundle" / name).write_text(text)
@@ -294,7 +294,7 @@ def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("case", WHOLE_FILES, ids=lambda case: case.title)
-def test_whole_files_follow_the_rules(case: Whole) -> None:
+def test_whole_files_follow_the_rules(case):
     before = encoded(case.files)
     after = {name: data for name, data in {**before, **case.change(before)}.items() if data is not None}
     loaded = load_files(after)

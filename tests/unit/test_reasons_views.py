@@ -30,7 +30,7 @@ WHY = Why(
 )
 
 
-def test_a_decision_is_explained_in_eight_lines_at_most() -> None:
+def test_a_decision_is_explained_in_eight_lines_at_most():
     lines = why_lines(WHY)
     assert len(lines) <= 8
     assert lines[0] == "step 3: look is worth exactly +1.46, pick +0.63: margin +0.83"
@@ -40,14 +40,14 @@ def test_a_decision_is_explained_in_eight_lines_at_most() -> None:
     assert lines[-2] == "  pick is better where P(holding=true) is below 0.0356, now 0.17"
 
 
-def test_a_long_belief_update_is_told_with_what_it_took() -> None:
+def test_a_long_belief_update_is_told_with_what_it_took():
     long = msgspec.structs.replace(WHY, update_s=1.734, update_effort="3000 steps of the model")
     assert why_lines(long)[1].endswith("; r1 was seen; the belief update took 1.7 s: 3000 steps of the model")
     assert len(why_lines(long)) <= 8
     assert why_lines(msgspec.structs.replace(long, update_s=0.09)) == why_lines(WHY)
 
 
-def test_a_close_decision_says_how_many_simulations_would_tell() -> None:
+def test_a_close_decision_says_how_many_simulations_would_tell():
     close = msgspec.structs.replace(
         WHY, is_exact=False, is_close=True, margin_stderr=0.6, simulations_to_tell=12000, flips=(), remark=""
     )
@@ -56,7 +56,7 @@ def test_a_close_decision_says_how_many_simulations_would_tell() -> None:
     assert not any("better where" in line or "no probability" in line for line in lines)
 
 
-def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart() -> None:
+def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart():
     certain = Flip("holding", "true", 0.5, 0.9999, 1.0, True)
     assert "P(holding=true) is 1, now 0.5" in why_lines(msgspec.structs.replace(WHY, flips=(certain,)))[-2]
     for flip, words in (
@@ -71,7 +71,7 @@ def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart() -> 
         assert lines[-2].endswith(words)
 
 
-def test_what_an_operator_asked_for_may_be_the_worse_action_and_says_who_chose() -> None:
+def test_what_an_operator_asked_for_may_be_the_worse_action_and_says_who_chose():
     asked = msgspec.structs.replace(WHY, chosen_by="operator", margin=-0.83, value=0.63, other_value=1.46)
     lines = why_lines(asked)
     assert lines[0] == (

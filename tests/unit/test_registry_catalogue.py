@@ -18,16 +18,15 @@ def files(bundles: Path) -> dict[str, bytes]:
 
 def test_a_document_replaces_the_one_of_its_kind_and_name_whatever_its_file_is_called(
     files: dict[str, bytes],
-) -> None:
+):
     new = {"other.ef": files["armadillo.ef"].replace(b"horizon: 10", b"horizon: 12")}
     merged = merge(files, new)
     assert "armadillo.ef" not in merged.files
     project = load_files(merged.files).project
-    assert project is not None
     assert project.environment.horizon == 12
 
 
-def test_a_file_name_that_another_document_has_is_refused() -> None:
+def test_a_file_name_that_another_document_has_is_refused():
     def document(name: str) -> bytes:
         return (
             b'{"PlpMain": {"Project": "p", "Name": "%s", "Type": "PLP"}, "DynamicModel": {}}' % name.encode()
@@ -38,17 +37,17 @@ def test_a_file_name_that_another_document_has_is_refused() -> None:
     assert (error.code, error.span.file) == ("AOS111", "skill.json")
 
 
-def test_files_that_are_no_documents_are_not_kept(files: dict[str, bytes]) -> None:
+def test_files_that_are_no_documents_are_not_kept(files: dict[str, bytes]):
     assert "readme.md" not in merge(files, {"readme.md": b"hello"}).files
 
 
-def test_the_environment_names_the_project_of_a_push(files: dict[str, bytes]) -> None:
+def test_the_environment_names_the_project_of_a_push(files: dict[str, bytes]):
     files["navigate.am"] = files["navigate.am"].replace(b"armadillo", b"another")
     assert pushed_project(files) == "armadillo"
     assert pushed_project({"readme.md": b""}) == ""
 
 
-def test_new_and_changed_skills_are_told_apart(bundles: Path) -> None:
+def test_new_and_changed_skills_are_told_apart(bundles: Path):
     rough, finer = (load_bundle(bundles / f"armadillo-{name}").project for name in ("rough", "finer"))
     assert rough is not None
     assert finer is not None
@@ -56,7 +55,7 @@ def test_new_and_changed_skills_are_told_apart(bundles: Path) -> None:
     assert len(changed_skills(None, finer)[0]) == 5
 
 
-def test_a_changed_environment_is_no_news_of_a_skill_and_is_told(files: dict[str, bytes]) -> None:
+def test_a_changed_environment_is_no_news_of_a_skill_and_is_told(files: dict[str, bytes]):
     before = load_files(files, name="armadillo").project
     files["armadillo.ef"] = files["armadillo.ef"].replace(b"horizon: 10", b"horizon: 9")
     after = load_files(files, name="armadillo").project
@@ -65,13 +64,13 @@ def test_a_changed_environment_is_no_news_of_a_skill_and_is_told(files: dict[str
     assert changed_skills(before, after) == ((), ("the environment",))
 
 
-def test_the_digest_depends_on_names_and_bytes_and_not_on_the_order() -> None:
+def test_the_digest_depends_on_names_and_bytes_and_not_on_the_order():
     files = {"a": b"1", "b": b"2"}
     assert bundle_digest(files, ["a", "b"]) == bundle_digest(files, ["b", "a"])
     assert bundle_digest(files, files) != bundle_digest({"a": b"12", "b": b""}, files)
 
 
-def test_revisions_are_numbered_and_kept(tmp_path: Path, files: dict[str, bytes]) -> None:
+def test_revisions_are_numbered_and_kept(tmp_path: Path, files: dict[str, bytes]):
     path = tmp_path / "catalogue.db"
     catalogue = Catalogue.open(path)
     assert catalogue.current("armadillo") is None
@@ -81,33 +80,31 @@ def test_revisions_are_numbered_and_kept(tmp_path: Path, files: dict[str, bytes]
     catalogue.close()
     catalogue = Catalogue.open(path)
     current = catalogue.current("armadillo")
-    assert current is not None
     assert (current.number, current.digest, current.files) == (2, "d2", {"a": b"1", "b": b"2"})
     entries = [(e.project, e.revision, e.stored_ns, e.skills) for e in catalogue.entries()]
     assert entries == [("armadillo", 2, 20, ("x", "y")), ("kettle", 1, 30, ())]
     catalogue.close()
 
 
-def test_a_revision_that_cannot_be_stored_whole_is_not_stored_at_all(tmp_path: Path) -> None:
+def test_a_revision_that_cannot_be_stored_whole_is_not_stored_at_all(tmp_path: Path):
     catalogue = Catalogue.open(tmp_path / "catalogue.db")
     catalogue.store("p", "d", {"a": b"1"}, (), 1)
     not_bytes: Any = None
     with pytest.raises(TypeError):
         catalogue.store("p", "d2", {"a": b"2", "b": not_bytes}, (), 2)
     current = catalogue.current("p")
-    assert current is not None
     assert (current.number, current.files) == (1, {"a": b"1"})
     catalogue.close()
 
 
-def test_a_file_that_is_no_catalogue_is_refused_with_its_name(tmp_path: Path) -> None:
+def test_a_file_that_is_no_catalogue_is_refused_with_its_name(tmp_path: Path):
     path = tmp_path / "catalogue.db"
     path.write_bytes(b"not a database, but long enough to be looked at" * 10)
     with pytest.raises(StorageError, match="catalogue"):
         Catalogue.open(path)
 
 
-def test_a_folder_that_is_not_there_is_an_error_and_folders_inside_are_left_out(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_there_is_an_error_and_folders_inside_are_left_out(tmp_path: Path):
     loaded = load_bundle(tmp_path / "absent")
     assert [diagnostic.code for diagnostic in loaded.diagnostics] == ["AOS101"]
     (tmp_path / "inner.sd").mkdir()

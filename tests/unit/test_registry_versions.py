@@ -36,11 +36,11 @@ def complaints(stored: dict[str, bytes], new: dict[str, bytes]) -> list[Diagnost
     ("version", "other", "expected"),
     [("1.10", "1.9", True), ("2", "1.9.9", True), ("1.0", "1", False), ("1.2", "1.2.0", False)],
 )
-def test_versions_are_compared_number_by_number(version: str, other: str, expected: bool) -> None:
+def test_versions_are_compared_number_by_number(version, other, expected):
     assert is_higher(version, other) is expected
 
 
-def test_a_changed_document_needs_a_higher_version_than_the_stored_one(files: dict[str, bytes]) -> None:
+def test_a_changed_document_needs_a_higher_version_than_the_stored_one(files: dict[str, bytes]):
     stored = files | sdl(files, "1.2")
     (error,) = complaints(stored, sdl(files, "1.2", b"-3"))
     assert (error.code, error.span.file, error.span.line, error.span.column) == ("AOS129", "pick.sd", 2, 10)
@@ -50,32 +50,32 @@ def test_a_changed_document_needs_a_higher_version_than_the_stored_one(files: di
     assert not complaints(stored, sdl(files, "1.3", b"-3"))
 
 
-def test_the_same_document_again_is_no_change(files: dict[str, bytes]) -> None:
+def test_the_same_document_again_is_no_change(files: dict[str, bytes]):
     assert not complaints(files | sdl(files, "1.2"), sdl(files, "1.2"))
 
 
-def test_a_version_cannot_be_dropped_but_may_be_introduced(files: dict[str, bytes]) -> None:
+def test_a_version_cannot_be_dropped_but_may_be_introduced(files: dict[str, bytes]):
     (error,) = complaints(files | sdl(files, "1.2"), {"pick.sd": files["pick.sd"]})
     assert error.message == "the skill document pick declares no version, the stored one 1.2"
     assert not complaints(files, sdl(files, "0.1"))
 
 
-def test_documents_without_versions_replace_one_another(files: dict[str, bytes]) -> None:
+def test_documents_without_versions_replace_one_another(files: dict[str, bytes]):
     assert not complaints(files, {"pick.sd": files["pick.sd"] + b"\n"})
 
 
-def test_in_json_a_version_is_text_and_the_bare_number_of_aos_1_is_none() -> None:
+def test_in_json_a_version_is_text_and_the_bare_number_of_aos_1_is_none():
     assert complaints(skill('"1.2"'), skill('"1.2"', "new"))
     assert not complaints(skill("1.2"), skill("1.2", "new"))
 
 
-def test_what_is_no_version_is_a_warning(files: dict[str, bytes]) -> None:
+def test_what_is_no_version_is_a_warning(files: dict[str, bytes]):
     loaded = load_files(files | sdl(files, "new"))
     (warning,) = [finding for finding in loaded.diagnostics if "no version" in finding.message]
     assert (str(warning.span), warning.is_error) == ("pick.sd:2:10", False)
 
 
-def test_the_history_tells_versions(files: dict[str, bytes], tmp_path: Path) -> None:
+def test_the_history_tells_versions(files: dict[str, bytes], tmp_path: Path):
     loaded = load_files(files | sdl(files, "1.2"))
     catalogue = Catalogue.open(tmp_path / "catalogue.db")
     catalogue.store("armadillo", loaded.digest, {"pick.sd": b"", "a.ef": b""}, (), 1, loaded.versions)
@@ -84,7 +84,7 @@ def test_the_history_tells_versions(files: dict[str, bytes], tmp_path: Path) -> 
     assert entry.versions == {"pick.sd": "1.2"}
 
 
-def test_a_catalogue_of_the_first_schema_is_taken_over(tmp_path: Path) -> None:
+def test_a_catalogue_of_the_first_schema_is_taken_over(tmp_path: Path):
     path = tmp_path / "catalogue.db"
     catalogue = Catalogue.open(path)
     catalogue.store("p", "d", {"a.ef": b"1"}, (), 1)

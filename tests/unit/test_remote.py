@@ -30,18 +30,16 @@ from aos_deploy.processes.remote import dialled, is_lost, remote_command, why_it
         ),
     ],
 )
-def test_an_ssh_that_fails_says_why_and_what_to_do(text: str, hint: str) -> None:
+def test_an_ssh_that_fails_says_why_and_what_to_do(text, hint):
     error = why_it_failed("arm", "robot@arm", 255, [text])
-    assert error is not None
     assert error.message == f"arm: robot@arm cannot be reached by ssh: {text}"
     assert hint in error.hint
 
 
-def test_the_reason_is_told_where_ssh_has_its_connection_made() -> None:
+def test_the_reason_is_told_where_ssh_has_its_connection_made():
     reason = "ssh: connect to host arm port 22: No route to host"
     said = [reason, "mm_receive_fd: recvmsg: expected received 1 got 0"]
     error = why_it_failed("arm", "robot@arm", 255, [*said, "proxy dialer did not pass back a connection"])
-    assert error is not None
     assert error.message == f"arm: robot@arm cannot be reached by ssh: {reason}"
 
 
@@ -55,8 +53,8 @@ def test_the_reason_is_told_where_ssh_has_its_connection_made() -> None:
     ],
 )
 def test_a_way_of_the_users_own_to_a_host_is_left_to_ssh(
-    configuration: str, is_ours: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    configuration, is_ours, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     ssh = tmp_path / "ssh"
     ssh.write_text(f"#!/bin/sh\ntest \"$1 $2\" = '-G arm' && echo '{configuration}'\n")
     ssh.chmod(0o755)
@@ -64,7 +62,7 @@ def test_a_way_of_the_users_own_to_a_host_is_left_to_ssh(
     assert bool(dialled("arm")) == is_ours
 
 
-def test_a_host_that_refuses_is_tried_until_it_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_host_that_refuses_is_tried_until_it_answers(monkeypatch: pytest.MonkeyPatch):
     with socket.socket() as host:
         host.bind(("127.0.0.1", 0))
         addresses = socket.getaddrinfo(*host.getsockname(), type=socket.SOCK_STREAM)
@@ -82,18 +80,18 @@ def test_a_host_that_refuses_is_tried_until_it_answers(monkeypatch: pytest.Monke
         assert looked_up == ["arm", "arm"]
 
 
-def test_a_host_that_refuses_for_too_long_is_told() -> None:
+def test_a_host_that_refuses_for_too_long_is_told():
     with socket.socket() as host:
         host.bind(("127.0.0.1", 0))
         with pytest.raises(ConnectionRefusedError):
             ssh_connection.connected("127.0.0.1", str(host.getsockname()[1]), for_s=0.01)
 
 
-def test_the_end_of_the_program_itself_is_not_that_of_ssh() -> None:
+def test_the_end_of_the_program_itself_is_not_that_of_ssh():
     assert why_it_failed("arm", "robot@arm", 3, ["no power"]) is None
 
 
-def test_a_connection_that_is_lost_is_told_from_a_program_that_ends() -> None:
+def test_a_connection_that_is_lost_is_told_from_a_program_that_ends():
     far, here = Program(name="arm", command=("./arm",), host="arm"), Program(name="arm", command=("./arm",))
     assert is_lost(far, 255)
     assert not is_lost(far, 1)
@@ -103,16 +101,16 @@ def test_a_connection_that_is_lost_is_told_from_a_program_that_ends() -> None:
 @pytest.mark.parametrize(
     "host", ["arm", "robot@arm.local", "robot@10.0.0.7", "ssh://robot@arm:2222", "[::1]"]
 )
-def test_hosts_are_written_as_ssh_takes_them(host: str) -> None:
+def test_hosts_are_written_as_ssh_takes_them(host):
     assert HOST.fullmatch(host)
 
 
 @pytest.mark.parametrize("host", ["-oProxyCommand=x", "arm; reboot", "", "$(reboot)", "robot@-x", "a b"])
-def test_nothing_else_is_a_host(host: str) -> None:
+def test_nothing_else_is_a_host(host):
     assert not HOST.fullmatch(host)
 
 
-def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Path) -> None:
+def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Path):
     settings = tmp_path / "arm.json"
     settings.write_text('{"it": "isn\'t $HOME"}')
     variables = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}

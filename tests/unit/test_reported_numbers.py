@@ -32,7 +32,7 @@ LOCALS = "".join(
 )
 
 
-def test_reports_are_found_wherever_a_statement_may_stand() -> None:
+def test_reports_are_found_wherever_a_statement_may_stand():
     cpp = read_cpp(DYNAMIC)
     assert misuses_of(cpp) == ()
     assert [(report.name, report.is_array, report.draw.name[1]) for report in reports_in(cpp)] == [
@@ -60,14 +60,14 @@ def test_reports_are_found_wherever_a_statement_may_stand() -> None:
         ("__observed.echoes.push_back(2 * AOS.SampleUniform(0, 1));", 29),
     ],
 )
-def test_whatever_else_is_done_with_them_is_a_misuse(code: str, column: int) -> None:
+def test_whatever_else_is_done_with_them_is_a_misuse(code, column):
     (misuse,) = misuses_of(read_cpp(code))
     assert misuse.extent.column == column
     assert reports_in(read_cpp(code)) == ()
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
-def test_a_reported_draw_is_emitted_as_its_distribution(dialect: str) -> None:
+def test_a_reported_draw_is_emitted_as_its_distribution(dialect):
     skill = {"DynamicModel": {"NextStateAssignments": [{"AssignmentCode": DYNAMIC.split("\n")}]}}
     model = (
         {"look.sd": f"project: test\n\ndynamic_model:\n{DYNAMIC}"}
@@ -98,7 +98,7 @@ def test_a_reported_draw_is_emitted_as_its_distribution(dialect: str) -> None:
     assert emit_mapping(project.skills[0]).observed == ("depth", "echoes", "loud")
 
 
-def test_a_variable_matters_that_only_a_number_depends_on() -> None:
+def test_a_variable_matters_that_only_a_number_depends_on():
     environment = dict(ENVIRONMENT)
     environment["GlobalVariablesDeclaration"] = [
         {"Name": name, "Type": "int", "Default": "0"} for name in ("depth_cm", "walls", "pushed", "spare")
@@ -121,13 +121,13 @@ def test_a_variable_matters_that_only_a_number_depends_on() -> None:
     assert irrelevant_variables(project) == {"spare"}
 
 
-def test_a_model_that_reports_none_has_no_code_for_it(bundles: Path) -> None:
+def test_a_model_that_reports_none_has_no_code_for_it(bundles: Path):
     emitted, _ = lowered(bundle_project(bundles / "bench" / "tiger"))
     assert "bserved" not in emitted.cpp.replace("__observed", "")
     assert emitted.observed == {}
 
 
-def test_numbers_are_taken_from_local_variables_that_hold_some() -> None:
+def test_numbers_are_taken_from_local_variables_that_hold_some():
     texts = {
         "depth": "1.5", "level": "3", "loud": "true", "echoes": "[1.0, null, 2]", "none": "null",
         "words": '"deep"', "odd": "<object object at 0x1>", "mixed": '[1, "a"]', "nested": "[[1]]",
@@ -138,7 +138,7 @@ def test_numbers_are_taken_from_local_variables_that_hold_some() -> None:
     }  # fmt: skip
 
 
-def test_numbers_go_to_an_engine_and_come_back_by_name() -> None:
+def test_numbers_go_to_an_engine_and_come_back_by_name():
     observed = (Observed("depth", False), Observed("echoes", True), Observed("loud", False))
     numbers = {"depth": 0.1, "echoes": [1, None, 2.5], "loud": None}
     assert numbers_field(observed, numbers) == "0 0 0.1 1 0 1.0 1 2 2.5"

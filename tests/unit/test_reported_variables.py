@@ -73,40 +73,40 @@ def findings(response: str = "reached", type_line: str = "type: bool", assignmen
     ]
 
 
-def test_what_model_code_uses_or_what_tells_a_state_variable_is_not_unused() -> None:
+def test_what_model_code_uses_or_what_tells_a_state_variable_is_not_unused():
     assert findings() == []
 
 
-def test_a_local_variable_that_tells_a_state_variable_by_its_name_is_remarked() -> None:
+def test_a_local_variable_that_tells_a_state_variable_by_its_name_is_remarked():
     (remark,) = bundle().diagnostics
     assert (remark.severity, remark.code, str(remark.span)) == (Severity.REMARK, "AOS134", "drive.am:17:17")
     assert "the state variable charge" in remark.message
 
 
-def test_a_local_variable_that_nothing_uses_is_told_still() -> None:
+def test_a_local_variable_that_nothing_uses_is_told_still():
     assert findings(response="true") == [
         "drive.am:12:17: AOS133 no rule and no field uses the local variable reached"
     ]
 
 
 @pytest.mark.parametrize(("type_line", "kind"), [("", "no type"), ("type: anyValue", "the type anyValue")])
-def test_model_code_cannot_use_a_local_variable_without_a_type_of_cpp(type_line: str, kind: str) -> None:
+def test_model_code_cannot_use_a_local_variable_without_a_type_of_cpp(type_line, kind):
     message = f"the local variable `reached` has {kind}, so model code cannot use it"
     assert findings(type_line=type_line) == [f"drive.sd:9:20: AOS110 {message}"]
 
 
-def test_the_copies_that_a_step_makes_in_between_are_not_there() -> None:
+def test_the_copies_that_a_step_makes_in_between_are_not_there():
     (finding,) = findings(response="reached && state_.is_here")
     assert finding.startswith("drive.sd:9:31: AOS123 there is no `state_` in the state given the observation")
 
 
-def test_the_state_before_the_step_cannot_be_written() -> None:
+def test_the_state_before_the_step_cannot_be_written():
     (finding,) = findings(response="reached; state__.count = 1")
     assert "AOS123 `state__.count` is written in the state given the observation" in finding
 
 
 @pytest.mark.parametrize("path", ["to.pose", "base.pose", "state.base.pose"])
-def test_a_rule_may_give_a_value_to_any_anyvalue(path: str) -> None:
+def test_a_rule_may_give_a_value_to_any_anyvalue(path):
     assert findings(assignment=f"assign_variable: {path}\nvalue: [reached]") == []
 
 
@@ -121,7 +121,7 @@ def test_a_rule_may_give_a_value_to_any_anyvalue(path: str) -> None:
         ("assign_variable: to.pose\nvalue: seen", "drive.am:5:8: AOS110 no local variable gives `seen`"),
     ],
 )
-def test_a_mistake_in_a_low_level_assignment_is_told_at_its_place(assignment: str, finding: str) -> None:
+def test_a_mistake_in_a_low_level_assignment_is_told_at_its_place(assignment, finding):
     (found,) = findings(assignment=assignment)
     assert found.startswith(finding)
 
@@ -138,5 +138,5 @@ def test_a_mistake_in_a_low_level_assignment_is_told_at_its_place(assignment: st
         ("", None),
     ],
 )
-def test_the_types_that_model_code_can_see(text: str, kind: LocalType | None) -> None:
+def test_the_types_that_model_code_can_see(text, kind):
     assert local_type(text) == kind

@@ -3,7 +3,7 @@
 from aos_deploy.processes.restarts import STARTS, STARTS_OF_ADAPTER, WITHIN_S, Restarts
 
 
-def test_starts_wait_longer_and_longer_until_a_minute_is_over() -> None:
+def test_starts_wait_longer_and_longer_until_a_minute_is_over():
     restarts = Restarts()
     waits_s = []
     for now_s in range(STARTS):
@@ -16,7 +16,7 @@ def test_starts_wait_longer_and_longer_until_a_minute_is_over() -> None:
     assert restarts.are_left(WITHIN_S + 1)
 
 
-def test_an_adapter_that_has_served_has_more_starts_than_one_that_never_does() -> None:
+def test_an_adapter_that_has_served_has_more_starts_than_one_that_never_does():
     in_vain, served = Restarts(is_adapter=True), Restarts(is_adapter=True)
     for now_s in range(STARTS):
         in_vain.start(now_s)
@@ -30,7 +30,7 @@ def test_an_adapter_that_has_served_has_more_starts_than_one_that_never_does() -
     assert not served.are_left(STARTS_OF_ADAPTER)
 
 
-def test_a_connection_that_was_there_is_made_again_at_once_and_one_that_fails_later() -> None:
+def test_a_connection_that_was_there_is_made_again_at_once_and_one_that_fails_later():
     restarts = Restarts()
     for now_s in range(4):
         restarts.start(now_s)

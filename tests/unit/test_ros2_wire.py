@@ -47,24 +47,24 @@ SERVER = TALKER._replace(
         ),
     ],
 )
-def test_tokens_are_as_in_the_design_document(endpoint: Endpoint, token: str) -> None:
+def test_tokens_are_as_in_the_design_document(endpoint, token):
     assert endpoint.token == token
     assert endpoint_of(token) == endpoint
 
 
-def test_keys_are_as_in_the_design_document() -> None:
+def test_keys_are_as_in_the_design_document():
     key = data_key(0, "/robot1/chatter", "std_msgs/msg/String", STRING_HASH)
     assert key == f"0/robot1/chatter/std_msgs::msg::dds_::String_/{STRING_HASH}"
     assert SERVER.key == f"2/add_two_ints/example_interfaces::srv::dds_::AddTwoInts_/{ADD_HASH}"
 
 
-def test_namespaces_survive_the_token() -> None:
+def test_namespaces_survive_the_token():
     endpoint = TALKER._replace(namespace="/lab/robot1", name="/lab/robot1/chatter", enclave="/a/b")
     assert endpoint_of(endpoint.token) == endpoint
 
 
 @pytest.mark.parametrize("qos", [Qos(), Qos(1, True, True), Qos(5, False, False)])
-def test_qualities_of_service_survive_their_text(qos: Qos) -> None:
+def test_qualities_of_service_survive_their_text(qos):
     assert qos_of(qos_text(qos)) == qos
 
 
@@ -79,11 +79,11 @@ def test_qualities_of_service_survive_their_text(qos: Qos) -> None:
         "@ros2_lv/0/abc/0/10/MP/%/%/talker",
     ],
 )
-def test_tokens_of_another_form_are_left_alone(token: str) -> None:
+def test_tokens_of_another_form_are_left_alone(token):
     assert endpoint_of(token) is None
 
 
-def test_attachments_are_33_bytes_little_endian() -> None:
+def test_attachments_are_33_bytes_little_endian():
     attachment = Attachment(258, 1, gid_of(TALKER.token))
     data = attachment.encoded()
     assert data[:17] == b"\x02\x01" + bytes(6) + b"\x01" + bytes(7) + b"\x10"
@@ -92,5 +92,5 @@ def test_attachments_are_33_bytes_little_endian() -> None:
 
 
 @pytest.mark.parametrize("data", [b"", bytes(32), bytes(33), b"\x0fsequence_number" + bytes(60)])
-def test_attachments_of_older_releases_are_not_misread(data: bytes) -> None:
+def test_attachments_of_older_releases_are_not_misread(data):
     assert Attachment.read(data) is None

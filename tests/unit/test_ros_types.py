@@ -1,7 +1,6 @@
 """Interfaces of ROS: the user's files, hashes as ROS 2 has them, values as CDR."""
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -38,7 +37,7 @@ def types() -> RosTypes:
         ),
     ],
 )
-def test_hashes_are_those_of_ros_2(types: RosTypes, name: str, digits: str) -> None:
+def test_hashes_are_those_of_ros_2(types: RosTypes, name, digits):
     assert types.hash(name) == f"RIHS01_{digits}"
 
 
@@ -56,15 +55,15 @@ def test_hashes_are_those_of_ros_2(types: RosTypes, name: str, digits: str) -> N
         ),
     ],
 )
-def test_a_value_survives_its_encoding(types: RosTypes, name: str, value: dict[str, Any]) -> None:
+def test_a_value_survives_its_encoding(types: RosTypes, name, value):
     assert types.decoded(name, types.encoded(name, value)) == value
 
 
-def test_an_empty_request_is_one_byte_as_in_ros_2(types: RosTypes) -> None:
+def test_an_empty_request_is_one_byte_as_in_ros_2(types: RosTypes):
     assert types.encoded("std_srvs/srv/Trigger_Request", {}) == b"\x00\x01\x00\x00\x00"
 
 
-def test_fields_that_are_left_out_are_zero(types: RosTypes) -> None:
+def test_fields_that_are_left_out_are_zero(types: RosTypes):
     assert types.decoded("lab_msgs/msg/Cup", types.encoded("lab_msgs/msg/Cup", {})) == {
         "name": "",
         "state": 0,
@@ -87,9 +86,7 @@ def test_fields_that_are_left_out_are_zero(types: RosTypes) -> None:
         ({"rim": [3]}, r"rim\[0\] is a geometry_msgs/msg/Point and cannot be 3"),
     ],
 )
-def test_what_does_not_fit_is_said_with_its_place(
-    types: RosTypes, value: dict[str, Any], message: str
-) -> None:
+def test_what_does_not_fit_is_said_with_its_place(types: RosTypes, value, message):
     with pytest.raises(SkillError, match=message):
         types.encoded("lab_msgs/msg/Cup", value)
 
@@ -97,18 +94,18 @@ def test_what_does_not_fit_is_said_with_its_place(
 @pytest.mark.parametrize(
     "payload", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00\xff\xff\xff\xff", b"x" * 40]
 )
-def test_bytes_that_are_no_such_message_are_an_error_and_not_a_crash(types: RosTypes, payload: bytes) -> None:
+def test_bytes_that_are_no_such_message_are_an_error_and_not_a_crash(types: RosTypes, payload):
     with pytest.raises(SkillError, match="what came is no lab_msgs/msg/Cup") as raised:
         types.decoded("lab_msgs/msg/Cup", payload)
     assert raised.value.code == "AOS508"
 
 
-def test_bounds_are_kept(types: RosTypes) -> None:
+def test_bounds_are_kept(types: RosTypes):
     with pytest.raises(SkillError, match="cups holds at most 2 values, not 3"):
         types.encoded("lab_msgs/msg/Shelf", {"cups": [CUP, CUP, CUP]})
 
 
-def test_an_unknown_type_names_the_file_to_add(types: RosTypes) -> None:
+def test_an_unknown_type_names_the_file_to_add(types: RosTypes):
     with pytest.raises(
         DeployError, match=r"Add the file nav2_msgs/action/Spin\.action to a folder"
     ) as raised:
@@ -116,26 +113,26 @@ def test_an_unknown_type_names_the_file_to_add(types: RosTypes) -> None:
     assert raised.value.code == "AOS806"
 
 
-def test_a_type_that_a_file_uses_and_nobody_defines_is_named_too(tmp_path: Path) -> None:
+def test_a_type_that_a_file_uses_and_nobody_defines_is_named_too(tmp_path: Path):
     (tmp_path / "lab" / "msg").mkdir(parents=True)
     (tmp_path / "lab" / "msg" / "Shelf.msg").write_text("Cup[] cups\n")
     with pytest.raises(DeployError, match=r"lab/msg/Cup, which .*Shelf\.msg uses, .*lab/msg/Cup\.msg"):
         RosTypes("jazzy", [tmp_path]).hash("lab/msg/Shelf")
 
 
-def test_a_file_that_is_no_interface_is_an_error_with_its_path(tmp_path: Path) -> None:
+def test_a_file_that_is_no_interface_is_an_error_with_its_path(tmp_path: Path):
     (tmp_path / "lab" / "msg").mkdir(parents=True)
     (tmp_path / "lab" / "msg" / "Bad.msg").write_text("(no definition)\n")
     with pytest.raises(DeployError, match=r"Bad\.msg is not an interface file of ROS"):
         RosTypes("jazzy", [tmp_path]).hash("lab/msg/Bad")
 
 
-def test_an_unknown_distribution_is_an_error_that_lists_the_known() -> None:
+def test_an_unknown_distribution_is_an_error_that_lists_the_known():
     with pytest.raises(DeployError, match=r"'noetic' is not a distribution .*humble, .*jazzy"):
         RosTypes("noetic")
 
 
-def test_files_are_found_in_packages_and_one_by_one(tmp_path: Path) -> None:
+def test_files_are_found_in_packages_and_one_by_one(tmp_path: Path):
     found = {str(name) for name in definitions_in([INTERFACES])}
     assert found >= {"lab_msgs/msg/Cup", "lab_msgs/srv/pick_unknown", "example_interfaces/action/Fibonacci"}
     loose = tmp_path / "lab_msgs" / "Cup.msg"
@@ -144,6 +141,6 @@ def test_files_are_found_in_packages_and_one_by_one(tmp_path: Path) -> None:
     assert [str(name) for name in definitions_in([loose])] == ["lab_msgs/msg/Cup"]
 
 
-def test_a_service_without_its_line_of_dashes_is_an_error() -> None:
+def test_a_service_without_its_line_of_dashes_is_an_error():
     with pytest.raises(DeployError, match="has 1 sections instead of 2"):
         messages_of(interface_name("lab/Pick", "srv"), "string name\n")

@@ -41,11 +41,11 @@ def leaves(errors: Any) -> Iterator[jsonschema.ValidationError]:
 
 
 @pytest.mark.parametrize("name", SCHEMAS)
-def test_the_schema_is_one(name: str) -> None:
+def test_the_schema_is_one(name):
     jsonschema.Draft202012Validator.check_schema(SCHEMAS[name]())
 
 
-def test_the_examples_of_the_language_page_are_valid(root: Path) -> None:
+def test_the_examples_of_the_language_page_are_valid(root: Path):
     documents = examples(root)
     assert documents
     assert [text for value in documents.values() for text in complaints("plp", value)] == []
@@ -60,7 +60,7 @@ def json_documents(*folders: Path) -> Iterator[tuple[str, bytes, Any]]:
 
 
 @pytest.mark.corpus
-def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: Path, root: Path) -> None:
+def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: Path, root: Path):
     checked = 0
     for name, data, value in json_documents(corpus, root / "tests" / "data" / "bundles"):
         dialect = next((schema for header, schema in DIALECTS.items() if header in value), None)
@@ -89,13 +89,13 @@ def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: 
         ("environment glue.json", '"InitCode"', '"Code"'),
     ],
 )
-def test_a_typing_mistake_is_no_valid_document(document: str, before: str, after: str, root: Path) -> None:
+def test_a_typing_mistake_is_no_valid_document(document, before, after, root: Path):
     text = json.dumps(examples(root)[document])
     assert before in text
     assert complaints("plp", json.loads(text.replace(before, after, 1)))
 
 
-def test_gsdl_documents_have_their_own_header_and_kinds(root: Path) -> None:
+def test_gsdl_documents_have_their_own_header_and_kinds(root: Path):
     document = examples(root)["pour.json"]
     head = document.pop("PlpMain")
     assert complaints("gsdl", {"GsdlMain": {**head, "Type": "GSDL"}, **document}) == []
@@ -103,7 +103,7 @@ def test_gsdl_documents_have_their_own_header_and_kinds(root: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["Environment", "PLP", "Glue", "EnvironmentGlue"])
-def test_schema_and_reader_know_the_same_keys(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_schema_and_reader_know_the_same_keys(kind, monkeypatch: pytest.MonkeyPatch):
     known: set[str] = set()
     finish = Record.finish
 
@@ -169,7 +169,7 @@ def deploy_files(root: Path) -> dict[str, Any]:
     return {path.name: YAML(typ="safe", pure=True).load(path.read_text()) for path in files}
 
 
-def test_the_deploy_files_are_valid(root: Path) -> None:
+def test_the_deploy_files_are_valid(root: Path):
     files = deploy_files(root)
     assert files
     assert [text for value in files.values() for text in complaints("deploy", value)] == []
@@ -187,6 +187,6 @@ def test_the_deploy_files_are_valid(root: Path) -> None:
         {"bind": {"/pick": 1}},
     ],
 )
-def test_a_mistake_in_a_deploy_file_is_found(change: dict[str, Any], root: Path) -> None:
+def test_a_mistake_in_a_deploy_file_is_found(change, root: Path):
     value = copy.deepcopy(deploy_files(root)["armadillo.yaml"])
     assert complaints("deploy", {**value, **change})

@@ -29,7 +29,7 @@ def content_of(name: str, text: str) -> object:
     return document.content
 
 
-def test_a_section_holds_a_body_and_assignments() -> None:
+def test_a_section_holds_a_body_and_assignments():
     text = """initial_belief:
 int n = 1;
 assignment: draw it
@@ -46,23 +46,17 @@ temporary_variable: Bool late
 """
     document, findings = read("p.ef", text)
     assert findings == ["13:21 AOS127"]
-    assert document is not None
     assert isinstance(document.content, Environment)
     body, draw, late = document.content.initial_belief
-    assert body.code is not None
     assert body.code.code == "int n = 1;"
     assert draw.name == "draw it"
-    assert draw.temporary is not None
     assert (draw.temporary.enum_name, draw.temporary.enum_values) == ("Ending", ("Good", "Bad"))
-    assert draw.over_previous[0].condition is not None
     assert draw.over_previous[0].condition.code == "each.is_full"
-    assert draw.over_next[0].body is not None
     assert draw.over_next[0].body.span.line == 11
-    assert late.temporary is not None
     assert (late.name, late.temporary.type) == ("", "bool")
 
 
-def test_an_environment_has_conditions_defaults_keys_and_low_level_types() -> None:
+def test_an_environment_has_conditions_defaults_keys_and_low_level_types():
     text = """one_state_model: true
 define_type: Cup
 variable: anyValue handle of Pose
@@ -86,21 +80,19 @@ ss << state.poured;
     assert environment.is_one_state_model
     handle, lid = environment.compounds[0].fields
     assert (handle.low_level_type, handle.default) == ("Pose", None)
-    assert lid.default is not None
     assert (lid.low_level_type, lid.default.code) == ("Pose", "false")
     where, places, grid, poured = environment.variables
     assert (where.low_level_type, where.is_array) == ("Pose", False)
     assert (places.low_level_type, places.is_array) == ("Pose", True)
     assert grid.is_array
     assert poured.key_types == ("Water", "( 0, 3, 1 )")
-    assert poured.default_value is not None
     assert poured.default_value.code == "3"
     (special,) = environment.special_states
     assert (special.reward, special.is_goal, special.is_one_time) == (-2.5, True, True)
     assert len(environment.print_state) == 1
 
 
-def test_skills_mappings_and_low_level_files_have_theirs() -> None:
+def test_skills_mappings_and_low_level_files_have_theirs():
     skill = content_of(
         "s.sd", "execution_time:\n__moduleExecutionTime = 3;\nstate_given_observation:\nx();\n"
     )
@@ -144,5 +136,5 @@ def test_skills_mappings_and_low_level_files_have_theirs() -> None:
         ("p.lf", "constant: home\ncode:\nhome = 1\n", ["1:11 AOS104"]),
     ],
 )
-def test_what_is_wrong_is_told_where_it_stands(name: str, text: str, found: list[str]) -> None:
+def test_what_is_wrong_is_told_where_it_stands(name, text, found):
     assert read(name, text)[1] == found

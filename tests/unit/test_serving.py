@@ -25,7 +25,7 @@ def deployment(folder: Path, root: Path, serve: str) -> Deployment:
     return read_deploy_file(path)
 
 
-def test_types_are_written_shortly_or_in_full(root: Path, tmp_path: Path) -> None:
+def test_types_are_written_shortly_or_in_full(root: Path, tmp_path: Path):
     program = serving_program(
         deployment(
             tmp_path,
@@ -63,14 +63,12 @@ def test_types_are_written_shortly_or_in_full(root: Path, tmp_path: Path) -> Non
         ("serve: {types: {/pick: Trigger}}\n", "ros2", "'Trigger' is not the name of a ROS interface"),
     ],
 )
-def test_mistakes_are_said_with_their_place(
-    root: Path, tmp_path: Path, serve: str, kind: str, message: str
-) -> None:
+def test_mistakes_are_said_with_their_place(root: Path, tmp_path: Path, serve, kind, message):
     with pytest.raises(DeployError, match=message):
         serving_program(deployment(tmp_path, root, serve), kind)
 
 
-def test_the_shipped_robot_has_a_type_for_every_path_and_topic(root: Path) -> None:
+def test_the_shipped_robot_has_a_type_for_every_path_and_topic(root: Path):
     shipped = read_deploy_file(root / "deploy" / "armadillo-robot.yaml")
     types = serving_program(shipped, "ros2").settings["types"]
     loaded = load_bundle(root / "deploy" / "bundles" / "armadillo-finer")
@@ -80,7 +78,7 @@ def test_the_shipped_robot_has_a_type_for_every_path_and_topic(root: Path) -> No
 
 
 @pytest.mark.corpus
-def test_original_mappings_name_their_services_types(corpus: Path) -> None:
+def test_original_mappings_name_their_services_types(corpus: Path):
     project = load_bundle(corpus / "armadillo-rough").project
     assert project is not None
     assert documented(project).paths == {
@@ -101,14 +99,14 @@ def test_original_mappings_name_their_services_types(corpus: Path) -> None:
         ({"action": "/go", "type": "a_msgs/action/Go"}, Way("action", "/go", "a_msgs/action/Go")),
     ],
 )
-def test_a_path_is_bound_to_a_name_a_service_or_an_action(target: object, way: Way) -> None:
+def test_a_path_is_bound_to_a_name_a_service_or_an_action(target, way):
     assert way_to("/pick", target) == way
 
 
 @pytest.mark.parametrize(
     "target", [3, {}, {"topic": "/pick"}, {"service": "/a", "action": "/b"}, {"action": 1}]
 )
-def test_anything_else_is_an_error_that_shows_how_to_write_it(target: object) -> None:
+def test_anything_else_is_an_error_that_shows_how_to_write_it(target):
     with pytest.raises(
         DeployError, match=r"/pick is bound to .*Write the name of one, or \{service: /pick\}"
     ):
@@ -117,21 +115,20 @@ def test_anything_else_is_an_error_that_shows_how_to_write_it(target: object) ->
 
 @pytest.mark.parametrize("kind", ["ros2", "dds", "ros1"])
 def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
-    kind: str, root: Path, tmp_path: Path
-) -> None:
+    kind, root: Path, tmp_path: Path
+):
     bundle = root / "deploy" / "bundles" / "armadillo-finer"
     command = ["new", "adapter", kind, "--in", str(bundle), "--to", str(tmp_path)]
     made = aos(*command)
     assert made.exit_code == 0, made.output
     (adapter,) = read_deploy_file(tmp_path / "armadillo.yaml").adapters
     page = re.search(r"in the sources of AOS, (\S+)\.$", (tmp_path / "armadillo.yaml").read_text(), re.M)
-    assert page is not None
     assert (root / page[1]).is_file()
     assert (adapter.kind_name, adapter.serves_others) == (kind, True)
     assert "`/pick`: the type that the robot says" in (tmp_path / "interfaces" / "README.md").read_text()
 
 
-def test_an_example_brings_its_interfaces_along(tmp_path: Path) -> None:
+def test_an_example_brings_its_interfaces_along(tmp_path: Path):
     made = aos("new", "example", "armadillo-robot", "--in", tmp_path / "robot")
     assert made.exit_code == 0, made.output
     assert (tmp_path / "robot" / "interfaces" / "armadillo_skills" / "srv" / "Navigate.srv").is_file()

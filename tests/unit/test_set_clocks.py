@@ -15,9 +15,7 @@ _LONG_ENOUGH_S = 0.3
 
 
 @pytest.mark.parametrize("is_there", [True, False])
-async def test_a_file_of_an_earlier_run_does_not_count_and_one_that_is_written_does(
-    tmp_path: Path, is_there: bool
-) -> None:
+async def test_a_file_of_an_earlier_run_does_not_count_and_one_that_is_written_does(tmp_path: Path, is_there):
     pid, log, ready = tmp_path / "pid", tmp_path / "log", ReadyPart(file="pid")
     if is_there:
         pid.write_text("1")
@@ -39,7 +37,7 @@ class _SetBack(SystemClock):
         return 100.0
 
 
-def test_a_moment_of_a_journal_is_never_later_than_now() -> None:
+def test_a_moment_of_a_journal_is_never_later_than_now():
     stamp_ns = SystemClock().now_ns()
     assert moment_s(_SetBack(), stamp_ns) == 100.0
     assert moment_s(_SetBack(), stamp_ns - 3610 * 10**9) == pytest.approx(90.0, abs=1.0)

@@ -98,7 +98,7 @@ def model(cache_dir: Path) -> ScriptedModel:
     return scripted(text_project(FILES), cache_dir)
 
 
-def test_all_code_sees_the_constants_and_calls_the_functions(model: ScriptedModel) -> None:
+def test_all_code_sees_the_constants_and_calls_the_functions(model: ScriptedModel):
     assert found() == []
     # The draws: of the belief, twice whether the hand slips, and the grip.
     played = model.play("work(plot=north)|0 0 1", initial="1")
@@ -110,14 +110,14 @@ def test_all_code_sees_the_constants_and_calls_the_functions(model: ScriptedMode
     assert step["observation"] == "firm"
 
 
-def test_a_function_that_draws_ends_where_its_draws_say(model: ScriptedModel) -> None:
+def test_a_function_that_draws_ends_where_its_draws_say(model: ScriptedModel):
     played = model.play("work(plot=north)|1 0", initial="0")
     assert played.initial["state"]["best"] == "South"
     assert played.steps[0]["state"]["is_dug[North]"] == "false"
     assert played.observations == ["loose"]
 
 
-def test_all_dialects_say_the_same(tmp_path: Path) -> None:
+def test_all_dialects_say_the_same(tmp_path: Path):
     project = load_files(files()).project
     assert project is not None
     assert "  | bool slips() { return slips(1); }" in outline(project)
@@ -138,16 +138,14 @@ def test_all_dialects_say_the_same(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(data)
     bundle = read_bundle(tmp_path, {})
     called = bundle.at("work.sd", 4, 6)
-    assert called is not None
     definition = bundle.definition(called.symbol)
-    assert definition is not None
     assert str(definition.span) == "garden.ef:9:6"
 
 
 # --- what analyses make of it ---
 
 
-def test_what_a_function_draws_and_changes_is_known() -> None:
+def test_what_a_function_draws_and_changes_is_known():
     shared = shared_code(SHARED, frozenset({"Tool"}))
     assert shared.drawing == {"slips"}
     assert shared.reading == {"grip_of", "depth"}
@@ -155,7 +153,7 @@ def test_what_a_function_draws_and_changes_is_known() -> None:
     assert [name.name for name in shared.names if name.is_late] == ["spade"]
 
 
-def test_only_what_functions_may_change_is_part_of_a_particle() -> None:
+def test_only_what_functions_may_change_is_part_of_a_particle():
     changed = {variable.name for variable in program().particle}
     assert changed == {"is_dug", "log", "best"}
     by_whole = program(
@@ -164,12 +162,12 @@ def test_only_what_functions_may_change_is_part_of_a_particle() -> None:
     assert {variable.name for variable in by_whole.constants} == set()
 
 
-def test_a_vector_that_a_function_fills_has_room() -> None:
+def test_a_vector_that_a_function_fills_has_room():
     types = {variable.name: variable.type for variable in program().variables}
     assert types["log"] == "aos::Vector<int, 64>"
 
 
-def test_constants_say_how_long_vectors_are() -> None:
+def test_constants_say_how_long_vectors_are():
     changes = (
         "state.log = {0}; -> state.log.assign(start, 0);",
         "add(state__.log, -> twice(",
@@ -182,17 +180,17 @@ def test_constants_say_how_long_vectors_are() -> None:
     assert types["log"] == "aos::Vector<int, 2>"
 
 
-def test_a_reward_is_certain_only_where_no_function_draws() -> None:
+def test_a_reward_is_certain_only_where_no_function_draws():
     assert not program().skills[0].has_certain_rewards
     assert program("if (!slips(2)) dig -> if (depth(state.tool) > 1) dig").skills[0].has_certain_rewards
 
 
-def test_a_default_may_be_drawn_by_a_function() -> None:
+def test_a_default_may_be_drawn_by_a_function():
     assert not program().draws_defaults
     assert program("default_value: start -> default_value: slips() ? 1 : 2").draws_defaults
 
 
-def test_a_variable_that_only_shapes_what_a_function_reads_matters() -> None:
+def test_a_variable_that_only_shapes_what_a_function_reads_matters():
     alone = "dig(state__, plot); -> state__.is_dug[plot] = true;", "void dig( -> void digs("
     assert [variable.name for variable in program(*alone).irrelevant] == ["best"]
     whole = "return state.is_dug[plot] ? Firm -> auto& all = state; return all.is_dug[plot] ? Firm"
@@ -202,7 +200,7 @@ def test_a_variable_that_only_shapes_what_a_function_reads_matters() -> None:
 @pytest.mark.parametrize(
     "name", ["armadillo-finer", "turtlebot-noisy", "bench/laser", "bench/rocksample-7-8"]
 )
-def test_draws_behind_a_function_are_taken_for_no_less_than_written_out(bundles: Path, name: str) -> None:
+def test_draws_behind_a_function_are_taken_for_no_less_than_written_out(bundles: Path, name):
     written, behind = {}, {}
     for file, data in read_bundle_files(bundles / name)[0].items():
         text = data.decode()
@@ -227,7 +225,7 @@ def test_draws_behind_a_function_are_taken_for_no_less_than_written_out(bundles:
         assert its_other.keeps_state >= skill.keeps_state
 
 
-def test_the_emitted_functions_stand_at_the_documents_lines() -> None:
+def test_the_emitted_functions_stand_at_the_documents_lines():
     emitted = emit(program())
     line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "bool slips(auto& AOS, int" in text)
     assert (
@@ -246,7 +244,7 @@ def test_the_emitted_functions_stand_at_the_documents_lines() -> None:
         ("'sqr' was not declared in this scope; did you mean 'sqrt'?", "sqr", "sqrt"),
     ],
 )
-def test_a_misspelt_name_is_told_with_one_that_documents_have(said: str, name: str, hint: str) -> None:
+def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):
     emitted = emit(program())
     line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
     (error,) = read_messages(f"m.cpp:{line}:6: error: {said}\n", "m.cpp", emitted).diagnostics
@@ -303,9 +301,7 @@ def test_a_misspelt_name_is_told_with_one_that_documents_have(said: str, name: s
         ),
     ],
 )
-def test_messages_are_told_in_the_documents_terms_with_what_to_write(
-    said: str, message: str, hint: str
-) -> None:
+def test_messages_are_told_in_the_documents_terms_with_what_to_write(said, message, hint):
     emitted = emit(program())
     line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
     said = said.replace("{line}", str(line))
@@ -340,7 +336,7 @@ def test_messages_are_told_in_the_documents_terms_with_what_to_write(
         ("void add( -> int twice(int n) { return 2 * n; }\nvoid add(", "AOS133", "garden.ef:19:5"),
     ],
 )  # fmt: skip
-def test_a_mistake_is_told_at_its_place(change: str, code: str, place: str) -> None:
+def test_a_mistake_is_told_at_its_place(change, code, place):
     places = [(finding.code, str(finding.span)) for finding in found(change)]
     assert (code, place) in places
     assert len(set(places)) == 1 or code in ("AOS145", "AOS126"), places

@@ -76,14 +76,14 @@ def running(skill: str, change: str = "") -> LoadedMapping:
     return loaded(next(mapping for mapping in emit_project(project_of(change)) if mapping.skill == skill))
 
 
-def test_all_mappings_call_the_functions_and_know_the_constants() -> None:
+def test_all_mappings_call_the_functions_and_know_the_constants():
     look = running("look")
     assert observed(look, {}, [], {"bearing_rad": 0.3}).response == "left"
     assert observed(look, {}, [], {"bearing_rad": 0.1}).response == "right"
     assert observed(running("ask"), {}, [], {"text": "l"}).response == "left"
 
 
-def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents() -> None:
+def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents():
     look, step = (
         next(mapping for mapping in emit_project(project_of()) if mapping.skill == name)
         for name in ("look", "step")
@@ -94,7 +94,7 @@ def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents() -> 
     assert "LIMIT_RAD" not in step.python
 
 
-def test_all_dialects_say_the_same() -> None:
+def test_all_dialects_say_the_same():
     project = project_of()
     assert "shared code of the mappings" in outline(project)
     texts, findings = convert(files(), Dialect.JSON)
@@ -125,7 +125,7 @@ def test_all_dialects_say_the_same() -> None:
         ("LIMIT_RAD = 0.2 -> LIMIT_RAD = 0.2\ndef observe(x):\n    return x", "AOS126", "barn.ef:7:1"),
     ],
 )
-def test_a_mistake_is_told_at_its_place(change: str, code: str, place: str) -> None:
+def test_a_mistake_is_told_at_its_place(change, code, place):
     places = [(finding.code, str(finding.span)) for finding in load_files(files(change)).diagnostics]
     assert (code, place) in places
     assert {found_code for found_code, _ in places} <= {code, "AOS139"}

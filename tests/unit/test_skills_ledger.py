@@ -17,11 +17,11 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "skills.db"
 
 
-def test_a_new_activation_may_move(path: Path) -> None:
+def test_a_new_activation_may_move(path: Path):
     assert Ledger(path).stored(ID) is None
 
 
-def test_a_repeated_activation_gets_its_stored_answer_also_after_a_restart(path: Path) -> None:
+def test_a_repeated_activation_gets_its_stored_answer_also_after_a_restart(path: Path):
     ledger = Ledger(path)
     ledger.start(CALL)
     ledger.end(SkillResult(ID, {"success": True}))
@@ -29,7 +29,7 @@ def test_a_repeated_activation_gets_its_stored_answer_also_after_a_restart(path:
     assert Ledger(path).stored(ID) == SkillResult(ID, {"success": True})
 
 
-def test_an_activation_that_never_ended_is_unknown_and_does_not_move_again(path: Path) -> None:
+def test_an_activation_that_never_ended_is_unknown_and_does_not_move_again(path: Path):
     ledger = Ledger(path)
     ledger.start(CALL)
     ledger.close()
@@ -38,7 +38,7 @@ def test_an_activation_that_never_ended_is_unknown_and_does_not_move_again(path:
     assert error.value.code == "AOS504"
 
 
-def test_a_repeated_activation_that_failed_fails_again_and_does_not_move(path: Path) -> None:
+def test_a_repeated_activation_that_failed_fails_again_and_does_not_move(path: Path):
     ledger = Ledger(path)
     ledger.start(CALL)
     ledger.fail(ID, SkillError("gripper jammed", code="AOS510"))

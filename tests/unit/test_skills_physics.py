@@ -54,7 +54,7 @@ def with_misplaced_easy_can(file: ArmadilloFile, probability: float) -> Armadill
     return msgspec.structs.replace(file, tables=tables, faults=FaultModel())
 
 
-def test_a_faultless_robot_brings_the_easy_can_to_the_person(make: Make) -> None:
+def test_a_faultless_robot_brings_the_easy_can_to_the_person(make: Make):
     world = make(FaultModel())
     assert call(world, "/navigate", EASY_TABLE)["success"]
     assert call(world, "/pick")["success"]
@@ -66,7 +66,7 @@ def test_a_faultless_robot_brings_the_easy_can_to_the_person(make: Make) -> None
     assert not world.has_injured
 
 
-def test_the_hard_can_is_not_grasped_where_the_robot_sees_it(make: Make) -> None:
+def test_the_hard_can_is_not_grasped_where_the_robot_sees_it(make: Make):
     world = make(FaultModel())
     assert call(world, "/pick")["success"]
     assert not world.is_holding
@@ -74,7 +74,7 @@ def test_the_hard_can_is_not_grasped_where_the_robot_sees_it(make: Make) -> None
     assert world.robot.gripper.gap_m < 0.005 or min(left, right) == 0
 
 
-def test_a_lost_can_is_not_picked_again(make: Make, file: ArmadilloFile) -> None:
+def test_a_lost_can_is_not_picked_again(make: Make, file: ArmadilloFile):
     world = make(file.faults, seed=3)
     call(world, "/pick")
     world.scene.wait(1.0)
@@ -84,7 +84,7 @@ def test_a_lost_can_is_not_picked_again(make: Make, file: ArmadilloFile) -> None
     assert not world.is_holding
 
 
-def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, file: ArmadilloFile) -> None:
+def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, file: ArmadilloFile):
     world = make(FaultModel())
     before = world.room.can_place("easy")
     call(world, "/navigate", EASY_TABLE)
@@ -97,7 +97,7 @@ def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, file: Armadil
     assert world.is_holding
 
 
-def test_the_frequencies_are_json_and_nothing_else(root: Path) -> None:
+def test_the_frequencies_are_json_and_nothing_else(root: Path):
     module = "aos_skills.pybullet.worlds.armadillo.frequencies"
     command = [sys.executable, "-m", module, "deploy/worlds/armadillo.yaml"]
     ended = subprocess.run(
@@ -109,7 +109,7 @@ def test_the_frequencies_are_json_and_nothing_else(root: Path) -> None:
     assert b"of 1 picks" in ended.stderr
 
 
-def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Make) -> None:
+def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Make):
     world = make(FaultModel(arm_stays_out=1.0))
     call(world, "/navigate", EASY_TABLE)
     assert not call(world, "/pick")["success"]
@@ -120,7 +120,7 @@ def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Mak
 
 
 @pytest.mark.parametrize("table", ["easy", "hard"])
-def test_a_can_is_grasped_where_it_is_seen(make: Make, table: str) -> None:
+def test_a_can_is_grasped_where_it_is_seen(make: Make, table):
     world = make(FaultModel())
     if table == "easy":
         call(world, "/navigate", EASY_TABLE)
@@ -129,20 +129,19 @@ def test_a_can_is_grasped_where_it_is_seen(make: Make, table: str) -> None:
     for dx, dy in ((0.0, 0.0), (0.04, -0.03), (-0.03, 0.02)):
         world.scene.client.resetBasePositionAndOrientation(can, (x + dx, y + dy, z), (0, 0, 0, 1))
         place = _perceived(world, table)
-        assert place is not None
         assert place[:2] == pytest.approx((x + dx, y + dy), abs=0.001)
     world.scene.client.changeVisualShape(can, -1, rgbaColor=(1, 1, 1, 1))
     assert _perceived(world, table) is None
 
 
-def test_the_arm_comes_back_where_the_fingers_feel_nothing(make: Make) -> None:
+def test_the_arm_comes_back_where_the_fingers_feel_nothing(make: Make):
     world = make(FaultModel(arm_stays_out=1.0))
     assert call(world, "/pick")["success"]
     assert not world.is_holding
     assert world.truth()["state"]["robot_at"] == "HardTable"
 
 
-def test_an_arm_that_stayed_out_is_folded_with_the_can_in_the_hand(make: Make) -> None:
+def test_an_arm_that_stayed_out_is_folded_with_the_can_in_the_hand(make: Make):
     world = make(FaultModel(arm_stays_out=1.0))
     call(world, "/navigate", EASY_TABLE)
     assert not call(world, "/pick")["success"]
@@ -151,7 +150,7 @@ def test_an_arm_that_stayed_out_is_folded_with_the_can_in_the_hand(make: Make) -
     assert world.is_holding
 
 
-def test_an_arm_may_stay_out_again(make: Make) -> None:
+def test_an_arm_may_stay_out_again(make: Make):
     world = make(FaultModel(arm_stays_out_again=1.0))
     assert call(world, "/retract")["success"]  # It was folded all the time.
     world.robot.arm.move(STRETCHED)
@@ -159,7 +158,7 @@ def test_an_arm_may_stay_out_again(make: Make) -> None:
     assert world.robot.arm.angles[3] > -2.3
 
 
-def test_the_same_seed_gives_the_same_world(make: Make, file: ArmadilloFile) -> None:
+def test_the_same_seed_gives_the_same_world(make: Make, file: ArmadilloFile):
     ends = []
     for _ in range(2):
         world = make(file.faults, seed=3)

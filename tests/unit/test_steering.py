@@ -49,7 +49,7 @@ def record(action: str, chosen_by: str, status: str = "") -> Any:
     return decision_record(0, action=action, chosen_by=chosen_by, outcome=outcome)
 
 
-def test_a_held_mission_waits_but_for_what_is_asked_for_and_the_steps_it_is_given() -> None:
+def test_a_held_mission_waits_but_for_what_is_asked_for_and_the_steps_it_is_given():
     held = steered(Steer("hold", by="ana"))
     assert held.waits
     one_more = held.after(Steer("step", by="ben"), is_holding=True)
@@ -61,39 +61,39 @@ def test_a_held_mission_waits_but_for_what_is_asked_for_and_the_steps_it_is_give
     assert not held.after(Steer("resume", by="ben"), is_holding=True).waits
 
 
-def test_a_step_of_a_mission_that_nobody_holds_holds_it_afterwards() -> None:
+def test_a_step_of_a_mission_that_nobody_holds_holds_it_afterwards():
     stepping = steered(Steer("step", by="ana"))
     assert not stepping.waits
     assert stepping.decided(record("look", "planner")).waits
 
 
-def test_hold_drops_what_was_asked_for() -> None:
+def test_hold_drops_what_was_asked_for():
     held = steered(script("look", "look"), Steer("hold", by="ana"))
     assert held.waits
     assert held.queue == ()
 
 
-def test_an_action_does_not_end_the_hold_for_a_skill() -> None:
+def test_an_action_does_not_end_the_hold_for_a_skill():
     acting = Steering().after(Steer("act", ("look",), by="ana"), is_holding=True)
     assert acting.decided(record("look", "operator")).waits
 
 
 @pytest.mark.parametrize(("status", "left"), [("observed", 1), ("failed", 0), ("unknown", 0)])
-def test_a_script_ends_where_an_action_brings_no_observation(status: str, left: int) -> None:
+def test_a_script_ends_where_an_action_brings_no_observation(status, left):
     running = steered(script("look", "go(to=a)"), Steer("act", ("go(to=b)",), by="ben", request="r"))
     after = running.decided(record("look", "script")).observed(record("look", "script", status))
     assert len(after.queue) == left + 1
     assert after.held_by == ("" if left else "the script of ana")
 
 
-def test_a_refused_action_drops_its_script_and_holds() -> None:
+def test_a_refused_action_drops_its_script_and_holds():
     running = steered(script("look", "go(to=a)"))
     after = running.refused(ActionRefused("look", "s", "why"))
     assert after.waits
     assert after.held_by == "the script of ana"
 
 
-def test_the_fold_of_a_journal_is_the_steering_of_the_mission() -> None:
+def test_the_fold_of_a_journal_is_the_steering_of_the_mission():
     steers: list[tuple[str, Message]] = [
         (STEERED, Steer("leave_out", name="look", by="ana", request="1")),
         (STEERED, Steer("leave_out", name="go(to=b)", by="ben", request="2")),
@@ -113,7 +113,7 @@ def test_the_fold_of_a_journal_is_the_steering_of_the_mission() -> None:
     assert steering.refusals["s"].why == "why"
 
 
-def test_a_hold_for_a_skill_is_over_once_somebody_has_resumed_the_mission() -> None:
+def test_a_hold_for_a_skill_is_over_once_somebody_has_resumed_the_mission():
     holding = MissionState("m", "holding", 1, 0.0)
     said: list[tuple[str, Message]] = [("mission", holding), (STEERED, Steer("leave_out", name="look"))]
     for verb, is_held in (("leave_out", True), ("resume", False)):
@@ -135,7 +135,7 @@ class Journal(QuietPorts):
         self.rows.append((kind, payload))
 
 
-def test_one_request_acts_once() -> None:
+def test_one_request_acts_once():
     journal = Journal()
     helm = Helm(Steering(), journal, lambda steering: None)
     step = Steer("step", by="ana", request="r")
@@ -154,7 +154,7 @@ def test_one_request_acts_once() -> None:
         (Steer("take_back", name="go"), "go is not left out"),
     ],
 )
-def test_what_cannot_be_done_is_refused_and_changes_nothing(steer: Steer, says: str) -> None:
+def test_what_cannot_be_done_is_refused_and_changes_nothing(steer, says):
     journal = Journal()
     helm = Helm(Steering(), journal, lambda steering: None)
     with pytest.raises(SteeringError, match=says) as refused:
@@ -164,7 +164,7 @@ def test_what_cannot_be_done_is_refused_and_changes_nothing(steer: Steer, says: 
     assert (journal.rows, helm.now) == ([], Steering())
 
 
-async def test_whoever_asks_for_an_action_hears_when_it_is_decided_for_or_why_not() -> None:
+async def test_whoever_asks_for_an_action_hears_when_it_is_decided_for_or_why_not():
     helm = Helm(Steering(), Journal(), lambda steering: None)
     for request in ("1", "2", "3"):
         helm.take(Steer("act", ("look",), by="ana", request=request), MODEL, is_holding=False)
@@ -185,7 +185,7 @@ async def test_whoever_asks_for_an_action_hears_when_it_is_decided_for_or_why_no
 @pytest.mark.parametrize(
     ("phase", "said"), [("waiting", "no mission has begun"), ("ended", "no mission runs")]
 )
-async def test_the_desk_says_whether_a_mission_is_over_or_has_not_begun(phase: str, said: str) -> None:
+async def test_the_desk_says_whether_a_mission_is_over_or_has_not_begun(phase, said):
     missions: Any = create_autospec(MissionRunner, instance=True)
     missions.running.return_value = None
     missions.state = MissionState("m", phase, 0, 0.0)

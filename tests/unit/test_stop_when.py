@@ -63,11 +63,11 @@ def findings(stop_when: str, rule: str = "near or __skill_status == 'stopped' or
         ("", "error AOS105 4:1 `stop_when:` has no expression"),
     ],
 )  # fmt: skip
-def test_what_can_be_told_from_the_document_is_told_at_its_place(stop_when: str, finding: str) -> None:
+def test_what_can_be_told_from_the_document_is_told_at_its_place(stop_when, finding):
     assert findings(stop_when) == [finding]
 
 
-def test_rules_that_look_at_the_result_alone_say_nothing_of_a_stop() -> None:
+def test_rules_that_look_at_the_result_alone_say_nothing_of_a_stop():
     (finding,) = findings("near", rule="found")
     assert finding.startswith("warning AOS116 4:12 no rule of look says what is observed")
     assert findings("near", rule="found or near") == []
@@ -81,11 +81,11 @@ def taken(stop_when: str, *messages: Any) -> list[Taken | Raised]:
     return [answer for answer in answers if isinstance(answer, Taken | Raised)]
 
 
-def test_it_holds_once() -> None:
+def test_it_holds_once():
     assert [answer.stops for answer in taken("near", False, True, False, True)] == [False, True, False, False]
 
 
-def test_of_several_messages_those_behind_the_one_that_stops_are_left() -> None:
+def test_of_several_messages_those_behind_the_one_that_stops_are_left():
     mapping = loaded(emitted(f"{HEAD}stop_when: near\n{NEAR}"))
     fields(mapping, {})
     messages = [("/near", {"data": data}) for data in (False, True, False)]
@@ -95,7 +95,7 @@ def test_of_several_messages_those_behind_the_one_that_stops_are_left() -> None:
     assert mapping.answer(Take(messages)) == Taken(2, stops=True)
 
 
-def test_it_is_not_asked_before_each_topic_that_it_reads_has_a_value() -> None:
+def test_it_is_not_asked_before_each_topic_that_it_reads_has_a_value():
     far = "local_variable: far\ntopic: /far\nmessage_type: Level\ncode:\nreturn __input.data\n"
     mapping = loaded(emitted(f"{HEAD}stop_when: near and far > 1\n{NEAR}{far}"))
     fields(mapping, {})
@@ -106,7 +106,7 @@ def test_it_is_not_asked_before_each_topic_that_it_reads_has_a_value() -> None:
     assert mapping.answer(Take([("/near", {"data": True})])) == Taken(1, stops=True)
 
 
-def test_truth_values_of_numpy_are_some_and_what_is_none_is_an_error_at_its_place() -> None:
+def test_truth_values_of_numpy_are_some_and_what_is_none_is_an_error_at_its_place():
     array = "imports: from: numpy import: bool_\n"
     mapping = loaded(emitted(f"{HEAD}{array}stop_when: bool_(near)\n{NEAR}"))
     fields(mapping, {})

@@ -15,12 +15,12 @@ FILES = {"pick.sd": b"cost:\n  __reward = -2;\n  double p = a-0.5 + 3; // odds\n
         ("cell[1,2].name = a:b : 1", Supposition("cell[1,2].name", "a:b", 1.0)),
     ],
 )
-def test_a_belief_has_a_variable_a_value_and_a_probability(text: str, meant: Supposition) -> None:
+def test_a_belief_has_a_variable_a_value_and_a_probability(text, meant):
     assert supposition_of(text) == meant
 
 
 @pytest.mark.parametrize("text", ["holding", "holding=true", "=true:0.5", "holding=true:1.5", "a=b:x"])
-def test_what_says_no_belief_is_refused_with_an_example(text: str) -> None:
+def test_what_says_no_belief_is_refused_with_an_example(text):
     with pytest.raises(StudyError) as caught:
         supposition_of(text)
     assert caught.value.code == "AOS530"
@@ -35,7 +35,7 @@ def test_what_says_no_belief_is_refused_with_an_example(text: str) -> None:
         ("pick.sd:3:22=1e3", "  double p = a-0.5 + 1e3; // odds", "pick.sd:3: 1e3 instead of 3"),
     ],
 )
-def test_a_number_of_a_line_becomes_another_one(change: str, line: str, said: str) -> None:
+def test_a_number_of_a_line_becomes_another_one(change, line, said):
     files, told = changed_files(FILES, [change])
     assert line in files["pick.sd"].decode().split("\n")
     assert told == (said,)
@@ -52,6 +52,6 @@ def test_a_number_of_a_line_becomes_another_one(change: str, line: str, said: st
         ("pick.sd:2=much", "changes no number"),
     ],
 )
-def test_what_changes_no_number_is_refused(change: str, said: str) -> None:
+def test_what_changes_no_number_is_refused(change, said):
     with pytest.raises(StudyError, match=said):
         changed_files(FILES, [change])

@@ -9,7 +9,7 @@ from aos_deploy import terminal
 
 def test_long_work_tells_a_log_now_and_then_how_far_it_is(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     now_s = 0.0
     monkeypatch.setattr("time.monotonic", lambda: now_s)
     with terminal.waiting("deciding") as tell:
@@ -25,9 +25,7 @@ def test_long_work_tells_a_log_now_and_then_how_far_it_is(
     [("latin-1", b"\xe9 ??"), ("ascii", b"? ??"), ("utf-8", b"\xc3\xa9 \xe2\x94\x83\\udcff")],
 )
 @pytest.mark.parametrize("errors", ["strict", "surrogateescape"])
-def test_what_an_output_cannot_write_does_not_end_the_command(
-    encoding: str, written: bytes, errors: str
-) -> None:
+def test_what_an_output_cannot_write_does_not_end_the_command(encoding, written, errors):
     """Python escapes surrogates where the locale is C."""
     raw = io.BytesIO()
     stream = io.TextIOWrapper(raw, encoding=encoding, errors=errors)

@@ -53,7 +53,7 @@ def call(world: TicTacToe, path: str, fields: dict[str, Any] | None = None) -> d
     return answer
 
 
-def test_what_the_pen_drew_and_the_other_one_marked_is_read_from_the_picture(make: Make) -> None:
+def test_what_the_pen_drew_and_the_other_one_marked_is_read_from_the_picture(make: Make):
     world = make()
     assert call(world, "/draw", {"cell": 0}) == {"success": True}
     assert call(world, "/draw", {"cell": 5})["success"]
@@ -63,14 +63,14 @@ def test_what_the_pen_drew_and_the_other_one_marked_is_read_from_the_picture(mak
     assert [cell for cell in range(9) if board[cell] == "O"] == [0, 5]
 
 
-def test_a_pen_that_does_not_write_leaves_the_middle_empty(make: Make) -> None:
+def test_a_pen_that_does_not_write_leaves_the_middle_empty(make: Make):
     world = make(faults=FaultModel(dry_centre=1.0))
     assert not call(world, "/draw", {"cell": 4})["success"]
     assert board_in(world.picture()) == rules.EMPTY_BOARD
     assert not world.is_robots_turn
 
 
-def test_whether_a_circle_is_there_is_told_by_a_picture_and_not_by_the_ink(make: Make) -> None:
+def test_whether_a_circle_is_there_is_told_by_a_picture_and_not_by_the_ink(make: Make):
     world = make()
     picture, hidden = world.picture, []
 
@@ -84,37 +84,37 @@ def test_whether_a_circle_is_there_is_told_by_a_picture_and_not_by_the_ink(make:
     assert board_in(hidden[0]) == world.marks
 
 
-def test_the_other_one_may_begin(make: Make) -> None:
+def test_the_other_one_may_begin(make: Make):
     world = make(begins="person")
     board = call(world, "/look")["board"]
     assert board.count("X") == 1
     assert board.count("O") == 0
 
 
-def test_boards_are_read_right_in_any_light_from_about_anywhere(file: TicTacToeFile) -> None:
+def test_boards_are_read_right_in_any_light_from_about_anywhere(file: TicTacToeFile):
     for seed in range(6):
         world = random_board(file, seed)
         assert board_in(world.picture()) == world.marks
         world.scene.close()
 
 
-def test_a_picture_without_a_board_has_none() -> None:
+def test_a_picture_without_a_board_has_none():
     assert board_in(np.full((360, 480, 3), 90, np.uint8)) is None
 
 
-def test_marks_may_be_there_before_the_game(make: Make) -> None:
+def test_marks_may_be_there_before_the_game(make: Make):
     world = make(moves_made={3: 1.0})
     assert sorted(world.marks.replace("?", "")) == ["O", "X", "X"]
     before = world.marks
     assert call(world, "/look")["board"] == before
 
 
-def test_a_cell_that_is_none_is_refused(make: Make) -> None:
+def test_a_cell_that_is_none_is_refused(make: Make):
     with pytest.raises(ValueError, match="there is no cell 9"):
         call(make(), "/draw", {"cell": 9})
 
 
-def test_a_perfect_player_never_loses() -> None:
+def test_a_perfect_player_never_loses():
     chance = random.Random(1)
     for _ in range(50):
         board, mark = rules.EMPTY_BOARD, "O"
@@ -133,18 +133,16 @@ def test_a_perfect_player_never_loses() -> None:
         ("XXOXOOXOX", True, "X"),
     ],
 )
-def test_by_the_rules_for_corners_the_board_is_filled_and_pairs_count(
-    board: str, ended: bool, won: str | None
-) -> None:
+def test_by_the_rules_for_corners_the_board_is_filled_and_pairs_count(board, ended, won):
     assert (rules.is_over(board, "corners"), rules.winner(board, "corners")) == (ended, won)
 
 
-def test_a_perfect_player_of_corners_takes_the_last_pair() -> None:
+def test_a_perfect_player_of_corners_takes_the_last_pair():
     assert rules.best_moves("XO?XOOOXX", "X", "corners") == [2]
     assert rules.best_moves("?O?XOXOXO", "X", "corners") == [0, 2]
 
 
-def test_by_the_rules_for_corners_somebody_draws_after_three_in_a_row(make: Make) -> None:
+def test_by_the_rules_for_corners_somebody_draws_after_three_in_a_row(make: Make):
     world = make(rules="corners")
     world.marks, world.is_robots_turn = "OOO?X???X", False
     call(world, "/look")
@@ -155,7 +153,7 @@ def test_by_the_rules_for_corners_somebody_draws_after_three_in_a_row(make: Make
     assert world.marks.count("X") == 2
 
 
-def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
+def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make):
     world = make()
     person = PersonAtTerminal(0, world.scene)
     said: list[str] = []
@@ -187,9 +185,7 @@ def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
         ("OO?XX??OX", "/look", "O O 3\nX X X\n7 O X\nYou have won."),
     ],
 )
-def test_play_shows_a_person_the_last_board_and_who_has_won(
-    make: Make, marks: str, skill: str, last: str
-) -> None:
+def test_play_shows_a_person_the_last_board_and_who_has_won(make: Make, marks, skill, last):
     world = make(opponent="person", port=0)
     person = world._opponent
     assert isinstance(person, PersonAtTerminal)
@@ -198,7 +194,6 @@ def test_play_shows_a_person_the_last_board_and_who_has_won(
     playing = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
-    assert playing.stdin is not None
     assert playing.stdout is not None
     assert any(line.startswith("Connected.") for line in playing.stdout)
     playing.stdin.write("6\n")
@@ -215,7 +210,7 @@ def test_play_shows_a_person_the_last_board_and_who_has_won(
     assert playing.returncode == 0
 
 
-def test_a_person_who_ends_the_terminals_input_leaves() -> None:
+def test_a_person_who_ends_the_terminals_input_leaves():
     ours, theirs = pty.openpty()
     with socket.create_server(("127.0.0.1", 0)) as listener:
         listener.settimeout(HANG_S)

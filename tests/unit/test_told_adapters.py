@@ -40,7 +40,7 @@ def settings_of(words: list[str], environment: dict[str, str]) -> AdapterSetting
     return settings
 
 
-def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str], tmp_path: Path) -> None:
+def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str], tmp_path: Path):
     settings = settings_of(["my_arm.adapter:Arm", "port=/dev/ttyUSB0", "baud=9600", "slow=true"], written)
     assert (settings.adapter, settings.folder) == ("my_arm.adapter:Arm", str(Path.cwd()))
     assert settings.bind == {"/pick": Binding(target="grasp")}
@@ -49,12 +49,12 @@ def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str]
     assert settings.options == {"command": ["python"], "port": "/dev/ttyUSB0", "baud": 9600, "slow": True}
 
 
-def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]) -> None:
+def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]):
     settings = settings_of(["drivers/arm.py:Arm"], written)
     assert (settings.adapter, settings.folder) == ("arm:Arm", str(Path.cwd() / "drivers"))
 
 
-def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     settings = settings_of(["arm:Arm"], HERE)
     assert settings.serves_others
@@ -66,7 +66,7 @@ def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, 
 
 def test_on_another_host_it_keeps_its_ledger_there(
     written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     settings = settings_of(["arm:Arm"], {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"})
     assert settings.run_dir == str(tmp_path / f"aos-{os.getuid()}" / "20260101T000000Z-fetch")
@@ -75,7 +75,7 @@ def test_on_another_host_it_keeps_its_ledger_there(
 
 def test_nobody_else_has_the_folder_of_the_ledger(
     written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     folder, there = tmp_path / f"aos-{os.getuid()}", {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"}
     folder.mkdir(mode=0o777)
@@ -87,13 +87,13 @@ def test_nobody_else_has_the_folder_of_the_ledger(
         settings_told(["arm:Arm"], there)
 
 
-def test_a_settings_file_is_left_to_the_service() -> None:
+def test_a_settings_file_is_left_to_the_service():
     assert settings_told(["arm.json"], HERE) is None
 
 
 def test_an_adapter_whose_file_is_no_python_is_told_with_its_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     (tmp_path / "unfinished_arm.py").write_text(
         "class Arm:\n    def start(self):\n        await self.serve()\n"
     )
@@ -127,8 +127,8 @@ class Arm:
     ],
 )
 def test_a_class_that_is_no_adapter_is_told_before_it_serves(
-    name: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    name, message, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     (tmp_path / "odd_arms.py").write_text(ODD_ADAPTERS)
     monkeypatch.syspath_prepend(tmp_path)
     host: Any = None

@@ -41,7 +41,7 @@ def go(world: Turtlebot, x: float, y: float) -> bool:
     return bool(answer["success"])
 
 
-def test_it_drives_around_a_block_to_its_goal(make: Make) -> None:
+def test_it_drives_around_a_block_to_its_goal(make: Make):
     world = make()
     assert go(world, -1.6, -0.5)
     assert go(world, -1.5, 1.0)
@@ -51,7 +51,7 @@ def test_it_drives_around_a_block_to_its_goal(make: Make) -> None:
     assert straight < world.way_m < straight + 0.4
 
 
-def test_a_crate_on_no_map_is_seen_and_the_place_under_it_reported_as_failed(make: Make) -> None:
+def test_a_crate_on_no_map_is_seen_and_the_place_under_it_reported_as_failed(make: Make):
     world = make(crates={"l1": Crate(-1.6, -0.5)})
     assert not go(world, -1.6, -0.5)
     assert world.visits == []
@@ -60,7 +60,7 @@ def test_a_crate_on_no_map_is_seen_and_the_place_under_it_reported_as_failed(mak
     assert {contact[2] for contact in contacts} == {floor}
 
 
-def test_the_record_says_what_was_asked_and_which_places_were_missed(make: Make) -> None:
+def test_the_record_says_what_was_asked_and_which_places_were_missed(make: Make):
     places = {"l1": Place(-1.6, -0.5), "l2": Place(-1.5, 1.0), "l3": Place(-0.5, 1.6)}
     world = make(places=places, crates={"l3": Crate(-0.5, 1.6)})
     assert go(world, -1.6, -0.5)
@@ -71,19 +71,19 @@ def test_the_record_says_what_was_asked_and_which_places_were_missed(make: Make)
     assert record["repeated"] == []
 
 
-def test_a_crate_in_the_way_is_gone_around(make: Make) -> None:
+def test_a_crate_in_the_way_is_gone_around(make: Make):
     world = make(crates={"in the way": Crate(-1.68, -1.1, half=0.1)})
     assert go(world, -1.6, -0.5)
     assert world.visits == ["l1"]
 
 
-def test_from_beside_a_crate_it_drives_away(make: Make) -> None:
+def test_from_beside_a_crate_it_drives_away(make: Make):
     world = make(crates={"beside": Crate(-1.44, -1.7)})
     assert go(world, -1.6, -0.5)
     assert world.visits == ["l1"]
 
 
-def test_while_it_turns_it_sees_nothing_but_what_is_on_the_map(make: Make) -> None:
+def test_while_it_turns_it_sees_nothing_but_what_is_on_the_map(make: Make):
     """Whoever else reads the lidar, too."""
     world = make()
     world.robot.drive.command(0.0, 2.0)
@@ -94,13 +94,13 @@ def test_while_it_turns_it_sees_nothing_but_what_is_on_the_map(make: Make) -> No
         assert world.floor_map.distance(world.robot.seen_points()).max() < UNMAPPED_M
 
 
-def test_a_lost_report_says_failed_where_the_robot_arrived(make: Make) -> None:
+def test_a_lost_report_says_failed_where_the_robot_arrived(make: Make):
     world = make(faults=FaultModel(lost_report=1.0))
     assert not go(world, -1.65, -1.5)
     assert math.dist(world.robot.true_place[:2], (-1.65, -1.5)) < 0.08
 
 
-def test_the_lidar_measures_the_walls(make: Make) -> None:
+def test_the_lidar_measures_the_walls(make: Make):
     world = make(obstacles=[])
     ranges = world.robot.ranges_m()
     x, y, yaw = world.robot.true_place
@@ -112,19 +112,18 @@ def test_the_lidar_measures_the_walls(make: Make) -> None:
     assert behind == pytest.approx(2.0 + lidar_y, abs=0.02)
 
 
-def test_a_place_that_no_way_leads_to_has_none() -> None:
+def test_a_place_that_no_way_leads_to_has_none():
     wall = (0.0, 0.0, 0.1, 2.0)
     floor_map = FloorMap((0.0, 0.0, 2.0, 2.0), [wall], 0.14)
     assert floor_map.way((-1.0, 0.0), (1.0, 0.0)) is None
     assert floor_map.way((-1.0, 0.0), (0.0, 0.0)) is None
     way = floor_map.way((-1.0, -1.0), (-1.0, 1.0))
-    assert way is not None
     assert way[0] == (-1.0, -1.0)
     assert way[-1] == (-1.0, 1.0)
     assert floor_map.is_free(np.array(way))
 
 
-def test_the_same_seed_drives_the_same_way(make: Make) -> None:
+def test_the_same_seed_drives_the_same_way(make: Make):
     noisy = FaultModel(place_noise_m=0.01, yaw_noise_rad=0.01)
     places = []
     for _ in range(2):

@@ -8,7 +8,7 @@ from aos_protocol.errors import DeployError
 from aos_skills.pybullet.world_file import load_world_file
 
 
-def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path) -> None:
+def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path):
     world = load_world_file(root / "deploy/worlds/armadillo.yaml").room
     hard = world.tables["hard"].can
     easy = world.tables["easy"].can
@@ -24,7 +24,7 @@ def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path) -> None:
         ("kind: armadillo", "", "has no `kind`. Give one of armadillo"),
     ],
 )
-def test_a_mistake_is_named(root: Path, tmp_path: Path, old: str, new: str, complaint: str) -> None:
+def test_a_mistake_is_named(root: Path, tmp_path: Path, old, new, complaint):
     text = (root / "deploy/worlds/armadillo.yaml").read_text()
     assert old in text
     path = tmp_path / "world.yaml"
@@ -34,6 +34,6 @@ def test_a_mistake_is_named(root: Path, tmp_path: Path, old: str, new: str, comp
     assert "world.yaml" in str(error.value)
 
 
-def test_a_missing_world_is_named(tmp_path: Path) -> None:
+def test_a_missing_world_is_named(tmp_path: Path):
     with pytest.raises(DeployError, match=r"nowhere\.yaml"):
         load_world_file(tmp_path / "nowhere.yaml")

@@ -23,8 +23,8 @@ pytestmark = pytest.mark.physics
     ],
 )
 def test_numbers_that_cannot_be_are_told_with_their_place(
-    root: Path, tmp_path: Path, world: str, before: str, after: str, place: str
-) -> None:
+    root: Path, tmp_path: Path, world, before, after, place
+):
     text = (root / f"deploy/worlds/{world}.yaml").read_text()
     assert before in text
     (tmp_path / "world.yaml").write_text(text.replace(before, after))
