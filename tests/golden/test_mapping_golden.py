@@ -29,8 +29,8 @@ def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path):
     assert [mapping.python for mapping in emit_project(rough)] == [mapping.python for mapping in emit_project(finer)]
 
 
-def test_a_json_mapping_with_every_construct_is_generated_as_stored():
-    compare(EXPECTED / "valves", EXPECTED / "valves")
+def test_a_json_mapping_with_every_construct_is_generated_as_stored(root: Path):
+    compare(root / "docs" / "examples" / "kettle-json", EXPECTED / "kettle")
 
 
 def test_the_mapping_of_a_monitor_is_generated_as_stored():

@@ -3,9 +3,9 @@
 import io
 import json
 
-import msgspec
 import pytest
 from decision_records import decision_record
+from msgspec.structs import replace
 from rich.console import Console
 
 from aos_deploy.commands import decisions
@@ -46,7 +46,7 @@ DECISION = decision_record(
     threads=2,
 )
 OUTCOME = Outcome(ActivationId("m", 1), "pick", "observed", "pick_succeeded")
-OBSERVED = msgspec.structs.replace(DECISION, sequence=1, outcome=OUTCOME, surprise=0.5)
+OBSERVED = replace(DECISION, sequence=1, outcome=OUTCOME, surprise=0.5)
 REFUSED = BundleReport(
     "armadillo",
     False,
@@ -70,29 +70,27 @@ EVENTS: tuple[Event, ...] = (
 
 
 def test_a_decision_without_simulations_says_that_nothing_was_searched():
-    record = msgspec.structs.replace(DECISION, planner="sarsop", simulations=0, threads=1)
+    record = replace(DECISION, planner="sarsop", simulations=0, threads=1)
     assert decision_line(record).endswith("]  sarsop without a search in 0.25 s")
 
 
 def test_a_decision_for_less_than_the_best_value_says_why():
     serve = ActionValue("serve", 5.0, 100, 0.5)
     why = "serve cannot be chosen now: no adapter answers calls of /serve"
-    record = msgspec.structs.replace(DECISION, actions=(serve, *DECISION.actions[1:]), why=why)
+    record = replace(DECISION, actions=(serve, *DECISION.actions[1:]), why=why)
     assert decision_line(record).endswith(f"  ({why})")
-    assert why not in decision_line(msgspec.structs.replace(DECISION, why=why))
+    assert why not in decision_line(replace(DECISION, why=why))
 
 
 def test_an_action_that_was_not_tried_stands_last_with_no_value():
     untried = ActionValue("serve", 9.0, 0, 1.36)
-    record = msgspec.structs.replace(DECISION, actions=(untried, *DECISION.actions[1:]))
+    record = replace(DECISION, actions=(untried, *DECISION.actions[1:]))
     assert "[pick +2.71 ± 0.04, serve -]" in decision_line(record)
 
 
 def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others():
-    actions = tuple(
-        msgspec.structs.replace(DECISION.actions[0], action=f"a{i}", q=float(i)) for i in range(9)
-    )
-    record = msgspec.structs.replace(DECISION, actions=actions)
+    actions = tuple(replace(DECISION.actions[0], action=f"a{i}", q=float(i)) for i in range(9))
+    record = replace(DECISION, actions=actions)
     line = decision_line(record)
     assert "[a8 +8.00" in line
     assert "a3 +3.00 ± 0.50, 3 more]" in line
@@ -125,33 +123,33 @@ def test_a_removal_that_is_refused_is_told_with_its_project(capsys: pytest.Captu
 
 
 def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]):
-    worse = msgspec.structs.replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
-    PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
+    worse = replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
+    PlainView()(replace(OBSERVED, belief=worse))
     assert "goal 0.100  failure 0.250\n" in capsys.readouterr().out
 
 
 def test_the_goal_without_what_nobody_observed_is_told_where_it_differs(capsys: pytest.CaptureFixture[str]):
-    worse = msgspec.structs.replace(BELIEF, cautious=EndingOdds(0.0, 0.0, 0.0))
-    PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
+    worse = replace(BELIEF, cautious=EndingOdds(0.0, 0.0, 0.0))
+    PlainView()(replace(OBSERVED, belief=worse))
     assert "goal 0.100 (cautious 0.000)\n" in capsys.readouterr().out
 
 
 def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]):
     lost = Outcome(OUTCOME.id, "pick", "timed_out", fault=Fault("AOS503", "no answer within 9 s"))
-    PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
+    PlainView()(replace(OBSERVED, outcome=lost))
     assert "pick -> timed_out (no answer within 9 s)" in capsys.readouterr().out
 
 
 def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(capsys: pytest.CaptureFixture[str]):
     lost = Outcome(OUTCOME.id, "pick", "failed", fault=Fault("AOS510", "no\nmap \x1b[31m"))
-    PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
+    PlainView()(replace(OBSERVED, outcome=lost))
     assert "pick -> failed (no map  [31m)" in capsys.readouterr().out
-    (reason,) = decisions._reason(msgspec.structs.replace(DECISION, why="\x1b[2J", planner="pomcp"))
+    (reason,) = decisions._reason(replace(DECISION, why="\x1b[2J", planner="pomcp"))
     assert reason.isprintable()
 
 
 def test_an_empty_text_as_a_response_is_seen(capsys: pytest.CaptureFixture[str]):
-    PlainView()(msgspec.structs.replace(OBSERVED, outcome=msgspec.structs.replace(OUTCOME, response="")))
+    PlainView()(replace(OBSERVED, outcome=replace(OUTCOME, response="")))
     assert 'pick -> ""  surprise' in capsys.readouterr().out
 
 
@@ -234,15 +232,15 @@ def test_the_screen_shows_steps_values_and_belief_bars():
 def test_a_number_with_many_values_is_shown_by_median_and_range(width):
     depth = Marginal("depth", {"1.234": 0.001}, 0.999, (0.512, 1.0, 1.5, 2.0, 2.468))
     screen = Screen("armadillo")
-    belief = msgspec.structs.replace(OBSERVED.belief, marginals=(depth,))
-    screen.take(msgspec.structs.replace(OBSERVED, belief=belief))
+    belief = replace(OBSERVED.belief, marginals=(depth,))
+    screen.take(replace(OBSERVED, belief=belief))
     text = shown(screen, width, 24)
     assert "0.512 to 2.47" in text
     assert "1.234" not in text
 
 
 PLACES = ("easy_table", "hard_table", "corridor", "kitchen", "charger", "store")
-MANY = msgspec.structs.replace(
+MANY = replace(
     OBSERVED,
     action="navigate(destination=corridor)",
     actions=tuple(
@@ -262,7 +260,7 @@ def small_screen() -> Screen:
     for name in ("router", "registry", "middleware", "turtlebot_waffle", "solver"):
         screen.take(ServiceChanged(name, "ready", 0.5))
     for step in range(1, 13):
-        screen.take(msgspec.structs.replace(MANY, step=step, remark="held" if step == 11 else ""))
+        screen.take(replace(MANY, step=step, remark="held" if step == 11 else ""))
     screen.take(MissionState("m", "acting", 12, 0.993, remark="navigate(destination=corridor)"))
     return screen
 
@@ -286,7 +284,7 @@ def test_the_screen_keeps_to_the_terminal(width, height):
 def test_actions_that_differ_in_their_middle_are_told_apart_in_a_narrow_terminal():
     actions = tuple(ActionValue(f"take(side={side}_side)", 1.0, 10, 0.1) for side in ("left", "right"))
     screen = small_screen()
-    screen.take(msgspec.structs.replace(MANY, step=13, actions=actions, action=actions[0].action))
+    screen.take(replace(MANY, step=13, actions=actions, action=actions[0].action))
     words = shown(screen, 40, 24).split()
     assert {"take(l…de)", "take(r…de)", "take(left_side)", "0.993"} <= set(words)
 
@@ -342,8 +340,8 @@ def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch
 
 def test_the_screen_says_what_was_remarkable_about_a_step():
     screen = Screen("armadillo")
-    screen.take(msgspec.structs.replace(OBSERVED, remark="the local variables do not correct the belief"))
-    screen.take(msgspec.structs.replace(DECISION, sequence=2, step=2))
+    screen.take(replace(OBSERVED, remark="the local variables do not correct the belief"))
+    screen.take(replace(DECISION, sequence=2, step=2))
     assert "step 1: the local variables do not correct the belief" in shown(screen)
 
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
+from msgspec.structs import replace
 
 from aos_skills.pybullet.parts.place import Place
 from aos_skills.pybullet.world_file import load_world_file
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.physics
 def file(root: Path) -> CleanLabFile:
     """The shipped laboratory, without faults."""
     room: CleanLabFile = load_world_file(root / "deploy/worlds/cleanlab.yaml").room
-    return msgspec.structs.replace(room, faults=FaultModel())
+    return replace(room, faults=FaultModel())
 
 
 def call(world: CleanLab, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
@@ -37,7 +37,7 @@ def go(world: CleanLab, place: Place) -> None:
 
 def at_station(file: CleanLabFile, name: str) -> CleanLabFile:
     """The robot stands there from the beginning."""
-    return msgspec.structs.replace(file, robot=file.stations[name])
+    return replace(file, robot=file.stations[name])
 
 
 def test_a_cup_is_seen_picked_and_taken_to_a_bin(file: CleanLabFile):
@@ -87,7 +87,7 @@ def test_at_an_empty_station_nothing_is_seen_and_nothing_picked(file: CleanLabFi
 
 
 def test_glare_hides_a_cup_and_a_ghost_shows_one(file: CleanLabFile):
-    faulty = msgspec.structs.replace(file, faults=FaultModel(glare=1.0, ghost=1.0))
+    faulty = replace(file, faults=FaultModel(glare=1.0, ghost=1.0))
     name = filled_stations(file, 1)[0]
     empty = next(station for station in file.stations if station not in filled_stations(file, 1))
     assert call(CleanLab(at_station(faulty, name), 1), "/look") == {"is_there": False}

@@ -6,6 +6,7 @@ import msgspec
 import pytest
 from decision_records import decision_record
 from drift_truth import BELIEF, SKILLS, alarm_of, silent, use
+from msgspec.structs import replace
 
 from aos_protocol.messages import ActivationId, DriftTests, Outcome, PredictedObservation
 from aos_runtime.disk.journal import JournalRow
@@ -68,14 +69,14 @@ def test_what_the_model_excludes_alarms_at_once_where_it_comes_again():
 
 
 def test_a_belief_that_was_sampled_has_the_benefit_of_the_doubt():
-    sampled = msgspec.structs.replace(BELIEF, error_bound=1.0, effective_states=100.0)
+    sampled = replace(BELIEF, error_bound=1.0, effective_states=100.0)
     tests = begun("d", {"pick": [*RIGHT]})
     predicted = tuple(PredictedObservation(name, odds) for name, odds in RIGHT.items())
     decision = decision_record(0, skill="pick", model_digest="d", predicted=predicted, belief=sampled)
     for number in range(300):
         response = "taken" if number % 20 < 17 else "missed"  # 0.85, within three standard errors
         outcome = Outcome(ActivationId("m", 1), "pick", "observed", response)
-        tests = after_use(tests, decision, msgspec.structs.replace(decision, outcome=outcome))
+        tests = after_use(tests, decision, replace(decision, outcome=outcome))
     assert drifts(tests, tests, "pick") == ()
 
 
@@ -87,8 +88,8 @@ def test_a_belief_that_was_sampled_has_the_benefit_of_the_doubt():
 def test_what_says_nothing_about_the_model_is_not_tested(changes):
     tests = begun("d", {"pick": [*RIGHT]})
     decision = decision_record(0, skill="pick", model_digest="d")
-    outcome = msgspec.structs.replace(Outcome(ActivationId("m", 1), "pick", "observed", "taken"), **changes)
-    assert after_use(tests, decision, msgspec.structs.replace(decision, outcome=outcome)) == tests
+    outcome = replace(Outcome(ActivationId("m", 1), "pick", "observed", "taken"), **changes)
+    assert after_use(tests, decision, replace(decision, outcome=outcome)) == tests
 
 
 def test_two_responses_are_one_test_and_one_response_is_none():
@@ -105,7 +106,7 @@ def test_the_tests_of_a_mission_are_the_fold_of_its_journal():
     for step in (1, 2):
         decision = decision_record(2 * step - 2, model_digest="d", predicted=predicted, belief=BELIEF)
         outcome = Outcome(ActivationId("m", step), "look", "observed", "left")
-        done = msgspec.structs.replace(decision, sequence=2 * step - 1, outcome=outcome)
+        done = replace(decision, sequence=2 * step - 1, outcome=outcome)
         tests = after_use(tests, decision, done)
         rows += [("decision", decision), ("decision", done)]
     journal = [JournalRow(n, 0, kind, msgspec.json.encode(each)) for n, (kind, each) in enumerate(rows, 1)]

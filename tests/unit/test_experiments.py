@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-import msgspec
 import pytest
+from msgspec.structs import replace
 
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_lab.experiments.optimum import Optimum, regret_of
@@ -96,7 +96,7 @@ def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_
 
 
 def test_a_part_whose_optimum_cannot_be_worked_out_says_why_beside_the_others(tmp_path: Path):
-    part = msgspec.structs.replace(part_of("model"), no_optimum="what is observed are numbers")
+    part = replace(part_of("model"), no_optimum="what is observed are numbers")
     page, _ = write_report(results_of(part), {}, tmp_path)
     assert "| one | 3 |  |  | what is observed are numbers |  |  |" in page.read_text()
 
@@ -110,7 +110,7 @@ def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path):
 
 
 def test_less_and_greater_in_a_text_are_text_in_the_page(tmp_path: Path):
-    results = msgspec.structs.replace(results_of(part_of("model")), about="value <b of it> is small")
+    results = replace(results_of(part_of("model")), about="value <b of it> is small")
     _, whole = write_report(results, {}, tmp_path)
     assert "value &lt;b of it&gt; is small" in whole.read_text()
 

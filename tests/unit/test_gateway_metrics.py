@@ -2,8 +2,8 @@
 
 from typing import Any
 
-import msgspec
 from decision_records import decision_record
+from msgspec.structs import replace
 
 from aos_gateway.metrics.exposition import Counter, Histogram, exposition
 from aos_gateway.metrics.families import Families
@@ -74,10 +74,8 @@ def test_surprise_is_that_of_observations_and_an_impossible_one_is_counted_apart
 def test_a_refusal_because_another_skill_may_move_is_no_failure_of_the_one_refused():
     record = observed(1, "refused")
     assert record.outcome is not None
-    outcome = msgspec.structs.replace(record.outcome, fault=Fault("AOS512", "/take may still be moving"))
-    assert not [
-        name for name in counted(msgspec.structs.replace(record, outcome=outcome)) if "failures" in name
-    ]
+    outcome = replace(record.outcome, fault=Fault("AOS512", "/take may still be moving"))
+    assert not [name for name in counted(replace(record, outcome=outcome)) if "failures" in name]
 
 
 def test_an_alarm_of_drift_counts_when_it_begins_and_not_while_it_stands():

@@ -1,8 +1,8 @@
 """The decisions of lowering, and what it refuses."""
 
-import msgspec
 import pytest
 from mappings import mapping_of_model, mapping_text
+from msgspec.structs import replace
 from scripted_models import json_text, text_project
 
 from aos_protocol.diagnostics import Diagnostic
@@ -117,23 +117,23 @@ def test_a_state_given_an_observation_takes_the_local_variables_that_it_names():
 def test_a_local_variable_of_a_state_variables_name_and_type_is_told():
     project = project_of("__reward = 1;")
     skill = project.skills[0]
-    variable = msgspec.structs.replace(skill.mapping.local_variables[0], name="total", type="int")
-    mapping = msgspec.structs.replace(skill.mapping, local_variables=(variable,))
-    shadowed = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=mapping),))
+    variable = replace(skill.mapping.local_variables[0], name="total", type="int")
+    mapping = replace(skill.mapping, local_variables=(variable,))
+    shadowed = replace(project, skills=(replace(skill, mapping=mapping),))
     assert program_of(shadowed).skills[0].reported == ("total",)
-    untyped = msgspec.structs.replace(mapping, local_variables=(msgspec.structs.replace(variable, type=""),))
-    project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=untyped),))
+    untyped = replace(mapping, local_variables=(replace(variable, type=""),))
+    project = replace(project, skills=(replace(skill, mapping=untyped),))
     assert program_of(project).skills[0].reported == ()
 
 
 def test_names_that_cpp_needs_are_refused_at_their_places():
     project = project_of()
     variables = tuple(
-        msgspec.structs.replace(variable, name="operator" if variable.name == "total" else variable.name)
+        replace(variable, name="operator" if variable.name == "total" else variable.name)
         for variable in project.environment.variables
     )
-    environment = msgspec.structs.replace(project.environment, variables=variables)
-    found = errors_of(msgspec.structs.replace(project, environment=environment))
+    environment = replace(project.environment, variables=variables)
+    found = errors_of(replace(project, environment=environment))
     assert [(d.code, d.span) for d in found] == [("AOS126", variables[-1].span)]
 
 
@@ -149,9 +149,9 @@ def test_code_that_could_leave_its_function_is_refused():
     skill = project.skills[0]
     block = skill.model.dynamic_model[0]
     assert block.code is not None
-    code = msgspec.structs.replace(block.code, code="} void escaped() {")
-    model = msgspec.structs.replace(skill.model, dynamic_model=(msgspec.structs.replace(block, code=code),))
-    project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, model=model),))
+    code = replace(block.code, code="} void escaped() {")
+    model = replace(skill.model, dynamic_model=(replace(block, code=code),))
+    project = replace(project, skills=(replace(skill, model=model),))
     assert {d.code for d in errors_of(project)} == {"AOS108"}
 
 

@@ -11,6 +11,7 @@ from mapping_runs import HEAD, emitted_with
 from msgspec.structs import replace
 
 from aos_language.findings import Findings
+from aos_language.load import load_files, read_bundle_files
 from aos_language.reading.files import read_documents
 from aos_middleware.emission.emit import emit_mapping
 from aos_middleware.mappings.revisions import emit_project
@@ -206,15 +207,24 @@ def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path)
     assert source[span.line - 1][span.column - 1 :].startswith("min(__input.left_force_n")
 
 
+def kettle(old: bytes, new: bytes) -> dict[str, bytes]:
+    """The language page's documents after a change of the mapping."""
+    files = read_bundle_files(Path(__file__).parents[2] / "docs" / "examples" / "kettle-json")[0]
+    assert old in files[GLUE]
+    return files | {GLUE: files[GLUE].replace(old, new)}
+
+
+GLUE = "pour glue.json"
+
+
 def test_each_line_of_a_snippet_knows_its_line_and_column_in_a_json_document():
-    folder = Path(__file__).parents[1] / "golden" / "python" / "valves"
-    (mapping,) = emit_project(project_in(folder))
-    source = (folder / "inspect_valve glue.json").read_text().splitlines()
-    lines = mapping.python.splitlines()
-    for code in ("sizes if drop", "number=number)", "or alarm_text", "LEAK", "math.atan2"):
+    files = kettle(b"(success or", rb"(success\n    or")
+    (mapping,) = emit_project(load_files(files).project)
+    source, lines = files[GLUE].decode().splitlines(), mapping.python.splitlines()
+    for code in ("grams > 150", "return True", "(success", "or __skill_status", "handle.x,"):
         generated = next(index for index, line in enumerate(lines) if code in line)
         span = mapping.locate(generated + 1, lines[generated].index(code) + 1)
-        assert source[span.line - 1][span.column - 1 :].startswith(code)
+        assert source[span.line - 1][span.column - 1 :].startswith(code.rstrip(","))
 
 
 def test_generated_lines_stand_for_the_document_part_that_made_them():
@@ -253,15 +263,10 @@ return 3
 
 
 def test_a_mistake_in_a_json_document_is_found_at_its_line_and_column():
-    folder = Path(__file__).parents[1] / "golden" / "python" / "valves"
-    files = {path.name: path.read_bytes() for path in folder.glob("*.json")}
-    name = "inspect_valve glue.json"
-    files[name] = files[name].replace(b"is_done and drops == 0", b"is_done and and drops == 0")
-    mapping = read_documents(files, Findings())[name].content
-    assert isinstance(mapping, AbstractionMapping)
-    (mistake,) = refusal_of(mapping).diagnostics
-    source = files[name].decode().splitlines()
-    assert source[mistake.span.line - 1][mistake.span.column - 1 :].startswith("and drops")
+    files = kettle(b"is_full and (", b"is_full and and (")
+    (mistake,) = refusal_of(read_documents(files, Findings())[GLUE].content).diagnostics
+    source = files[GLUE].decode().splitlines()
+    assert source[mistake.span.line - 1][mistake.span.column - 1 :].startswith("and (")
 
 
 def test_what_only_shows_in_the_whole_module_is_found_too():

@@ -15,8 +15,6 @@ from aos_middleware.workers.worker import LoadedMapping
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import LowLevelConstant, LowLevelDocument, Snippet
 
-VALVES = Path(__file__).parents[1] / "golden" / "python" / "valves"
-
 
 def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
     project = project_in(corpus / bundle)
@@ -230,14 +228,9 @@ board = __input.state
 # --- imports and low-level values ---
 
 
-def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value():
-    (emission,) = emit_project(project_in(VALVES))
-    parameters = {"oStand": {"number": 2, "place": "___place_a"}}
-    assert fields(loaded(emission), parameters) == {
-        "goal": {"x": 1.5, "y": 3.0, "z": 0.0},
-        "heading_rad": pytest.approx(1.1071487),
-        "options": {"lamp": True, "number": 2},
-    }
+def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value(root: Path):
+    (emission,) = emit_project(project_in(root / "docs" / "examples" / "kettle-json"))
+    assert fields(loaded(emission), {"cup": {"handle": "___left_handle"}}) == {"x": 0.3}
 
 
 def test_what_one_activation_does_to_a_constant_does_not_reach_the_next():

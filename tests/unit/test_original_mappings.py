@@ -33,12 +33,13 @@ def emitted(*mappings: dict[str, Any]) -> tuple[EmittedMapping, ...]:
     return emit_project(bundle.project)
 
 
-TO_HOME = {"to": {"pose": "___home"}}
+CUP = {"cup": {"handle": "___left_handle"}}
+GRIPPED = {"success": True, "grip": 1}
 
 
 def test_an_empty_condition_always_holds(mapping: dict[str, Any]):
-    (go,) = emitted(mapping)
-    assert observed(loaded(go), TO_HOME, [], {"success": False}).response == "eFailed"
+    (pour,) = emitted(mapping)
+    assert observed(loaded(pour), CUP, [], {**GRIPPED, "success": False}).response == "spilt"
 
 
 @pytest.mark.parametrize("name", ["e Done", "e*"])
@@ -50,48 +51,47 @@ def test_a_response_is_a_word(mapping: dict[str, Any], name):
 
 @pytest.mark.parametrize("type_name", [None, "Bool", "bool", "int[]"])
 def test_the_type_of_a_variable_changes_nothing_of_its_value(mapping: dict[str, Any], type_name):
-    done = mapping["LocalVariablesInitialization"][1]
-    del done["VariableType"]
+    success = mapping["LocalVariablesInitialization"][1]
+    del success["VariableType"]
     if type_name is not None:
-        done["VariableType"] = type_name
-    (go,) = emitted(mapping)
-    assert observed(loaded(go), TO_HOME, [], {"success": True}).local_variables["done"] == "true"
+        success["VariableType"] = type_name
+    (pour,) = emitted(mapping)
+    assert observed(loaded(pour), CUP, [], GRIPPED).local_variables["success"] == "true"
 
 
 def test_code_may_be_a_list_of_lines_with_tabs(mapping: dict[str, Any]):
-    noisy = mapping["LocalVariablesInitialization"][2]
-    noisy["AssignmentCode"] = ["if __input.level > 3:", "\treturn True", "return False"]
-    (go,) = emitted(mapping)
-    result = observed(loaded(go), TO_HOME, [("/noise", {"level": 5})], {"success": True})
-    assert (result.response, result.local_variables["noisy"]) == ("eFailed", "true")
+    is_full = mapping["LocalVariablesInitialization"][3]
+    is_full["AssignmentCode"] = ["if __input.level > 3:", "\treturn True", "return False"]
+    (pour,) = emitted(mapping)
+    result = observed(loaded(pour), CUP, [("/scale", {"level": 5})], GRIPPED)
+    assert (result.response, result.local_variables["is_full"]) == ("poured", "true")
 
 
 def test_variables_of_one_name_in_two_mappings_have_nothing_to_do_with_each_other(mapping: dict[str, Any]):
     other = copy.deepcopy(mapping)
-    other["GsdlMain"]["Name"] = "come"
+    other["GsdlMain"]["Name"] = "fill"
     other["LocalVariablesInitialization"][1] |= {
         "VariableType": "string",
-        "AssignmentCode": "done = 'done is ' + str(__input.success)",
+        "AssignmentCode": "success = 'it is ' + str(__input.success)",
     }
-    texts = {}
-    for generated in emitted(mapping, other):
-        texts[generated.skill] = observed(loaded(generated), TO_HOME, [], {"success": True}).local_variables[
-            "done"
-        ]
-    assert texts == {"go": "true", "come": '"done is True"'}
+    texts = {
+        generated.skill: observed(loaded(generated), CUP, [], GRIPPED).local_variables["success"]
+        for generated in emitted(mapping, other)
+    }
+    assert texts == {"pour": "true", "fill": '"it is True"'}
 
 
 def test_imports_are_those_of_the_mapping_alone(mapping: dict[str, Any]):
     other = copy.deepcopy(mapping)
-    other["GsdlMain"]["Name"] = "come"
+    other["GsdlMain"]["Name"] = "fill"
     other["ModuleActivation"]["RosService"]["ImportCode"] = [{"Import": ["cmath"]}]
     modules = {generated.skill: generated.python for generated in emitted(mapping, other)}
-    assert "import math" in modules["go"]
-    assert "import math" not in modules["come"]
+    assert "import math" in modules["pour"]
+    assert "import math" not in modules["fill"]
 
 
 def test_fields_are_computed_from_all_local_variables(mapping: dict[str, Any]):
     service = mapping["ModuleActivation"]["RosService"]
-    service["ServiceParameters"] = [{"ServiceFieldName": "loud", "AssignServiceFieldCode": "not noisy"}]
-    (go,) = emitted(mapping)
-    assert fields(loaded(go), TO_HOME) == {"loud": True}
+    service["ServiceParameters"] = [{"ServiceFieldName": "loud", "AssignServiceFieldCode": "not is_full"}]
+    (pour,) = emitted(mapping)
+    assert fields(loaded(pour), CUP) == {"loud": True}

@@ -1,6 +1,6 @@
 """A decision explained in lines: what they say, and that they are eight at most."""
 
-import msgspec
+from msgspec.structs import replace
 
 from aos_deploy.views.reasons import why_lines
 from aos_protocol.messages import BeliefSummary, Consequence, Flip, ValueTerm, Why
@@ -41,14 +41,14 @@ def test_a_decision_is_explained_in_eight_lines_at_most():
 
 
 def test_a_long_belief_update_is_told_with_what_it_took():
-    long = msgspec.structs.replace(WHY, update_s=1.734, update_effort="3000 steps of the model")
+    long = replace(WHY, update_s=1.734, update_effort="3000 steps of the model")
     assert why_lines(long)[1].endswith("; r1 was seen; the belief update took 1.7 s: 3000 steps of the model")
     assert len(why_lines(long)) <= 8
-    assert why_lines(msgspec.structs.replace(long, update_s=0.09)) == why_lines(WHY)
+    assert why_lines(replace(long, update_s=0.09)) == why_lines(WHY)
 
 
 def test_a_close_decision_says_how_many_simulations_would_tell():
-    close = msgspec.structs.replace(
+    close = replace(
         WHY, is_exact=False, is_close=True, margin_stderr=0.6, simulations_to_tell=12000, flips=(), remark=""
     )
     lines = why_lines(close)
@@ -58,7 +58,7 @@ def test_a_close_decision_says_how_many_simulations_would_tell():
 
 def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart():
     certain = Flip("holding", "true", 0.5, 0.9999, 1.0, True)
-    assert "P(holding=true) is 1, now 0.5" in why_lines(msgspec.structs.replace(WHY, flips=(certain,)))[-2]
+    assert "P(holding=true) is 1, now 0.5" in why_lines(replace(WHY, flips=(certain,)))[-2]
     for flip, words in (
         (
             Flip("holding", "true", 0.5, 0.1, 0.3, True),
@@ -67,12 +67,12 @@ def test_a_change_at_certainty_and_one_known_as_an_interval_are_told_apart():
         (Flip("holding", "true", 0.5, 0.1, 1.0), "may change where P(holding=true) is within 0.1-1, now 0.5"),
         (Flip("holding", "true", 0.5, 0.0, 1.0), "too close to call whatever P(holding=true) is, now 0.5"),
     ):
-        lines = why_lines(msgspec.structs.replace(WHY, flips=(flip,), is_exact=False))
+        lines = why_lines(replace(WHY, flips=(flip,), is_exact=False))
         assert lines[-2].endswith(words)
 
 
 def test_what_an_operator_asked_for_may_be_the_worse_action_and_says_who_chose():
-    asked = msgspec.structs.replace(WHY, chosen_by="operator", margin=-0.83, value=0.63, other_value=1.46)
+    asked = replace(WHY, chosen_by="operator", margin=-0.83, value=0.63, other_value=1.46)
     lines = why_lines(asked)
     assert lines[0] == (
         "step 3: look, asked for by an operator, is worth exactly +0.63, pick +1.46: margin -0.83"

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
+from msgspec.structs import replace
 from processes import COMMAND_S
 
 from aos_skills.pybullet.world_file import load_world_file
@@ -36,7 +36,7 @@ def make(file: ArmadilloFile) -> Make:
     """A robot in a fresh room with a fault model of the test's choice."""
 
     def build(faults: FaultModel, seed: int = 1) -> Armadillo:
-        return Armadillo(msgspec.structs.replace(file, faults=faults), seed)
+        return Armadillo(replace(file, faults=faults), seed)
 
     return build
 
@@ -49,9 +49,9 @@ def call(world: Armadillo, path: str, fields: dict[str, Any] | None = None) -> d
 
 def with_misplaced_easy_can(file: ArmadilloFile, probability: float) -> ArmadilloFile:
     easy = file.tables["easy"]
-    can = msgspec.structs.replace(easy.can, misplaced=probability)
-    tables = {**file.tables, "easy": msgspec.structs.replace(easy, can=can)}
-    return msgspec.structs.replace(file, tables=tables, faults=FaultModel())
+    can = replace(easy.can, misplaced=probability)
+    tables = {**file.tables, "easy": replace(easy, can=can)}
+    return replace(file, tables=tables, faults=FaultModel())
 
 
 def test_a_faultless_robot_brings_the_easy_can_to_the_person(make: Make):
