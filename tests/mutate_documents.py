@@ -19,7 +19,7 @@ from pathlib import Path
 
 from aos_language.load import load_files, read_bundle_files
 from aos_solver.emission.emit import emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 ROOT = Path(__file__).resolve().parents[1]
 LIMIT_S = 1.0

@@ -20,7 +20,7 @@ from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import find_compiler
 from aos_solver.building.engine_build import SOURCES, SUPPORT
 from aos_solver.emission.emit import EmittedModel, emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 _DRIVER = Path(__file__).parent / "cpp" / "scripted"
 _OPTIONS = ("-O0", "-DAOS_QUICK")

@@ -9,7 +9,7 @@ from aos_language.load import load_files, read_bundle_files, with_excerpts
 from aos_language.reading.sdl_sections import GRAMMARS
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 _TOKEN = re.compile(r"\w+|\S")
 

@@ -13,8 +13,8 @@ from aos_protocol.errors import AosError
 from aos_solver.building.build import build
 from aos_solver.child.engine import Engine
 from aos_solver.emission.emit import emit
-from aos_solver.emission.lower import lower
-from aos_solver.emission.lower_relevance import irrelevant_variables
+from aos_solver.emission.lowering.lower import lower
+from aos_solver.emission.lowering.relevance import irrelevant_variables
 
 from .documents import Documents
 from .driver import Driver

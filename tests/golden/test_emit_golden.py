@@ -7,7 +7,7 @@ import pytest
 from scripted_models import bundle_project
 
 from aos_solver.emission.emit import emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 GOLDEN = Path(__file__).parent
 

@@ -10,7 +10,7 @@ import pytest
 from test_reading_rules import Rule, bundle_of
 
 from aos_language.load import load_files
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 MISUSES = {
     "v1.x JSON": Rule("go.json", '"§«PlpMain→PlpMian»"', "AOS102"),

@@ -8,7 +8,7 @@ from mappings import mapping_text
 from scripted_models import bundle_project, lowered, text_project
 
 from aos_solver.emission.emit import EmittedModel
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 MAX_COLUMNS = 110
 

@@ -8,7 +8,7 @@ from scripted_models import json_text, text_project
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_solver.emission.emit import emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 from aos_solver.emission.program import Program
 
 HOME = """project: test

@@ -5,7 +5,7 @@ import re
 import pytest
 from acting import acting
 
-from aos_solver.emission.lower_averages import averaged_draws
+from aos_solver.emission.lowering.averages import averaged_draws
 
 HOME = """project: test
 horizon: 3

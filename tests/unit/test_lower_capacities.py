@@ -3,7 +3,7 @@
 import pytest
 
 from aos_language.cpp.snippets import read_cpp
-from aos_solver.emission.lower_capacities import GROWING_CAPACITY, REPORTED_CAPACITY, Capacities
+from aos_solver.emission.lowering.capacities import GROWING_CAPACITY, REPORTED_CAPACITY, Capacities
 
 
 def capacities_of(*snippets: str) -> Capacities:

@@ -3,7 +3,7 @@
 import pytest
 from acting import acting
 
-from aos_solver.emission.lower_copies import Copies, copies_of
+from aos_solver.emission.lowering.copies import Copies, copies_of
 
 HOME = """project: test
 horizon: 3

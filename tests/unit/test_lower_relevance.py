@@ -8,7 +8,7 @@ from acting import acting
 from scripted_models import bundle_project
 
 from aos_protocol.documents import Project
-from aos_solver.emission.lower_relevance import (
+from aos_solver.emission.lowering.relevance import (
     certain_rewards,
     irrelevant_variables,
     sensing_draws,

@@ -6,7 +6,7 @@ from aos_language.cpp.snippets import read_cpp
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 from aos_solver.emission.program import Piece
-from aos_solver.emission.rewrite import Rewriting, rewrite
+from aos_solver.emission.rewriting.rewrite import Rewriting, rewrite
 
 NAMES = Rewriting(
     frozenset({"tBox"}),

@@ -10,7 +10,7 @@ from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files, read_bundle_files
 from aos_protocol.documents import Project
 from aos_solver.emission.emit import emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 
 BATTERY = {
     path.name: path.read_text()

@@ -11,7 +11,7 @@ from aos_language.observed import misuses_of, reported_numbers, reports_in
 from aos_middleware.activations.observed_numbers import observed_numbers
 from aos_middleware.emission.emit import emit_mapping
 from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
-from aos_solver.emission.lower_relevance import irrelevant_variables
+from aos_solver.emission.lowering.relevance import irrelevant_variables
 from aos_solver.emission.program import Observed
 
 DYNAMIC = """if (state.wet) __observed.depth = AOS.SampleNormal(2, 0.5);

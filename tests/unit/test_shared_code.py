@@ -15,7 +15,7 @@ from aos_language.outline import outline
 from aos_protocol.diagnostics import Diagnostic
 from aos_solver.building.compiler_messages import read_messages
 from aos_solver.emission.emit import emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 from aos_solver.emission.program import Program
 
 SHARED = """const double slip_probability = 0.1;

@@ -204,7 +204,7 @@ def _python_modules(project: Project, only: str) -> str:
 def _solver_stage(project: Project, stage: Stage, bundle: Path) -> object:
     """The lowered model, or its C++ as text."""
     from aos_solver.emission.emit import emit  # As above.
-    from aos_solver.emission.lower import lower
+    from aos_solver.emission.lowering.lower import lower
 
     program, diagnostics = lower(project)
     if program is None:

@@ -12,7 +12,7 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuildKind, BuiltModel, build
 from aos_solver.emission.emit import EmittedModel, emit
-from aos_solver.emission.lower import lower
+from aos_solver.emission.lowering.lower import lower
 from aos_solver.emission.program import Program
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
-from aos_solver.emission.lower_capacities import GROWING_CAPACITY, Capacities
+from aos_solver.emission.lowering.capacities import GROWING_CAPACITY, Capacities
 from aos_solver.emission.program import Axis, Enum
 
 _PLAIN = frozenset({

@@ -22,7 +22,7 @@ from aos_language.cpp.snippets import (
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.local_types import reported_variables
 from aos_protocol.documents import Environment, Project
-from aos_solver.emission.lower_code import BELIEF, sections_of
+from aos_solver.emission.lowering.code import BELIEF, sections_of
 
 LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
 """The beginning of a lambda."""

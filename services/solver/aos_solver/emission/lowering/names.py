@@ -7,7 +7,7 @@ from aos_language.document_code import shared_code_of
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Environment, Project
-from aos_solver.emission.lower_code import sections_of
+from aos_solver.emission.lowering.code import sections_of
 
 _OF_THE_LANGUAGE = frozenset({
     "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "state", "state_",

@@ -18,18 +18,26 @@ from aos_language.observed import reported_numbers
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill, Snippet
 from aos_protocol.documents import Constraint as DocumentedConstraint
-from aos_solver.emission.cpp_library import headers_for
-from aos_solver.emission.lower_averages import averaged_draws
-from aos_solver.emission.lower_code import BELIEF, DYNAMIC, EXTRINSIC, GIVEN, LOOKING, Pieces, SectionLowering
-from aos_solver.emission.lower_copies import copies_of
-from aos_solver.emission.lower_names import check_names
-from aos_solver.emission.lower_relevance import (
+from aos_solver.emission.lowering.averages import averaged_draws
+from aos_solver.emission.lowering.code import (
+    BELIEF,
+    DYNAMIC,
+    EXTRINSIC,
+    GIVEN,
+    LOOKING,
+    Pieces,
+    SectionLowering,
+)
+from aos_solver.emission.lowering.copies import copies_of
+from aos_solver.emission.lowering.cpp_library import headers_for
+from aos_solver.emission.lowering.names import check_names
+from aos_solver.emission.lowering.relevance import (
     certain_rewards,
     irrelevant_variables,
     sensing_draws,
     skills_alike,
 )
-from aos_solver.emission.lower_state import (
+from aos_solver.emission.lowering.state import (
     capacities_of,
     lower_compounds,
     lower_variables,
@@ -38,8 +46,8 @@ from aos_solver.emission.lower_state import (
     parameter_values,
     values_for,
 )
-from aos_solver.emission.lower_types import Types, lower_enum
-from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
+from aos_solver.emission.lowering.types import Types, lower_enum
+from aos_solver.emission.lowering.writes import Changes, changes_of, drawing_defaults
 from aos_solver.emission.program import (
     Constraint,
     Local,

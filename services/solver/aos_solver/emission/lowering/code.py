@@ -31,10 +31,10 @@ from aos_protocol.documents import (
     Snippet,
     TemporaryVariable,
 )
-from aos_solver.emission.cpp_library import unrepeatable_names
-from aos_solver.emission.lower_types import Types
+from aos_solver.emission.lowering.cpp_library import unrepeatable_names
+from aos_solver.emission.lowering.types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
-from aos_solver.emission.rewrite import NO_LOOPS, EnumValues, LoopsOfPiece, Rewriting, rewrite
+from aos_solver.emission.rewriting.rewrite import NO_LOOPS, EnumValues, LoopsOfPiece, Rewriting, rewrite
 
 
 class Phase(msgspec.Struct, frozen=True):

@@ -7,12 +7,12 @@ from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.findings import Findings
 from aos_language.local_types import reported_variables
 from aos_protocol.documents import Environment, Project, StateVariable
-from aos_solver.emission.lower_capacities import Capacities
-from aos_solver.emission.lower_code import Pieces, sections_of
-from aos_solver.emission.lower_types import Types, ordered_compounds
-from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
+from aos_solver.emission.lowering.capacities import Capacities
+from aos_solver.emission.lowering.code import Pieces, sections_of
+from aos_solver.emission.lowering.types import Types, ordered_compounds
+from aos_solver.emission.lowering.writes import Changes, changes_of, drawing_defaults
 from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
-from aos_solver.emission.rewrite import Rewriting
+from aos_solver.emission.rewriting.rewrite import Rewriting
 
 
 def capacities_of(project: Project) -> Capacities:

@@ -21,7 +21,7 @@ from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.observed import is_draw
 from aos_protocol.documents import Assignment, Environment, Project, Snippet
-from aos_solver.emission.lower_shared import looked_through
+from aos_solver.emission.lowering.shared import looked_through
 
 _OBSERVATION = frozenset({"__moduleResponse", "__moduleResponseStr", "__observed"})
 

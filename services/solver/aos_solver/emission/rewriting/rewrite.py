@@ -13,11 +13,11 @@ from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
 from aos_language.cpp.value_names import values_meant
 from aos_language.observed import reports_in
 from aos_solver.emission.program import Edit
-from aos_solver.emission.rewrite_captures import capture_edits
-from aos_solver.emission.rewrite_containers import container_edits
-from aos_solver.emission.rewrite_indexes import index_edits
-from aos_solver.emission.rewrite_objects import object_edits
-from aos_solver.emission.rewrite_references import reference_edits
+from aos_solver.emission.rewriting.captures import capture_edits
+from aos_solver.emission.rewriting.containers import container_edits
+from aos_solver.emission.rewriting.indexes import index_edits
+from aos_solver.emission.rewriting.objects import object_edits
+from aos_solver.emission.rewriting.references import reference_edits
 
 _CATCH_ALL = re.compile(r"\bcatch\s*\(\s*\.\.\.\s*\)\s*\{")
 _SCOPE = re.compile(r"AOS(?:Utils)?")

@@ -13,7 +13,7 @@ from aos_language.cpp.facts import READING_FUNCTIONS
 from aos_language.cpp.snippets import Access, Call, Cpp, DeclarationKind, Extent, Mention, strip_comments
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
-from aos_solver.emission.lower_writes import LAMBDA
+from aos_solver.emission.lowering.writes import LAMBDA
 
 _WHOLE_STATE = "*"
 _RESULTS = frozenset({"__reward", "__moduleResponse", "__moduleResponseStr"})

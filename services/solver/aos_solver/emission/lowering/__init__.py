@@ -1,0 +1,1 @@
+"""The lowering of documents to the model that is emitted."""
