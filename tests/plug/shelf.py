@@ -15,7 +15,7 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.thorough_builds import ThoroughBuilds
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.emission.layout import Layout
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Evidence, Past

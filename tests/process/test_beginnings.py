@@ -10,7 +10,7 @@ from scripted_models import text_project
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
-from aos_solver.child.belief_answers import ExportedBelief
+from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.beginning import begin_with

@@ -9,7 +9,7 @@ from models import built_text, engine_of
 from processes import kill_engine
 
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.belief_answers import ExportedBelief
+from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine
 
 STEPS = 12

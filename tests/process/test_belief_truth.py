@@ -10,7 +10,7 @@ from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
 
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.child.engine import Engine
 
 STATES, ACTIONS, RESPONSES = 5, 2, 3

@@ -11,9 +11,9 @@ from models import built_text
 from processes import HANG_S
 
 from aos_protocol.errors import ModelError
-from aos_solver.child.belief_answers import ExportedBelief
-from aos_solver.child.command_line import command_line
+from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine, Restriction
+from aos_solver.child.lines.command_line import command_line
 
 LAMP = {
     "lamp.ef": "project: lamp\nhorizon: 3\nstate_variable: bool is_on\nreward_code:\n"

@@ -12,9 +12,9 @@ from processes import descendants, kill_engine, until_ended
 
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
-from aos_solver.child import engine_child
 from aos_solver.child.engine import Engine
-from aos_solver.child.engine_child import EngineChild, EngineStart
+from aos_solver.child.process import engine_child
+from aos_solver.child.process.engine_child import EngineChild, EngineStart
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission

@@ -17,8 +17,8 @@ from aos_protocol.errors import EngineDefectError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
-from aos_solver.child.engine_child import EngineChild, EngineStart
-from aos_solver.child.printed import PRINT_LIMIT_BYTES
+from aos_solver.child.process.engine_child import EngineChild, EngineStart
+from aos_solver.child.process.printed import PRINT_LIMIT_BYTES
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.takeover import RunningModel
 

@@ -8,7 +8,7 @@ from wide.missions import processor_s
 from wide.shelf import shelf
 from wide.writing import BundleWriter
 
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 
 
 def _cliff(far: str) -> dict[str, str]:

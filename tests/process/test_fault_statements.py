@@ -10,7 +10,7 @@ from processes import COMMAND_S
 
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
-from aos_solver.child import replay
+from aos_solver.child.blame import replay
 
 WARD = """project: ward
 horizon: 4

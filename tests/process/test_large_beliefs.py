@@ -9,7 +9,7 @@ from models import engine_of_text
 from processes import kill_engine
 
 from aos_solver.child.engine import Engine
-from aos_solver.child.engine_child import ANSWER_LIMIT_BYTES
+from aos_solver.child.process.engine_child import ANSWER_LIMIT_BYTES
 
 LAMPS, CELLS = 17, 40
 ENVIRONMENT = f"""project: lamps

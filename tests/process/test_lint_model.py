@@ -20,7 +20,7 @@ from aos_protocol.errors import ModelError
 from aos_solver.building import build as building
 from aos_solver.building import project_build
 from aos_solver.building.compiler import find_compiler
-from aos_solver.child import replay
+from aos_solver.child.blame import replay
 
 HALL = """project: hall
 horizon: 4

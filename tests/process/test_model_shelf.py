@@ -11,7 +11,7 @@ from aos_language.load import load_files
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.belief_answers import ExportedBeliefs
+from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.engine import Engine
 from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Evidence, Past, updated

@@ -10,7 +10,7 @@ from mappings import mapping_text
 from models import engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
 
 WORLDS = 5

@@ -7,7 +7,7 @@ from mappings import mapping_text
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits

@@ -11,8 +11,8 @@ from scripted_models import bundle_project, lowered
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.building.project_build import emitted_model
-from aos_solver.child.answers import Plan
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
 
 

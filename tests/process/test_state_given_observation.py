@@ -231,7 +231,7 @@ async def test_the_statement_of_the_same_fault_is_looked_for_once(
 ) -> None:
     faulty = {**SEEN, "distances": "[1,2,3]"}
     first = await engine.update("drive", "arrived", faulty)
-    monkeypatch.delattr("aos_solver.child.asking.at_its_statement")
+    monkeypatch.delattr("aos_solver.child.questions.asking.at_its_statement")
     assert (await engine.update("drive", "arrived", faulty)).remark == first.remark
 
 

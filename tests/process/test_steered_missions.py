@@ -21,7 +21,7 @@ from aos_protocol.mission_rows import BEGUN
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.child.mission_questions import Restriction
+from aos_solver.child.questions.missions import Restriction
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, SkillRule

@@ -13,9 +13,9 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import Activate, ModelAdopted, Outcome
 from aos_runtime.clock import SystemClock
 from aos_runtime.disk.journal import JournalRow
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
-from aos_solver.child.mission_questions import UNRESTRICTED
+from aos_solver.child.questions.missions import UNRESTRICTED
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission

@@ -12,7 +12,7 @@ from aos_protocol.errors import SteeringError
 from aos_protocol.messages import ActionRefused, ActivationId, Message, MissionState, Outcome, Steer
 from aos_protocol.mission_rows import REFUSED, STEERED
 from aos_runtime.disk.journal import JournalRow
-from aos_solver.child.answers import EngineDescription, GroundedAction
+from aos_solver.child.answers.models import EngineDescription, GroundedAction
 from aos_solver.mission.helm import Helm
 from aos_solver.mission.memory import folded
 from aos_solver.mission.ports import QuietPorts

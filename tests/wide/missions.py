@@ -8,9 +8,9 @@ import msgspec
 from processes import descendants
 
 from aos_deploy.bundles.engine import engine_of_bundle
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
+from aos_solver.child.questions.missions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission

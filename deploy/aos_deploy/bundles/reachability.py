@@ -8,9 +8,9 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import Reach
+from aos_solver.child.answers.models import Reach
 from aos_solver.child.engine import Engine
-from aos_solver.child.engine_child import OverdueError
+from aos_solver.child.process.engine_child import OverdueError
 
 _NAMED_ACTIONS = 3
 _TIME_S = 1.5

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from aos_lab.bench.problems import Problem
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Planner, Stepping
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_protocol.errors import AosError, IntractableError
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.belief_answers import ExportedBelief
+from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine
 
 Numbers = npt.NDArray[np.float64]

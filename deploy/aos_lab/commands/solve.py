@@ -28,7 +28,7 @@ from aos_lab.formats.problem_files import read_problem
 from aos_lab.formats.problem_writers import WRITERS, write_problem
 from aos_protocol.documents import MissionValue
 from aos_protocol.errors import DeployError, PlanningError
-from aos_solver.child.answers import Listed
+from aos_solver.child.answers.models import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.policy import Policy, PolicyHeader

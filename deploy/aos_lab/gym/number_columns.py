@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_solver.child.world_answers import WorldSteps
+from aos_solver.child.answers.worlds import WorldSteps
 from aos_solver.emission.program import Observed
 
 _INDEX_BITS = 16

@@ -20,7 +20,7 @@ from aos_middleware.mappings.revisions import emit_project
 from aos_middleware.workers.evaluator import EvaluationLimits, Evaluator
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DeployError
-from aos_solver.child.answers import GroundedAction
+from aos_solver.child.answers.models import GroundedAction
 from aos_solver.child.engine import Engine
 
 

@@ -31,7 +31,7 @@ from aos_runtime.parties.registry_watch import RegistryWatch
 from aos_runtime.processes.lifecycle import Service
 from aos_solver.building.build import BuiltModel
 from aos_solver.bus_ports import BusPorts
-from aos_solver.child.answers import Progress
+from aos_solver.child.answers.models import Progress
 from aos_solver.child.engine import Engine
 from aos_solver.mapping_watch import MappingWatch
 from aos_solver.mission.history import HistoryReader

@@ -5,9 +5,9 @@ from __future__ import annotations
 import msgspec
 
 from aos_protocol.messages import ChosenBy
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
-from aos_solver.child.mission_questions import DEFAULT_PLANNER, UNRESTRICTED, Planner, Restriction
+from aos_solver.child.questions.missions import DEFAULT_PLANNER, UNRESTRICTED, Planner, Restriction
 
 SEEDS_PER_MISSION = 1000
 

@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable
 
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import StartMission
-from aos_solver.child.belief_answers import ExportedBeliefs
+from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.engine import Engine
 
 

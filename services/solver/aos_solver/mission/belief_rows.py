@@ -1,7 +1,7 @@
 """Whole beliefs in the journal, so that what was believed can be looked at without a replay."""
 
 from aos_protocol.messages import BeliefRow, BeliefSummary, WeightedStates
-from aos_solver.child.belief_answers import ExportedBelief, ExportedBeliefs
+from aos_solver.child.answers.beliefs import ExportedBelief, ExportedBeliefs
 from aos_solver.mission.ports import Record
 from aos_solver.mission.takeover import RunningModel
 

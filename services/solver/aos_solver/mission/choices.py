@@ -3,7 +3,7 @@
 import msgspec
 
 from aos_protocol.messages import ChosenBy, SearchMade
-from aos_solver.child.answers import Plan, Risks
+from aos_solver.child.answers.models import Plan, Risks
 from aos_solver.mission.endings import Ending
 
 

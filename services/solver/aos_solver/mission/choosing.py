@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, ChosenBy, SearchMade
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.choices import Choice, Ended, Held, Refused
 from aos_solver.mission.endings import Ending, ending_after_planning, is_held_back, is_worth_nothing

@@ -23,7 +23,7 @@ from aos_protocol.messages import (
 )
 from aos_protocol.mission_rows import ADOPTED, DRIFT, INTENDED, OUTCOME
 from aos_runtime.clock import moment_s
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
 from aos_solver.mission.belief_rows import keep_belief
 from aos_solver.mission.choices import Choice, Ended, Held, Refused

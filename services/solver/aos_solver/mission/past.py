@@ -11,7 +11,7 @@ import msgspec
 
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import DecisionRecord, Outcome
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.child.engine import Engine
 from aos_solver.mission.failures import Failures
 

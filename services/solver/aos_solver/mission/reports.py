@@ -14,7 +14,7 @@ from aos_protocol.messages import (
     Outcome,
 )
 from aos_protocol.mission_rows import DECISION, STATE
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.mission.choices import Choice
 from aos_solver.mission.drift import text_of
 from aos_solver.mission.endings import Ending

@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator, Sequence
 from typing import NamedTuple
 
 from aos_runtime.clock import SystemClock
-from aos_solver.child.belief_answers import BeliefUpdate
+from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.mission.past import Past, replayed
 from aos_solver.mission.takeover import RunningModel, Successor
 

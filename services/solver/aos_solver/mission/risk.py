@@ -9,7 +9,7 @@ least the probability that there is one. docs/constraints.md has the proof, and 
 from collections.abc import Sequence
 
 from aos_protocol.messages import ConstraintRisk
-from aos_solver.child.answers import Risks
+from aos_solver.child.answers.models import Risks
 from aos_solver.emission.emit import Bound
 
 _ROUNDING = 1e-12

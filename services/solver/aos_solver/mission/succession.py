@@ -16,7 +16,7 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import Activate, Outcome, StartMission
-from aos_solver.child.belief_answers import ExportedBeliefs
+from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.engine import Engine
 from aos_solver.mission.beginning import begin_with
 from aos_solver.mission.conditions import built_with_conditions

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import IntractableError
-from aos_solver.child.answers import Listed
+from aos_solver.child.answers.models import Listed
 from aos_solver.child.engine import Engine
 from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Floats, read_flat, with_more_outcomes
 

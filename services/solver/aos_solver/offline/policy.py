@@ -18,10 +18,10 @@ import numpy as np
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ChosenBy
-from aos_solver.child.answers import Plan
-from aos_solver.child.belief_answers import ExportedBelief
+from aos_solver.child.answers.beliefs import ExportedBelief
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
-from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
+from aos_solver.child.questions.missions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
 

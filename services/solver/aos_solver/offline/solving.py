@@ -11,7 +11,7 @@ import numpy as np
 
 from aos_protocol.errors import ModelError, PlanningError
 from aos_runtime.processes.children import PIPE, Child, Limits, guarded
-from aos_solver.child.confinement import confinement_of
+from aos_solver.child.process.confinement import confinement_of
 from aos_solver.offline.alpha_vectors import AlphaVectors, RegionSize
 from aos_solver.offline.explicit_model import ExplicitModel
 from aos_solver.offline.solver_program import build_solver

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord, SearchMade
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.study.replaying import Remade
 
 

@@ -5,7 +5,7 @@ import time
 
 from aos_protocol.errors import AosError, IntractableError, SkillError, StudyError
 from aos_protocol.messages import Consequence, DecisionRecord, Flip, ValueTerm, Why
-from aos_solver.child.answers import RewardTerms
+from aos_solver.child.answers.models import RewardTerms
 from aos_solver.child.engine import Engine
 from aos_solver.mission.past import updated
 from aos_solver.study.aside import put_aside

@@ -24,7 +24,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import built_for

@@ -9,7 +9,7 @@ import msgspec
 
 from aos_protocol.errors import StudyError
 from aos_solver.building.build import BuiltModel, build
-from aos_solver.child.answers import RewardTerm
+from aos_solver.child.answers.models import RewardTerm
 from aos_solver.child.engine import Engine
 from aos_solver.emission.trace import traced
 

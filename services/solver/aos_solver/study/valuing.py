@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import msgspec
 
 from aos_protocol.messages import DecisionRecord, SearchMade
-from aos_solver.child.answers import Plan
+from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
 from aos_solver.study.replaying import ReplayedMission

@@ -1,7 +1,7 @@
 // A command to the engine, as one line of parts between tabs. The parts are the command's name and its fields
 // as `name=value`. A command that takes a list has an empty part and then the items. The order of fields does
 // not matter, and unused ones are ignored. A missing or malformed field is a BadCommand.
-// aos_solver/child/command_line.py writes the lines.
+// aos_solver/child/lines/command_line.py writes the lines.
 #pragma once
 
 #include <charconv>

@@ -3,11 +3,11 @@
 from typing import Literal
 
 from aos_protocol.diagnostics import Span
-from aos_solver.child.answers import EndlessLoop, EndlessSteps
-from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
-from aos_solver.child.command_line import command_line
-from aos_solver.child.slow_code import SlowCode, slow_code
-from aos_solver.child.world_answers import SampleCount
+from aos_solver.child.answers.models import EndlessLoop, EndlessSteps
+from aos_solver.child.answers.worlds import SampleCount
+from aos_solver.child.blame.slow_code import SlowCode, slow_code
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.questions.asking import ANSWER_DEADLINE_S, Asking
 
 Stepping = Literal["code", "table"]
 """The ways to make steps: by the documents' code, or by a table of all steps, which POMCP has of small

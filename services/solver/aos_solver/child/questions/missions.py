@@ -5,9 +5,9 @@ from typing import Literal
 
 import msgspec
 
-from aos_solver.child.answers import GoalReach, Plan, Risks
-from aos_solver.child.asking import Asking, Done
-from aos_solver.child.command_line import command_line
+from aos_solver.child.answers.models import GoalReach, Plan, Risks
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.questions.asking import Asking, Done
 
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
 DEFAULT_PLANNER: Planner = "auto"

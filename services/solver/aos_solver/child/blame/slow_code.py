@@ -12,8 +12,8 @@ import msgspec
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import AosError, ModelError
 from aos_solver.building.build import BuiltModel, build
-from aos_solver.child.command_line import command_line
-from aos_solver.child.engine_child import EngineChild, EngineStart
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.process.engine_child import EngineChild, EngineStart
 from aos_solver.emission.trace import TracedModel, traced
 
 log = logging.getLogger(__name__)

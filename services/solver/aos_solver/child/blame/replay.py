@@ -18,9 +18,9 @@ import msgspec
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
 from aos_solver.building.build import BuiltModel, build
-from aos_solver.child.belief_answers import BeliefUpdate
-from aos_solver.child.command_line import command_line
-from aos_solver.child.engine_child import HANG_PERIODS, EngineChild, EngineStart
+from aos_solver.child.answers.beliefs import BeliefUpdate
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.process.engine_child import HANG_PERIODS, EngineChild, EngineStart
 from aos_solver.emission.trace import TracedModel, traced
 
 log = logging.getLogger(__name__)

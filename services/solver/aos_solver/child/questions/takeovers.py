@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, Marginal
-from aos_solver.child.asking import Asking, Done
-from aos_solver.child.belief_answers import BeliefCount, BeliefUpdate
-from aos_solver.child.command_line import command_line
+from aos_solver.child.answers.beliefs import BeliefCount, BeliefUpdate
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.questions.asking import Asking, Done
 from aos_solver.emission.layout import Common, Layout
 
 _TOLD_VALUES = 100_000

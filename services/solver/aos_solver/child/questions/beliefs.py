@@ -8,9 +8,7 @@ import msgspec
 
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.answers import EngineFault
-from aos_solver.child.asking import Asking, Done
-from aos_solver.child.belief_answers import (
+from aos_solver.child.answers.beliefs import (
     BeliefCount,
     BeliefUpdate,
     Conditioned,
@@ -18,9 +16,11 @@ from aos_solver.child.belief_answers import (
     ExportedBeliefs,
     Prediction,
 )
-from aos_solver.child.command_line import command_line, with_change
-from aos_solver.child.local_values import UnusableLocals, local_values_line
-from aos_solver.child.observed_numbers import numbers_field
+from aos_solver.child.answers.models import EngineFault
+from aos_solver.child.lines.command_line import command_line, with_change
+from aos_solver.child.lines.local_values import UnusableLocals, local_values_line
+from aos_solver.child.lines.observed_numbers import numbers_field
+from aos_solver.child.questions.asking import Asking, Done
 
 log = logging.getLogger(__name__)
 

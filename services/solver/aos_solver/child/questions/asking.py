@@ -16,20 +16,20 @@ from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import EngineDescription, EngineFault, Progress
-from aos_solver.child.belief_answers import BeliefUpdate, Believed, Conditioned
-from aos_solver.child.belief_draws import BeliefDraws
-from aos_solver.child.command_line import command_line, with_change
-from aos_solver.child.engine_child import (
+from aos_solver.child.answers.beliefs import BeliefUpdate, Believed, Conditioned
+from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress
+from aos_solver.child.blame.replay import at_its_statement
+from aos_solver.child.lines.belief_draws import BeliefDraws
+from aos_solver.child.lines.command_line import command_line, with_change
+from aos_solver.child.lines.parameter_arguments import parameter_arguments
+from aos_solver.child.process.engine_child import (
     EngineChild,
     EngineStart,
     ImpossiblePolicy,
     KilledError,
     OverdueError,
 )
-from aos_solver.child.parameter_arguments import parameter_arguments
-from aos_solver.child.replay import at_its_statement
-from aos_solver.child.shared_memory import SharedMemory
+from aos_solver.child.process.shared_memory import SharedMemory
 from aos_solver.emission.emit import Bound
 from aos_solver.emission.program import Observed
 

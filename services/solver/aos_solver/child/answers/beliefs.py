@@ -5,8 +5,8 @@ import math
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, PredictedObservation
-from aos_solver.child.answers import EngineFault
-from aos_solver.child.command_line import command_line
+from aos_solver.child.answers.models import EngineFault
+from aos_solver.child.lines.command_line import command_line
 
 _ROUNDING = 1e-9
 

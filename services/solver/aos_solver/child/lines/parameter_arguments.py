@@ -6,7 +6,7 @@ Each is `name=value`, with the value as `StateReader` in state_text.hpp reads it
 from collections.abc import Mapping
 
 from aos_language.mission_parameters import ParameterLeaf
-from aos_solver.child.local_values import numbers_of
+from aos_solver.child.lines.local_values import numbers_of
 
 
 def parameter_arguments(leaves: Mapping[str, ParameterLeaf], values: Mapping[str, str]) -> tuple[str, ...]:

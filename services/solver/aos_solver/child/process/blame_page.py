@@ -2,7 +2,7 @@
 
 import struct
 
-from aos_solver.child.shared_memory import SharedMemory
+from aos_solver.child.process.shared_memory import SharedMemory
 
 _BYTES = 65536
 """The largest page that blame.hpp maps; each of its threads has a line of 64 bytes in the first 4096."""

@@ -1,10 +1,10 @@
 """The questions of a study: beliefs that are supposed, and the rewards behind a value."""
 
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.answers import ExactValues, RewardTerms
-from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking, Done
-from aos_solver.child.belief_answers import Believed
-from aos_solver.child.command_line import command_line
+from aos_solver.child.answers.beliefs import Believed
+from aos_solver.child.answers.models import ExactValues, RewardTerms
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.questions.asking import ANSWER_DEADLINE_S, Asking, Done
 
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000

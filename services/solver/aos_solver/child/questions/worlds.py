@@ -3,10 +3,10 @@
 from base64 import b64encode
 from collections.abc import Sequence
 
-from aos_solver.child.asking import Asking
-from aos_solver.child.command_line import command_line
-from aos_solver.child.observed_numbers import numbers_by_name
-from aos_solver.child.world_answers import EngineStep, Worlds, WorldStart, WorldState, WorldStep, WorldSteps
+from aos_solver.child.answers.worlds import EngineStep, Worlds, WorldStart, WorldState, WorldStep, WorldSteps
+from aos_solver.child.lines.command_line import command_line
+from aos_solver.child.lines.observed_numbers import numbers_by_name
+from aos_solver.child.questions.asking import Asking
 
 
 class WorldQuestions(Asking):

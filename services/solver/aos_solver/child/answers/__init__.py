@@ -1,0 +1,1 @@
+"""The answers of an engine child, as typed data."""

@@ -1,0 +1,1 @@
+"""The search for document code that fails or is slow."""
