@@ -14,7 +14,7 @@ from aos_protocol.messages import (
     Outcome,
     PredictedObservation,
 )
-from aos_solver.mission.drift import after_use, begun, drifts
+from aos_solver.mission.rules.drift import after_use, begun, drifts
 
 Odds = Mapping[str, float]
 """The probability of each response."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from mappings import mapping_text
 
 from aos_protocol.messages import Marginal
-from aos_solver.mission.past import Evidence, Past
+from aos_solver.mission.models.past import Evidence, Past
 
 HALL = {
     "hall.ef": """project: hall

@@ -37,7 +37,7 @@ from aos_runtime.bus.bus import Bus
 from aos_runtime.client import AosClient
 from aos_runtime.disk.journal import Journal
 from aos_runtime.processes.lifecycle import ServiceSettings
-from aos_solver.mission.history import history_page
+from aos_solver.mission.records.history import history_page
 
 ROBOT, MISSION = "tiger", "20260101T000000Z-tiger"
 KEYS = Keys(ROBOT)

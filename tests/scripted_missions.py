@@ -8,12 +8,12 @@ from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, Miss
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules
+from aos_solver.mission.rules.terms import Terms
 
 Robot = Callable[[Activate], Outcome]
 

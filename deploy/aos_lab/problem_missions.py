@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aos_lab.formats.problem_files import read_problem
-from aos_solver.mission.endings import Ending
+from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.simulation import SimulatedRun
 from aos_solver.offline.explicit_model import Floats, Integers
 from aos_solver.offline.policy import Policy

@@ -36,11 +36,11 @@ from aos_runtime.parties.reported_state import state_when
 from aos_runtime.processes.children import Child
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.terms import Terms
 
 STOCK = {
     "stock.ef": """project: stock

@@ -13,11 +13,11 @@ from aos_protocol.messages import Activate, Fault, MissionState, Outcome
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.terms import Terms
 
 from .jobs import Job
 

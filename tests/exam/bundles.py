@@ -7,7 +7,7 @@ from statistics import fmean, stdev
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 from .told import Told

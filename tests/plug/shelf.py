@@ -17,9 +17,9 @@ from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.thorough_builds import ThoroughBuilds
 from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.emission.layout import Layout
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Evidence, Past
-from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.past import Evidence, Past
+from aos_solver.mission.models.takeover import RunningModel
 
 SUMMARY = BeliefSummary((), 0.0, 0.0, 0.0, 1, True)
 LAYOUTS = tuple(Layout(dict.fromkeys(names, "bool"), frozenset(names)) for names in ("ab", "abc", "xyz"))

@@ -14,8 +14,8 @@ from models import built_text, engine_of
 from aos_runtime.clock import SystemClock
 from aos_solver.child.engine import Engine
 from aos_solver.emission.layout import Common
-from aos_solver.mission.past import Evidence, Past, updated
-from aos_solver.mission.takeover import RunningModel, Successor, Takeover
+from aos_solver.mission.models.past import Evidence, Past, updated
+from aos_solver.mission.models.takeover import RunningModel, Successor, Takeover
 
 from .models import Belief, Weather, documents, initial, small_problems, stepped
 

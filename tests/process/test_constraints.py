@@ -22,11 +22,11 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project, emitted_model
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.rules.endings import Ending, MissionLimits
+from aos_solver.mission.rules.terms import Terms
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
 
 HOB = {
     "hob.ef": """project: test

@@ -10,11 +10,11 @@ from test_taking_up import rows_of
 from aos_deploy.views.lines import decision_line
 from aos_protocol.messages import DriftTests
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import folded
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.records.memory import folded
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.terms import Terms
 
 PRESS = """project: lamp
 dynamic_model:

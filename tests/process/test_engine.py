@@ -16,7 +16,7 @@ from aos_solver.child.engine import Engine
 from aos_solver.child.process import engine_child
 from aos_solver.child.process.engine_child import EngineChild, EngineStart
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 TIGER = {

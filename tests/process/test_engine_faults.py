@@ -19,8 +19,8 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.child.process.engine_child import EngineChild, EngineStart
 from aos_solver.child.process.printed import PRINT_LIMIT_BYTES
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.takeover import RunningModel
 
 LAMP = {
     "lamp.ef": """project: lamp

@@ -10,8 +10,8 @@ from scripted_missions import Clock, Surroundings, jammed, observed, run_mission
 
 from aos_protocol.messages import Activate, EndingOdds, Fault, Outcome
 from aos_solver.building.build import BuiltModel
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, SkillRule
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules, SkillRule
 
 LIMITS = MissionLimits(goal_probability=0.9, step_limit=40)
 

@@ -8,7 +8,7 @@ from wide.writing import BundleWriter
 
 from aos_protocol.messages import MissionState
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 
 _SAID = "changed nothing and told nothing, since nothing is known that is worth more"
 

@@ -8,13 +8,13 @@ from models import engine_of_text
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.search import Search
-from aos_solver.mission.choices import Choice
-from aos_solver.mission.choosing import Chooser
-from aos_solver.mission.failures import Failures
+from aos_solver.mission.decision.choices import Choice
+from aos_solver.mission.decision.choosing import Chooser
+from aos_solver.mission.decision.risk import RiskBudget
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.risk import RiskBudget
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.failures import Failures
+from aos_solver.mission.rules.terms import Terms
 
 LOOPS = {
     "exit_first": ("while (AOS.Bernoulli(0.5)) rounds++;", 0.5),

@@ -10,8 +10,8 @@ from scripted_missions import Surroundings, jammed, observed, run_mission, timed
 from aos_protocol.messages import Activate, Fault, Outcome, Steer
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, SkillRule
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules, SkillRule
 
 ANSWERS = {
     "navigate": "arrived",

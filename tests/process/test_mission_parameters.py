@@ -25,8 +25,8 @@ from aos_runtime.disk.journal import Journal
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Evidence, Past, updated
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.past import Evidence, Past, updated
 
 BIN = Path(sys.executable).parent
 

@@ -24,7 +24,7 @@ from aos_protocol.messages import BundleReport, PushBundle
 from aos_runtime.client import AosClient
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import mission_folder
-from aos_solver.mission.logbook import entries_of
+from aos_solver.mission.records.logbook import entries_of
 
 BIN = Path(sys.executable).parent
 DEPLOY = """\

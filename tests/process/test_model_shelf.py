@@ -13,9 +13,9 @@ from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.engine import Engine
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Evidence, Past, updated
-from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.past import Evidence, Past, updated
+from aos_solver.mission.models.takeover import RunningModel
 
 LAMP = {
     "lamp.ef": """project: lamp

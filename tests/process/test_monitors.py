@@ -15,9 +15,9 @@ from aos_runtime.disk.journal import JournalRow
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.memory import folded
-from aos_solver.mission.past import Evidence, Past, replayed, updated
+from aos_solver.mission.models.past import Evidence, Past, replayed, updated
+from aos_solver.mission.records.memory import folded
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 State = tuple[str, bool]

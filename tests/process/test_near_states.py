@@ -9,7 +9,7 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 COUNT = """

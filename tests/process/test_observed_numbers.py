@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 ENVIRONMENT = """project: gauge

@@ -14,7 +14,7 @@ from wide.writing import BundleWriter
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 

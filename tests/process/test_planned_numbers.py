@@ -9,7 +9,7 @@ from models import engine_of_text
 
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.rules.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 DOORS = """project: doors

@@ -7,7 +7,7 @@ from models import engine_of_text
 from wide.photo import photo
 
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 

@@ -15,10 +15,10 @@ from aos_registry.catalogue import Catalogue
 from aos_runtime.disk.journal import Journal
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.terms import Terms
 from aos_solver.settings import Settings
 
 STEPS = 5

@@ -21,13 +21,13 @@ from aos_runtime.disk.journal import Journal, JournalRow
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import earlier_models
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import MissionMemory, folded
-from aos_solver.mission.past import Past
-from aos_solver.mission.stretches import Stretch, after, models_before
-from aos_solver.mission.takeover import RunningModel, Successor, Takeover
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.takeover import RunningModel, Successor, Takeover
+from aos_solver.mission.records.memory import MissionMemory, folded
+from aos_solver.mission.records.stretches import Stretch, after, models_before
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.terms import Terms
 from aos_solver.settings import Settings
 
 STEPS = 5

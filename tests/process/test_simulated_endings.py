@@ -10,7 +10,7 @@ from models import engine_of_text
 from texts import write_texts
 
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.rules.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 SERVED = 0.92

@@ -18,7 +18,7 @@ from aos_lab.formats.policy_graph import OVER, PolicyGraph, policy_graph
 from aos_lab.formats.problem_files import read_problem
 from aos_protocol.errors import ModelError, PlanningError
 from aos_solver.building.compiler import find_compiler
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 from aos_solver.offline.alpha_vectors import AlphaVectors
 from aos_solver.offline.enumeration import Enumeration, enumerate_model

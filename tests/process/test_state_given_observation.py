@@ -12,7 +12,7 @@ from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 ENVIRONMENT = """project: rover

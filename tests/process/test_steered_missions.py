@@ -23,12 +23,12 @@ from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.questions.missions import Restriction
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, SkillRule
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import MissionMemory, folded
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.records.memory import MissionMemory, folded
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules, SkillRule
+from aos_solver.mission.rules.terms import Terms
 
 OPEN_LEFT, OPEN_RIGHT = "open(door=left_door)", "open(door=right_door)"
 

@@ -13,8 +13,8 @@ from aos_protocol.errors import ModelError
 from aos_protocol.messages import Marginal
 from aos_runtime.clock import SystemClock
 from aos_solver.child.engine import Engine
-from aos_solver.mission.past import Evidence, Past, updated
-from aos_solver.mission.takeover import REPLAY_S, RunningModel, Successor, Takeover, distances
+from aos_solver.mission.models.past import Evidence, Past, updated
+from aos_solver.mission.models.takeover import REPLAY_S, RunningModel, Successor, Takeover, distances
 
 
 @asynccontextmanager

@@ -17,12 +17,12 @@ from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.questions.missions import UNRESTRICTED
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import folded
-from aos_solver.mission.past import Past
-from aos_solver.mission.takeover import RunningModel, Successor, Takeover
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.takeover import RunningModel, Successor, Takeover
+from aos_solver.mission.records.memory import folded
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.terms import Terms
 
 
 def hears_below(request: Activate) -> Outcome:

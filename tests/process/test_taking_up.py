@@ -20,12 +20,12 @@ from aos_protocol.mission_rows import BEGUN
 from aos_runtime.disk.journal import JournalRow
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, SkillRule
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import MissionMemory, folded
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.records.memory import MissionMemory, folded
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules, SkillRule
+from aos_solver.mission.rules.terms import Terms
 
 RULES = FailureRules(skills={"listen": SkillRule(on_failure="retry", retries=1)})
 

@@ -14,7 +14,7 @@ from tictactoe_games import game
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.tictactoe.rules import EMPTY_BOARD, best_moves, empty_cells, is_over, marked
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 Point = tuple[float, float]

@@ -19,12 +19,12 @@ from aos_runtime.disk.journal import JournalRow
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.past import Past
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.takeover import RunningModel, Successor, Takeover
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.takeover import RunningModel, Successor, Takeover
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.endings import Ending, MissionLimits
+from aos_solver.mission.rules.terms import Terms
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import ReplayedMission

@@ -10,8 +10,8 @@ from msgspec.structs import replace
 
 from aos_protocol.messages import ActivationId, DriftTests, Outcome, PredictedObservation
 from aos_runtime.disk.journal import JournalRow
-from aos_solver.mission.drift import FALSE_ALARMS, after_use, begun, drifts, text_of
-from aos_solver.mission.memory import folded
+from aos_solver.mission.records.memory import folded
+from aos_solver.mission.rules.drift import FALSE_ALARMS, after_use, begun, drifts, text_of
 
 RIGHT = {"taken": 0.9, "missed": 0.1}
 WRONG = {"taken": 0.6, "missed": 0.4}

@@ -15,7 +15,7 @@ from aos_deploy.runs.record import RunRecord
 from aos_protocol.messages import ActivationId, Outcome, PredictedObservation
 from aos_protocol.mission_rows import DRIFT
 from aos_runtime.disk.journal import Journal
-from aos_solver.mission.drift import begun
+from aos_solver.mission.rules.drift import begun
 
 PREDICTED = (PredictedObservation("pressed", 0.9), PredictedObservation("stuck", 0.1))
 

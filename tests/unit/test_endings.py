@@ -13,7 +13,7 @@ from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
 from aos_protocol.documents import Environment
 from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds, MissionState
-from aos_solver.mission.endings import (
+from aos_solver.mission.rules.endings import (
     Ending,
     MissionLimits,
     believed_ending,

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from aos_protocol.messages import ActivationId, BeliefSummary, DecisionRecord, Fault, Outcome
-from aos_solver.mission.failures import FailureRules, Failures, SkillRule
+from aos_solver.mission.rules.failures import FailureRules, Failures, SkillRule
 
 BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 1, True)
 FAULT = Fault("AOS510", "jammed")

@@ -8,8 +8,8 @@ from decision_records import decision_record
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import HistoryQuery, MissionState
 from aos_runtime.disk.journal import Journal
-from aos_solver.mission import history
-from aos_solver.mission.history import history_page
+from aos_solver.mission.records import history
+from aos_solver.mission.records.history import history_page
 
 COUNT = 23
 

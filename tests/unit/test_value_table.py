@@ -6,7 +6,7 @@ import pytest
 
 from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.messages import ActionValue
-from aos_solver.mission.endings import Ending
+from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.simulation import SimulatedRun
 
 

@@ -12,7 +12,7 @@ from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.questions.missions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 

@@ -142,7 +142,7 @@ def _entries(system: System) -> tuple[MissionEntry, ...]:
 
 
 def _kept_entries(run: Path) -> tuple[MissionEntry, ...]:
-    from aos_solver.mission.logbook import entries_of
+    from aos_solver.mission.records.logbook import entries_of
 
     return entries_of(run)
 

@@ -29,13 +29,13 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.choices import Choice
-from aos_solver.mission.choosing import Chooser
-from aos_solver.mission.failures import Failures
+from aos_solver.mission.decision.choices import Choice
+from aos_solver.mission.decision.choosing import Chooser
+from aos_solver.mission.decision.risk import RiskBudget
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.risk import RiskBudget
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.failures import Failures
+from aos_solver.mission.rules.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.study.supposing import believe_all
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from aos_protocol.messages import ActionRefused, DecisionRecord, MissionState, Steer
-from aos_solver.mission.steering import Asked, Steering
+from aos_solver.mission.control.steering import Asked, Steering
 
 _RULE = "steering"
 

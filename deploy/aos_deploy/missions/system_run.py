@@ -20,7 +20,7 @@ from aos_protocol.mission_rows import DECISION
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import make_folder_of_missions, mission_folder
 from aos_runtime.parties.steering import start_mission
-from aos_solver.mission.logbook import JOURNAL, entries_of, entry_of
+from aos_solver.mission.records.logbook import JOURNAL, entries_of, entry_of
 
 
 class SystemRun(MissionRun):

@@ -8,7 +8,7 @@ import msgspec
 from aos_deploy.export.kept_missions import KeptMission, kept_missions
 from aos_protocol.messages import DecisionRecord, DriftTest, DriftTests
 from aos_protocol.mission_rows import DECISION, DRIFT
-from aos_solver.mission.drift import after_use
+from aos_solver.mission.rules.drift import after_use
 
 
 class ModelTests(msgspec.Struct):

@@ -6,7 +6,7 @@ from aos_lab.bench.problems import Problem
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Planner, Stepping
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 SIMULATIONS = 65_536

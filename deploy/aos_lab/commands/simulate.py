@@ -30,7 +30,7 @@ from aos_deploy.terminal import progress
 from aos_lab.formats import PROBLEM_ENDINGS
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 from aos_solver.offline.following import following
 

@@ -10,7 +10,7 @@ from aos_lab.trials.intervals import Interval, interval_of_mean
 from aos_lab.trials.model_player import ModelMissions, ModelPlayer
 from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine
-from aos_solver.mission.endings import Ending
+from aos_solver.mission.rules.endings import Ending
 from aos_solver.offline.enumeration import enumerate_model
 from aos_solver.offline.solving import SolvingLimits, solve
 from aos_solver.offline.stopping import with_stopping

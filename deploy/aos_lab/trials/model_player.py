@@ -16,7 +16,7 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.rules.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 from aos_solver.offline.following import following
 

@@ -7,11 +7,11 @@ from aos_protocol.messages import Activate, DecisionRecord, Message, MissionStat
 from aos_runtime.parties.asking import ask_until_answered
 from aos_runtime.processes.lifecycle import Service
 from aos_solver.mapping_watch import MappingWatch
-from aos_solver.mission.endings import Ending
-from aos_solver.mission.logbook import Logbooks
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Past
-from aos_solver.mission.takeover import RunningModel, Takeover
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.takeover import RunningModel, Takeover
+from aos_solver.mission.records.logbook import Logbooks
+from aos_solver.mission.rules.endings import Ending
 from aos_solver.settings import Settings
 
 ACTIVATION_MARGIN_S = 20.0

@@ -18,17 +18,17 @@ from aos_solver.child.search import Search
 from aos_solver.earlier_models import earlier_models
 from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
 from aos_solver.mission.abandoning import Abandoning
-from aos_solver.mission.endings import Ending, MissionLimits
-from aos_solver.mission.failures import FailureRules
-from aos_solver.mission.logbook import Logbook, Logbooks
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import MissionMemory
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Past
-from aos_solver.mission.retracing import Earlier
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.retracing import Earlier
+from aos_solver.mission.models.takeover import RunningModel
+from aos_solver.mission.records.logbook import Logbook, Logbooks
+from aos_solver.mission.records.memory import MissionMemory
+from aos_solver.mission.rules.endings import Ending, MissionLimits
+from aos_solver.mission.rules.failures import FailureRules
+from aos_solver.mission.rules.terms import Terms
 from aos_solver.mission.succession import Succession
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
 

@@ -7,7 +7,7 @@ import msgspec
 from aos_protocol.documents import Constraint, MissionValue
 from aos_runtime.processes.lifecycle import ServiceSettings
 from aos_solver.child.questions.missions import DEFAULT_PLANNER, Planner
-from aos_solver.mission.failures import SkillRule
+from aos_solver.mission.rules.failures import SkillRule
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):

@@ -9,7 +9,7 @@ from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, 
 from aos_runtime.bus.bus import Bus
 from aos_runtime.disk.journal import Journal
 from aos_runtime.parties.registry_watch import RegistryWatch
-from aos_solver.mission.logbook import Logbooks
+from aos_solver.mission.records.logbook import Logbooks
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import NICENESS, ReplayedMission

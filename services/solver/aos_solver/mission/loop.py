@@ -25,23 +25,23 @@ from aos_protocol.mission_rows import ADOPTED, DRIFT, INTENDED, OUTCOME
 from aos_runtime.clock import moment_s
 from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.mission.abandoning import Abandoning
-from aos_solver.mission.belief_rows import keep_belief
-from aos_solver.mission.choices import Choice, Ended, Held, Refused
-from aos_solver.mission.choosing import Chooser
-from aos_solver.mission.drift import after_use, drifts
-from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
-from aos_solver.mission.failures import Failures
-from aos_solver.mission.helm import Helm
-from aos_solver.mission.holding import Holding
-from aos_solver.mission.memory import MissionMemory, Pending
-from aos_solver.mission.past import Past, evidence_of, updated
+from aos_solver.mission.control.helm import Helm
+from aos_solver.mission.control.holding import Holding
+from aos_solver.mission.control.steering import LIFTS, Asked
+from aos_solver.mission.decision.choices import Choice, Ended, Held, Refused
+from aos_solver.mission.decision.choosing import Chooser
+from aos_solver.mission.decision.risk import RiskBudget
+from aos_solver.mission.models.past import Past, evidence_of, updated
+from aos_solver.mission.models.retracing import Earlier, retraced
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import Ports
-from aos_solver.mission.reports import Reports, overrun
-from aos_solver.mission.retracing import Earlier, retraced
-from aos_solver.mission.risk import RiskBudget
-from aos_solver.mission.steering import LIFTS, Asked
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.records.belief_rows import keep_belief
+from aos_solver.mission.records.memory import MissionMemory, Pending
+from aos_solver.mission.records.reports import Reports, overrun
+from aos_solver.mission.rules.drift import after_use, drifts
+from aos_solver.mission.rules.endings import Ending, ending_of_belief, remark_of
+from aos_solver.mission.rules.failures import Failures
+from aos_solver.mission.rules.terms import Terms
 
 _NOTHING = MissionMemory()
 

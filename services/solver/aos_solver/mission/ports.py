@@ -8,9 +8,9 @@ from typing import Protocol
 
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionState, Outcome
 from aos_runtime.clock import Clock, SystemClock
-from aos_solver.mission.endings import Ending
-from aos_solver.mission.past import Past
-from aos_solver.mission.takeover import RunningModel, Takeover
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.takeover import RunningModel, Takeover
+from aos_solver.mission.rules.endings import Ending
 
 
 class Available(Protocol):

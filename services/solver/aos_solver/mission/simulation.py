@@ -13,12 +13,12 @@ from aos_protocol.errors import DocumentError
 from aos_protocol.messages import Activate, DecisionRecord, Outcome
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import Ending, MissionLimits, believed_ending
-from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.endings import Ending, MissionLimits, believed_ending
+from aos_solver.mission.rules.failures import FailureRules
+from aos_solver.mission.rules.terms import Terms
 
 _NO_CONSEQUENCES = FailureRules(failure_limit=sys.maxsize, set_aside_after=sys.maxsize)
 """A model's skills never break. Where the world has other documents, their reports are left to the belief."""

@@ -20,14 +20,14 @@ from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.engine import Engine
 from aos_solver.mission.beginning import begin_with
 from aos_solver.mission.conditions import built_with_conditions
-from aos_solver.mission.logbook import Logbooks
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import MissionMemory, PastStep
-from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Beginning, Past
+from aos_solver.mission.models.model_shelf import ModelShelf
+from aos_solver.mission.models.past import Beginning, Past
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import QuietPorts
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.records.logbook import Logbooks
+from aos_solver.mission.records.memory import MissionMemory, PastStep
+from aos_solver.mission.rules.terms import Terms
 
 KEEP = "keep"
 """The belief of a mission that begins with the last one of the mission before; all others begin with the

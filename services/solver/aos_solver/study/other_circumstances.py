@@ -12,7 +12,7 @@ from aos_protocol.errors import DocumentError, SkillError, StudyError
 from aos_protocol.messages import ActionValue, DecisionRecord, WhatIf, WhatIfQuery
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Restriction
-from aos_solver.mission.past import replayed
+from aos_solver.mission.models.past import replayed
 from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
 from aos_solver.study.supposing import believe_all, changed_files

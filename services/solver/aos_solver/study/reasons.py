@@ -7,7 +7,7 @@ from aos_protocol.errors import AosError, IntractableError, SkillError, StudyErr
 from aos_protocol.messages import Consequence, DecisionRecord, Flip, ValueTerm, Why
 from aos_solver.child.answers.models import RewardTerms
 from aos_solver.child.engine import Engine
-from aos_solver.mission.past import updated
+from aos_solver.mission.models.past import updated
 from aos_solver.study.aside import put_aside
 from aos_solver.study.flips import flips_of
 from aos_solver.study.replaying import ReplayedMission

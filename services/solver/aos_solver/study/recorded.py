@@ -9,7 +9,7 @@ from aos_protocol.errors import SkillError
 from aos_protocol.messages import BeliefRow, DecisionRecord, MissionBegun, ModelAdopted
 from aos_protocol.mission_rows import ADOPTED, BEGUN, DECISION
 from aos_runtime.disk.journal import JournalRow
-from aos_solver.mission.belief_rows import BELIEF
+from aos_solver.mission.records.belief_rows import BELIEF
 
 Event = MissionBegun | ModelAdopted | DecisionRecord | BeliefRow
 

@@ -28,13 +28,13 @@ from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
 from aos_solver.earlier_models import built_for
-from aos_solver.mission.belief_rows import exported_of
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, Failures
-from aos_solver.mission.past import Evidence, Past, evidence_of, updated
-from aos_solver.mission.retracing import Earlier, retraced
-from aos_solver.mission.stretches import Stretch, after, models_before
-from aos_solver.mission.takeover import RunningModel, Successor
+from aos_solver.mission.models.past import Evidence, Past, evidence_of, updated
+from aos_solver.mission.models.retracing import Earlier, retraced
+from aos_solver.mission.models.takeover import RunningModel, Successor
+from aos_solver.mission.records.belief_rows import exported_of
+from aos_solver.mission.records.stretches import Stretch, after, models_before
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules, Failures
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission

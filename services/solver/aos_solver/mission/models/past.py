@@ -13,7 +13,7 @@ from aos_protocol.errors import ModelError
 from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.child.engine import Engine
-from aos_solver.mission.failures import Failures
+from aos_solver.mission.rules.failures import Failures
 
 _DEFAULT_RESPONSE = "DefaultObservation"
 

@@ -4,7 +4,7 @@ import msgspec
 
 from aos_protocol.messages import ChosenBy, SearchMade
 from aos_solver.child.answers.models import Plan, Risks
-from aos_solver.mission.endings import Ending
+from aos_solver.mission.rules.endings import Ending
 
 
 class Choice(msgspec.Struct, frozen=True):

@@ -8,8 +8,8 @@ from aos_protocol.messages import ActionRefused, DecisionRecord, MissionState, S
 from aos_protocol.mission_rows import REFUSED, STEERED
 from aos_protocol.spelling import did_you_mean, nearest
 from aos_solver.child.answers.models import EngineDescription
+from aos_solver.mission.control.steering import Asked, Steering
 from aos_solver.mission.ports import Record
-from aos_solver.mission.steering import Asked, Steering
 
 _REFUSED = "AOS518"
 

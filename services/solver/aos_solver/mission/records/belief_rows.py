@@ -2,8 +2,8 @@
 
 from aos_protocol.messages import BeliefRow, BeliefSummary, WeightedStates
 from aos_solver.child.answers.beliefs import ExportedBelief, ExportedBeliefs
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import Record
-from aos_solver.mission.takeover import RunningModel
 
 BELIEF = "belief"
 """The kind of the journal's rows."""

@@ -23,9 +23,9 @@ from aos_protocol.messages import (
 )
 from aos_protocol.mission_rows import MESSAGES
 from aos_runtime.disk.journal import JournalRow
-from aos_solver.mission.drift import after_use
-from aos_solver.mission.steering import LIFTS, Steering
-from aos_solver.mission.stretches import Stretch, after
+from aos_solver.mission.control.steering import LIFTS, Steering
+from aos_solver.mission.records.stretches import Stretch, after
+from aos_solver.mission.rules.drift import after_use
 
 _NO_BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 0, False)
 

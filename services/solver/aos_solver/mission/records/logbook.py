@@ -15,7 +15,7 @@ from aos_runtime.disk.mission_folders import (
     mission_name,
     number_in,
 )
-from aos_solver.mission.memory import MissionMemory, folded
+from aos_solver.mission.records.memory import MissionMemory, folded
 
 JOURNAL = "journal.db"
 

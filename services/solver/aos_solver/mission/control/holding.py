@@ -3,9 +3,9 @@
 from collections.abc import Awaitable, Callable
 
 from aos_protocol.errors import AosError
-from aos_solver.mission.failures import Failures
-from aos_solver.mission.helm import Helm
+from aos_solver.mission.control.helm import Helm
 from aos_solver.mission.ports import Ports
+from aos_solver.mission.rules.failures import Failures
 
 _LOOKS_AGAIN_S = 60.0
 """A mission that waits for somebody looks again after this time, whatever was told."""

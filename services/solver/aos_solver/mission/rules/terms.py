@@ -3,8 +3,8 @@
 import msgspec
 
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.rules.failures import FailureRules
 
 
 class Terms(msgspec.Struct, frozen=True, kw_only=True):

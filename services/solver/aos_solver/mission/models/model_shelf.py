@@ -25,10 +25,10 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.building.thorough_builds import ThoroughBuilds
 from aos_solver.child.engine import Engine
-from aos_solver.mission.mission_values import NOWHERE, MissionValues
-from aos_solver.mission.past import Past
-from aos_solver.mission.push_trial import faults_in_trial
-from aos_solver.mission.takeover import RunningModel, Successor, Takeover
+from aos_solver.mission.models.mission_values import NOWHERE, MissionValues
+from aos_solver.mission.models.past import Past
+from aos_solver.mission.models.push_trial import faults_in_trial
+from aos_solver.mission.models.takeover import RunningModel, Successor, Takeover
 
 log = logging.getLogger(__name__)
 

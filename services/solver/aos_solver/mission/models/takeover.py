@@ -15,8 +15,8 @@ from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary, DriftTests, Marginal, ModelAdopted, TakeoverWay
 from aos_runtime.clock import Clock
 from aos_solver.child.engine import Engine
-from aos_solver.mission.drift import begun
-from aos_solver.mission.past import Past, replayed
+from aos_solver.mission.models.past import Past, replayed
+from aos_solver.mission.rules.drift import begun
 
 REPLAY_S = 10.0
 """A replay that would take longer is given up."""

@@ -10,7 +10,7 @@ import msgspec
 
 from aos_protocol.errors import ANOTHER_MAY_MOVE
 from aos_protocol.messages import DecisionRecord, Outcome
-from aos_solver.mission.setting_aside import SettingAside
+from aos_solver.mission.rules.setting_aside import SettingAside
 
 OnFailure = Literal["observe", "retry", "hold", "end"]
 

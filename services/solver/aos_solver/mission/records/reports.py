@@ -15,13 +15,13 @@ from aos_protocol.messages import (
 )
 from aos_protocol.mission_rows import DECISION, STATE
 from aos_solver.child.answers.beliefs import BeliefUpdate
-from aos_solver.mission.choices import Choice
-from aos_solver.mission.drift import text_of
-from aos_solver.mission.endings import Ending
-from aos_solver.mission.memory import MissionMemory
+from aos_solver.mission.control.steering import Steering
+from aos_solver.mission.decision.choices import Choice
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import Ports
-from aos_solver.mission.steering import Steering
-from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.records.memory import MissionMemory
+from aos_solver.mission.rules.drift import text_of
+from aos_solver.mission.rules.endings import Ending
 
 
 class Reports:

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from aos_runtime.clock import SystemClock
 from aos_solver.child.answers.beliefs import BeliefUpdate
-from aos_solver.mission.past import Past, replayed
-from aos_solver.mission.takeover import RunningModel, Successor
+from aos_solver.mission.models.past import Past, replayed
+from aos_solver.mission.models.takeover import RunningModel, Successor
 
 
 class Earlier(NamedTuple):

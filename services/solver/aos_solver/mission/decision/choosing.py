@@ -7,18 +7,18 @@ import msgspec
 from aos_protocol.messages import BeliefSummary, ChosenBy, SearchMade
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
-from aos_solver.mission.choices import Choice, Ended, Held, Refused
-from aos_solver.mission.endings import Ending, ending_after_planning, is_held_back, is_worth_nothing
-from aos_solver.mission.endings import remark_of as remark_of_ending
-from aos_solver.mission.endless_loops import EndlessLoops
-from aos_solver.mission.failures import Failures
-from aos_solver.mission.made_searches import MadeSearches
-from aos_solver.mission.passed_over import PassedOver
+from aos_solver.mission.control.steering import Asked
+from aos_solver.mission.decision.choices import Choice, Ended, Held, Refused
+from aos_solver.mission.decision.endless_loops import EndlessLoops
+from aos_solver.mission.decision.made_searches import MadeSearches
+from aos_solver.mission.decision.passed_over import PassedOver
+from aos_solver.mission.decision.risk import RiskBudget
+from aos_solver.mission.models.takeover import RunningModel
 from aos_solver.mission.ports import Available
-from aos_solver.mission.risk import RiskBudget
-from aos_solver.mission.steering import Asked
-from aos_solver.mission.takeover import RunningModel
-from aos_solver.mission.terms import Terms
+from aos_solver.mission.rules.endings import Ending, ending_after_planning, is_held_back, is_worth_nothing
+from aos_solver.mission.rules.endings import remark_of as remark_of_ending
+from aos_solver.mission.rules.failures import Failures
+from aos_solver.mission.rules.terms import Terms
 
 _TOO_RISKY = "it risks more than the mission's constraints have left"
 _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"

@@ -1,0 +1,1 @@
+"""The rules that a mission and a simulation share: endings, failures, drift."""
