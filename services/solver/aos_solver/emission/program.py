@@ -91,7 +91,7 @@ class Axis(msgspec.Struct, frozen=True):
 class Variable(_Typed, frozen=True):
     """A state variable. One that nothing changes is a constant, which no particle holds.
 
-    `is_relevant`: what is earned or observed may depend on it (see `lower_relevance`).
+    `is_relevant`: what is earned or observed may depend on it (see `lowering.relevance`).
     `is_fixed`: nothing but its default and the initial belief sets it.
     `is_parameter_value`: actions may take it as a parameter. `is_mission_parameter`: a constant whose value
     the engine gets when it is started. The default is an expression for the value, or statements over
@@ -230,7 +230,7 @@ class Skill(msgspec.Struct, frozen=True):
     `observed` are the numbers that it reports.
     `has_alike_groundings`: its parameters shape only what is observed.
     `has_certain_rewards`: its draws shape only what is observed.
-    `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lower_copies`).
+    `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lowering.copies`).
     `goal_conditions` is the dynamic model once more, which counts its conditions.
     """
 

@@ -79,7 +79,7 @@ def rewrite(
     - a call of a shared function that draws, `slips(0.1)`, becomes `slips(AOS, 0.1)`, and its definition, one
       of `functions`, `bool slips(auto& AOS, double p) {`
     - a loop that draws tells of its rounds: see `drawing_loop.hpp`; variables that it may read are set first
-    - objects, containers, indexes, references and lambdas: see `rewrite_objects` and its neighbours
+    - objects, containers, indexes, references and lambdas: see the neighbours
     """
     reported = [report.draw for report in reports_in(cpp)]
     edits: list[tuple[Extent | int, str]] = list(_before_loops(of_loops))

@@ -55,7 +55,7 @@ struct SkillDefaults {
   static constexpr bool has_text_response = false;
   static constexpr bool is_monitor = false;
   static constexpr int number_count = 0;
-  // Whether the parameters shape only what is observed (lower_relevance.py).
+  // Whether the parameters shape only what is observed (lowering/relevance.py).
   static constexpr bool has_alike_groundings = false;
   // Whether the draws shape only what is observed.
   static constexpr bool has_certain_rewards = false;

@@ -1,6 +1,6 @@
 // States by number. Two states that agree in every relevant variable have the same number.
 //
-// Which variables are irrelevant follows from the text of the documents' code (lower_relevance.py), for every input.
+// Which variables are irrelevant follows from the text of the documents' code (lowering/relevance.py), for every input.
 // Most words of a state are the same in all states. These words are kept once, and only the others for each state.
 #pragma once
 
