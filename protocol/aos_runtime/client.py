@@ -12,7 +12,7 @@ import uuid
 from collections.abc import AsyncGenerator, AsyncIterator, Iterable, Mapping
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
@@ -23,18 +23,26 @@ from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, Nobo
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     BundleReport,
+    Catalogue,
+    CatalogueQuery,
     DecisionRecord,
     DecisionTree,
     History,
     HistoryQuery,
     MappingQuery,
     MappingState,
+    Message,
     MissionEntry,
     MissionQuery,
     Missions,
     MissionsQuery,
     MissionState,
+    ProjectQuery,
+    ProjectRevision,
     PushBundle,
+    RemoveDocuments,
+    Revisions,
+    RevisionsQuery,
     StartMission,
     StopMission,
     TreeQuery,
@@ -52,7 +60,7 @@ from aos_runtime.parties.decision_feed import DecisionFeed
 from aos_runtime.parties.reported_state import state_when
 from aos_runtime.parties.steering import STEER_TIMEOUT_S, SteeringQuestions, start_mission
 
-_HISTORY_TIMEOUT_S = 5.0
+_ANSWER_S = 5.0
 _PUSH_TIMEOUT_S = 200.0
 """The registry lets the solver compile a new model before it accepts it."""
 _ADAPTERS_S = 3.0
@@ -63,6 +71,8 @@ _HISTORY_TRIES = 3
 """A solver that builds or plans on all cores may be late with an answer."""
 
 _log = logging.getLogger("aos.client")
+
+R = TypeVar("R", bound=Message)
 
 SOLVER_AWAY_S = 15.0
 """A solver that is started again is back within this time."""
@@ -132,9 +142,7 @@ class AosClient(SteeringQuestions):
 
     async def mission_state(self) -> MissionState:
         """Asks for the mission's state now; NobodyAnswersError if there is no solver."""
-        return await self.bus.ask(
-            self.keys.mission_state, MissionQuery(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
-        )
+        return await self._ask(self.keys.mission_state, MissionQuery(), MissionState)
 
     async def start_mission(
         self,
@@ -194,9 +202,33 @@ class AosClient(SteeringQuestions):
         )
         return msgspec.structs.replace(report, diagnostics=(*report.diagnostics, *warnings))
 
+    async def catalogue(self) -> Catalogue:
+        """The projects that the registry holds."""
+        return await self._ask(self.keys.catalogue, CatalogueQuery(), Catalogue)
+
+    async def project(self, name: str = "", revision: int = 0) -> ProjectRevision:
+        """A project's documents in its newest or another revision. The only project needs no name."""
+        return await self._ask(self.keys.project, ProjectQuery(name, revision), ProjectRevision)
+
+    async def revisions(self, project: str) -> Revisions:
+        """The revisions of a project. The only one needs no name."""
+        return await self._ask(self.keys.bundle_history, RevisionsQuery(project), Revisions)
+
+    async def remove(self, project: str, skill: str = "") -> BundleReport:
+        """Takes a skill, or a whole project, out of the catalogue."""
+        request = RemoveDocuments(project, skill)
+        return await self._ask(self.keys.remove_bundle, request, BundleReport, _PUSH_TIMEOUT_S)
+
+    async def mapping_state(self) -> MappingState:
+        """The revision that the middleware runs, and the skills that nobody can run."""
+        return await self._ask(self.keys.mapping_state, MappingQuery(), MappingState)
+
+    async def _ask(self, key: str, query: Message, reply: type[R], timeout_s: float = 0) -> R:
+        return await self.bus.ask(key, query, reply, timeout_s=timeout_s or _ANSWER_S)
+
     async def missions(self) -> Missions:
         """The missions of the system so far."""
-        return await self.bus.ask(self.keys.missions, MissionsQuery(), Missions, timeout_s=_HISTORY_TIMEOUT_S)
+        return await self._ask(self.keys.missions, MissionsQuery(), Missions)
 
     async def why(self, step: int, *, instead: str = "", mission: int | None = None) -> Why:
         """The reasons for the decision of a step, and not for `instead` another action.
@@ -205,16 +237,16 @@ class AosClient(SteeringQuestions):
         cannot be told; SkillError AOS501 for a step or an action that there is not.
         """
         query = WhyQuery(step, instead, await self._named(mission))
-        return await self.bus.ask(self.keys.study_why, query, Why, timeout_s=STUDY_TIMEOUT_S)
+        return await self._ask(self.keys.study_why, query, Why, STUDY_TIMEOUT_S)
 
     async def what_if(self, query: WhatIfQuery, *, mission: int | None = None) -> WhatIf:
         """The decision of a step under other circumstances; errors as from `why`."""
         query = msgspec.structs.replace(query, mission=await self._named(mission))
-        return await self.bus.ask(self.keys.study_whatif, query, WhatIf, timeout_s=STUDY_TIMEOUT_S)
+        return await self._ask(self.keys.study_whatif, query, WhatIf, STUDY_TIMEOUT_S)
 
     async def tree(self, query: TreeQuery) -> DecisionTree:
         """The tree below a decision; errors as from `why`."""
-        return await self.bus.ask(self.keys.study_tree, query, DecisionTree, timeout_s=STUDY_TIMEOUT_S)
+        return await self._ask(self.keys.study_tree, query, DecisionTree, STUDY_TIMEOUT_S)
 
     async def _named(self, mission: int | None) -> str:
         """The name of a mission by its number; empty for the newest one."""
@@ -340,10 +372,10 @@ class AosClient(SteeringQuestions):
         key, query = self.keys.decision_history, HistoryQuery(since, _PAGE_RECORDS)
         for _ in range(_HISTORY_TRIES - 1):
             try:
-                return await self.bus.ask(key, query, History, timeout_s=_HISTORY_TIMEOUT_S)
+                return await self._ask(key, query, History)
             except LateAnswerError as error:
                 _log.info("%s; asked again", error)
-        return await self.bus.ask(key, query, History, timeout_s=_HISTORY_TIMEOUT_S)
+        return await self._ask(key, query, History)
 
     async def _state_if_there(self) -> MissionState | None:
         try:

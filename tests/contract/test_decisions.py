@@ -105,7 +105,7 @@ async def test_a_long_history_comes_page_after_page(client: AosClient, solver: S
 async def test_a_history_that_is_late_is_asked_for_again(
     client: AosClient, solver: Storyteller, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("aos_runtime.client._HISTORY_TIMEOUT_S", 0.3)
+    monkeypatch.setattr("aos_runtime.client._ANSWER_S", 0.3)
     await solver.appear()
     solver.decide(is_lost=True)
     solver.end()

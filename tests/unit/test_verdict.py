@@ -119,7 +119,9 @@ def test_where_the_journal_is_damaged_or_gone_the_verdict_is_on_what_was_seen(ru
     (run / "journal.db").write_bytes(damaged)
     if is_gone:
         (run / "journal.db").unlink()
-    account = Account((decided(1), observed(1), ended("goal")))
+    account = Account()
+    for message in (decided(1), observed(1), ended("goal")):
+        account.take(message)
     verdict, lacking = settled(run, account, stopped_by=None, was_interrupted=False)
     assert (verdict.ending, verdict.exit_code) == ("goal", 0)
     assert lacking.code == "AOS702"

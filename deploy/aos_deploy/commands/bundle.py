@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -18,23 +18,7 @@ from aos_language.load import read_bundle_files
 from aos_language.outline import outline
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DocumentError
-from aos_protocol.messages import (
-    BundleReport,
-    Catalogue,
-    CatalogueQuery,
-    ProjectQuery,
-    ProjectRevision,
-    RemoveDocuments,
-    Revisions,
-    RevisionsQuery,
-)
-
-if TYPE_CHECKING:
-    from aos_runtime.client import AosClient
-
-ANSWER_TIMEOUT_S = 5.0
-PUSH_TIMEOUT_S = 200.0
-"""The registry lets the solver compile a new model before it accepts it."""
+from aos_protocol.messages import BundleReport
 
 bundle_app = typer.Typer(
     no_args_is_help=True,
@@ -83,12 +67,7 @@ def push(system: System, path: Folder, as_json: AsJson = False) -> None:
 @on_system
 def list_projects(system: System, as_json: AsJson = False) -> None:
     """List the projects that the registry holds, with their skills."""
-
-    async def ask(client: AosClient) -> Catalogue:
-        key = client.keys.catalogue
-        return await client.bus.ask(key, CatalogueQuery(), Catalogue, timeout_s=ANSWER_TIMEOUT_S)
-
-    catalogue = system.do(ask)
+    catalogue = system.do(lambda aos: aos.catalogue())
     if as_json:
         print_json(catalogue)
         return
@@ -111,12 +90,7 @@ def show(
     as_json: AsJson = False,
 ) -> None:
     """Print a project's documents as the registry holds them."""
-
-    async def ask(client: AosClient) -> ProjectRevision:
-        key, query = client.keys.project, ProjectQuery(project, number)
-        return await client.bus.ask(key, query, ProjectRevision, timeout_s=ANSWER_TIMEOUT_S)
-
-    revision = system.do(ask)
+    revision = system.do(lambda aos: aos.project(project, number))
     if as_json:
         print_json(revision)
         return
@@ -131,12 +105,7 @@ def history(system: System, project: OneProject = "", as_json: AsJson = False) -
 
     When each was stored, and which documents it added, changed or removed.
     """
-
-    async def ask(client: AosClient) -> Revisions:
-        key, query = client.keys.bundle_history, RevisionsQuery(project)
-        return await client.bus.ask(key, query, Revisions, timeout_s=ANSWER_TIMEOUT_S)
-
-    found = system.do(ask)
+    found = system.do(lambda aos: aos.revisions(project))
     if as_json:
         print_json(found)
         return
@@ -161,13 +130,7 @@ def remove(
     A mission that runs does without the skill from its next decision on; without the project it goes on with
     what it has. The history keeps what was. Exit code 1: refused, because what is left has mistakes.
     """
-
-    async def ask(client: AosClient) -> BundleReport:
-        request = RemoveDocuments(project, skill)
-        key = client.keys.remove_bundle
-        return await client.bus.ask(key, request, BundleReport, timeout_s=PUSH_TIMEOUT_S)
-
-    report = system.do(ask)
+    report = system.do(lambda aos: aos.remove(project, skill))
     if as_json:
         print_json(report)
     else:

@@ -9,6 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy.options import AsJson
+from aos_deploy.printing import print_json
 from aos_deploy.running_system import System, on_system
 from aos_protocol.documents import LocalSource, Project
 from aos_protocol.errors import AosError, DeployError, SkillError
@@ -17,11 +18,8 @@ from aos_protocol.messages import (
     ActivationId,
     Cancel,
     Cancelled,
-    MappingQuery,
     MappingState,
     MissionState,
-    ProjectQuery,
-    ProjectRevision,
     SkillCall,
     SkillProgress,
     SkillResult,
@@ -55,7 +53,7 @@ def list_skills(system: System, as_json: AsJson = False) -> None:
         project, state, servers = await _known(aos)
         rows = [_row(skill.name, skill.mapping.activation.path, state, servers) for skill in project.skills]
         if as_json:
-            typer.echo(json.dumps(rows, indent=2))
+            print_json(rows)
             return
         for row in rows:
             by = ", ".join(row["served_by"]) or row["unavailable"]
@@ -173,9 +171,7 @@ def resume(system: System) -> None:
 
 
 async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:
-    bus, keys = aos.bus, aos.keys
-    revision = await bus.ask(keys.project, ProjectQuery(), ProjectRevision, timeout_s=_ASK_S)
-    state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
+    revision, state = await aos.project(), await aos.mapping_state()
     return revision.project, state, await served(aos.bus, aos.keys)
 
 

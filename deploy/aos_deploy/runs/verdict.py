@@ -4,8 +4,6 @@ Exit code, summary and last line are made from it. A run that ended otherwise th
 that `aos-up` has seen as the last row of its journal.
 """
 
-from collections.abc import Iterable
-
 import msgspec
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
@@ -31,13 +29,11 @@ class Verdict(RunEnd, frozen=True, kw_only=True):
 class Account:
     """Takes a mission's rows in their order, or the same messages from the bus, and gives the verdict."""
 
-    def __init__(self, messages: Iterable[DecisionRecord | MissionState] = ()) -> None:
+    def __init__(self) -> None:
         self.state: MissionState | None = None
         self._actions: dict[int, str] = {}
         self._responses: dict[int, str] = {}
         self._belief: BeliefSummary | None = None
-        for message in messages:
-            self.take(message)
 
     @property
     def has_begun(self) -> bool:

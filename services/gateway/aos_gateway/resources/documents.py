@@ -13,7 +13,7 @@ from aos_language.load import load_files
 from aos_language.reading.picture_file import PICTURE
 from aos_protocol.documents import Project, Snippet
 from aos_protocol.errors import AosError, GatewayError, StorageError
-from aos_protocol.messages import Catalogue, CatalogueEntry, CatalogueQuery
+from aos_protocol.messages import Catalogue, CatalogueEntry
 from aos_registry.catalogue import Catalogue as KeptCatalogue
 from aos_runtime.disk.plain_tables import require_plain_tables
 
@@ -57,9 +57,7 @@ async def bundles(gateway: Gateway, run: str) -> Catalogue:
     found = gateway.shelf.run(run)
     if not isinstance(found, KeptRun):
         async with found.asking() as client:
-            return await client.bus.ask(
-                client.keys.catalogue, CatalogueQuery(), Catalogue, timeout_s=_ANSWER_S
-            )
+            return await client.catalogue()
     return Catalogue(await asyncio.to_thread(_entries, found))
 
 
