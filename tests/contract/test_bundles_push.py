@@ -72,12 +72,6 @@ async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(
     assert refused.output.endswith("refused; the project stays at revision 1\n")
 
 
-async def test_an_unknown_project_is_named_with_the_nearest(aos: Aos, bundles: Path) -> None:
-    await aos("bundle", "push", str(bundles / "armadillo-finer"))
-    shown = await aos("bundle", "show", "armadilo")
-    assert "Did you mean `armadillo`?" in str(shown.exception)
-
-
 async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos: Aos, bundles: Path) -> None:
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     removed = await aos("bundle", "rm", "armadillo", "observe_holding")
@@ -126,7 +120,11 @@ async def test_a_pushed_skill_that_nobody_serves_is_told(
     assert "pick: warning[AOS505]: nobody can run it now: no adapter answers calls of /pick" in pushed.output
 
 
-async def test_what_is_not_there_is_not_removed(aos: Aos, bundles: Path) -> None:
+async def test_what_is_not_there_is_told_with_the_nearest(aos: Aos, bundles: Path) -> None:
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
-    assert "Did you mean `pick`?" in str((await aos("bundle", "rm", "armadillo", "pik")).exception)
-    assert "no project armadilo" in str((await aos("bundle", "rm", "armadilo")).exception)
+    for arguments, told in (
+        (("show", "armadilo"), "Did you mean `armadillo`?"),
+        (("rm", "armadillo", "pik"), "Did you mean `pick`?"),
+        (("rm", "armadilo"), "no project armadilo"),
+    ):
+        assert told in str((await aos("bundle", *arguments)).exception)

@@ -7,7 +7,6 @@ import pytest
 import pytest_asyncio
 from decision_records import decision_record
 
-from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery, Message, MissionQuery, MissionState
 from aos_runtime.bus.bus import Bus
@@ -137,14 +136,6 @@ async def test_a_gap_in_the_stream_is_filled(client: AosClient, solver: Storytel
     assert [decision.sequence async for decision in following] == [4]
 
 
-async def test_a_mission_that_is_over_is_given_whole(client: AosClient, solver: Storyteller) -> None:
-    for _ in range(4):
-        solver.decide(is_lost=True)
-    solver.end()
-    await solver.appear()
-    assert await sequences(client) == [0, 1, 2, 3]
-
-
 async def test_following_ends_when_the_solver_goes(endpoint: str, client: AosClient, keys: Keys) -> None:
     async with await Bus.open(endpoint, sender="solver") as mortal:
         solver = Storyteller(mortal, keys)
@@ -177,12 +168,6 @@ async def test_a_few_lines_are_enough(endpoint: str, solver: Storyteller, keys: 
         assert [decision.action async for decision in aos.decisions()] == ["pick"]
 
 
-async def test_no_system_is_a_clear_error(unused_tcp_port: int) -> None:
-    with pytest.raises(BusError, match="no bus router answers"):
-        async with AosClient.connect(f"tcp/127.0.0.1:{unused_tcp_port}", "test", connect_timeout_s=0.1):
-            pass
-
-
 def test_a_feed_gives_each_record_once_and_in_order() -> None:
     feed = DecisionFeed()
     assert [r.sequence for r in feed.take(record(0))] == [0]
@@ -212,11 +197,3 @@ async def test_a_solver_of_another_mission_is_followed_from_its_first_record(
     assert [(decision.mission, decision.sequence) for decision in decisions] == [
         ("next", number) for number in range(5)
     ]
-
-
-def test_another_mission_starts_from_its_first_record() -> None:
-    feed = DecisionFeed()
-    feed.take(record(0))
-    feed.take(record(1))
-    assert [r.mission for r in feed.take(record(0, mission="next"))] == ["next"]
-    assert feed.next_sequence == 1

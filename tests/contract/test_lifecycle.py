@@ -76,22 +76,6 @@ async def test_a_service_is_present_while_it_runs_and_cleans_up_when_told_to_sto
     assert not fault_path(host.run_dir, "garden").exists()
 
 
-async def test_a_fault_is_left_with_its_diagnostics(host: Host) -> None:
-    async with host.running("garden", "faulty") as child:
-        assert await child.wait() == 1
-        assert b"AOS102: the world is wrong. Mend it" in await child.stderr.read()
-    fault = host.fault("garden")
-    assert (fault.code, fault.message, fault.hint) == ("AOS102", "the world is wrong", "Mend it")
-    assert str(fault.diagnostics[0].span) == "room.yaml:3:1"
-
-
-async def test_a_defect_is_left_as_one_line_and_logged_whole(host: Host) -> None:
-    async with host.running("garden", "broken") as child:
-        assert await child.wait() == 1
-        assert b"Traceback" in await child.stderr.read()
-    assert host.fault("garden").message == "ended by a defect: RuntimeError: a defect"
-
-
 async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys: Keys) -> None:
     async with bus.presence(keys.live("garden")) as changes, host.running("garden") as first:
         await anext(changes)

@@ -61,8 +61,8 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
 
 
 async def test_only_messages_of_the_activation_count_and_all_of_them(system: System) -> None:
-    async def publish_many(_: SkillCall) -> dict[str, Any]:
-        for level in range(200):
+    async def publish_many(call: SkillCall) -> dict[str, Any]:
+        for level in range(200 if call.id.step < 3 else 0):
             system.adapter.publish("/level", {"data": 0 if level < 199 else 9})
         return {}
 
@@ -71,17 +71,8 @@ async def test_only_messages_of_the_activation_count_and_all_of_them(system: Sys
     assert (await system.activate("sense", 1)).local_variables == {"level": "9"}
     system.adapter.publish("/level", {"data": 7})
     assert (await system.activate("sense", 2)).response == "heard"
-
-
-async def test_a_silent_topic_has_its_initial_value_not_that_of_the_last_activation(system: System) -> None:
-    async def publish_once(call: SkillCall) -> dict[str, Any]:
-        if call.id.step == 1:
-            system.adapter.publish("/level", {"data": 9})
-        return {}
-
-    await system.adapter.serve("/sense", publish_once)
-    assert (await system.activate("sense", 1)).response == "heard"
-    assert (await system.activate("sense", 2)).response == "quiet"
+    # A topic that is silent has its initial value, and not that of the last activation.
+    assert (await system.activate("sense", 3)).response == "quiet"
 
 
 async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: System) -> None:
@@ -125,14 +116,17 @@ async def test_holding_is_decided_from_the_published_gap_and_forces(system: Syst
     assert (await system.activate("observe_holding", 2)).response == "not_holding"
 
 
-async def test_an_unknown_skill_is_refused_with_the_nearest_name(system: System) -> None:
+async def test_what_cannot_be_called_says_why(system: System) -> None:
     with pytest.raises(SkillError, match="Did you mean `navigate`") as refusal:
         await system.activate("navigat")
     assert refusal.value.code == "AOS501"
-
-
-async def test_a_path_without_adapter_fails_and_says_what_to_bind(system: System) -> None:
-    outcome = await system.activate("pick")
+    await system.adapter.serve("/navigate", succeed)
+    outcome = await system.activate("navigate", parameters={"destination": {"x": 1.0}})
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("failed", "AOS401")
+    assert "navigate.am" in outcome.fault.message
+    assert system.adapter.calls == []
+    outcome = await system.activate("pick", 2)
     assert (outcome.status, outcome.response) == ("refused", "")
     assert outcome.fault is not None
     assert outcome.fault.code == "AOS505"
@@ -140,26 +134,22 @@ async def test_a_path_without_adapter_fails_and_says_what_to_bind(system: System
     assert "bind:" in outcome.fault.hint
 
 
-@pytest.mark.parametrize(
-    ("code", "status"),
-    [
-        ("AOS502", "refused"),
-        ("AOS503", "timed_out"),
-        ("AOS504", "unknown"),
-        ("AOS506", "refused"),
-        ("AOS507", "cancelled"),
-        ("AOS510", "failed"),
-    ],
-)
-async def test_an_adapters_error_becomes_a_defined_outcome(system: System, code: str, status: str) -> None:
-    async def refuse(_: SkillCall) -> dict[str, Any]:
-        raise SkillError("no", code=code, hint="why")
+async def test_an_adapters_error_becomes_a_defined_outcome(system: System) -> None:
+    statuses = {
+        "AOS502": "refused", "AOS503": "timed_out", "AOS504": "unknown", "AOS506": "refused",
+        "AOS507": "cancelled", "AOS510": "failed",
+    }  # fmt: skip
+
+    async def refuse(call: SkillCall) -> dict[str, Any]:
+        raise SkillError("no", code=[*statuses][call.id.step], hint="why")
 
     await system.adapter.serve("/pick", refuse)
-    outcome = await system.activate("pick")
-    assert (outcome.status, outcome.response) == (status, "")
-    assert outcome.fault is not None
-    assert (outcome.fault.code, outcome.fault.message, outcome.fault.hint) == (code, "no", "why")
+    await system.adapter.serve_cancel("/pick")
+    for step, (code, status) in enumerate(statuses.items()):
+        outcome = await system.activate("pick", step)
+        assert (outcome.status, outcome.response) == (status, "")
+        assert outcome.fault is not None
+        assert (outcome.fault.code, outcome.fault.message, outcome.fault.hint) == (code, "no", "why")
 
 
 async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System) -> None:
@@ -172,13 +162,9 @@ async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System
     assert outcome.fault is not None
     assert outcome.fault.code == "AOS503"
     assert system.adapter.cancelled == ["sense did not end within 0.5 s"]
-
-
-async def test_the_activations_deadline_counts_where_it_is_shorter(system: System) -> None:
-    await system.adapter.serve("/pick", hang)
-    outcome = await system.activate("pick", deadline_s=0.4)
-    assert outcome.status == "timed_out"
-    assert system.adapter.calls[0].deadline_s <= 0.4
+    # The deadline of the activation counts where it is shorter.
+    assert (await system.activate("sense", 2, deadline_s=0.1)).status == "timed_out"
+    assert system.adapter.calls[1].deadline_s <= 0.1
 
 
 async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(system: System) -> None:
@@ -224,12 +210,3 @@ async def test_mapping_code_that_fails_during_the_call_does_not_end_the_call(sys
     assert ended.is_set()
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS401")
-
-
-async def test_parameters_that_the_mapping_does_not_find_are_a_failure_without_a_call(system: System) -> None:
-    await system.adapter.serve("/navigate", succeed)
-    outcome = await system.activate("navigate", parameters={"destination": {"x": 1.0}})
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("failed", "AOS401")
-    assert "navigate.am" in outcome.fault.message
-    assert system.adapter.calls == []

@@ -178,29 +178,25 @@ async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) 
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("function", "fields", "code", "text"),
-    [
-        ("fail", {}, "AOS510", "/skill failed: RuntimeError: gripper jammed"),
-        ("odd", {}, "AOS504", "/skill answered 3, which is no mapping of field names to values"),
-        ("unsendable", {}, "AOS504", "the field picture of the result of /skill cannot be sent"),
-        ("huge", {}, "AOS504", "the result of /skill has 17000005 bytes, and the bus carries 16777216"),
-        ("too_far", {}, "AOS504", "the field ticks of the result of /skill cannot be sent"),
+async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot) -> None:
+    wrong: list[tuple[str, dict[str, Any], str, str]] = [
+        ("fail", {}, "AOS510", "/fail failed: RuntimeError: gripper jammed"),
+        ("odd", {}, "AOS504", "/odd answered 3, which is no mapping of field names to values"),
+        ("unsendable", {}, "AOS504", "the field picture of the result of /unsendable cannot be sent"),
+        ("huge", {}, "AOS504", "the result of /huge has 17000005 bytes, and the bus carries 16777216"),
+        ("too_far", {}, "AOS504", "the field ticks of the result of /too_far cannot be sent"),
         ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
         ("says_it_to_none", {}, "AOS510", "the topic None is no text"),
-        ("nonsense", {}, "AOS504", "the observation of /skill is 3, which is no word"),
+        ("nonsense", {}, "AOS504", "the observation of /nonsense is 3, which is no word"),
         ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),
         ("turn", {"angle": 1}, "AOS502", "The first argument is the call, and no field: write (call, angle)"),
-    ],
-)
-async def test_what_goes_wrong_in_a_function_fails_that_call_alone(
-    robot: Robot, function: str, fields: dict[str, Any], code: str, text: str
-) -> None:
-    await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
-    error = await robot.refusal("/skill", 1, **fields)
-    assert error.code == code
-    assert text in str(error)
-    assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}
+    ]
+    await robot.start(**{each[0]: f"robot.py:{each[0]}" for each in wrong})
+    for step, (function, fields, code, text) in enumerate(wrong):
+        error = await robot.refusal(f"/{function}", 2 * step, **fields)
+        assert error.code == code
+        assert text in str(error)
+        assert (await robot.call("/drive", 2 * step + 1, x=0)).fields == {"success": True}
 
 
 @pytest.mark.parametrize("function", ["wait", "block"])

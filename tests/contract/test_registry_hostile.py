@@ -5,24 +5,21 @@ import gzip
 import io
 import lzma
 import random
-import sys
 import tarfile
 import zipfile
 from collections.abc import AsyncIterator
 from functools import partial
 from pathlib import Path
 
-import msgspec
 import pytest
 import pytest_asyncio
 from processes import HANG_S
-from test_registry_service import current, push, running_registry, written_settings
+from test_registry_service import current, push, running_registry
 
 from aos_language.archive import read_archive
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
-from aos_registry.settings import Settings
 from aos_runtime.bus.bus import Bus
 from aos_runtime.processes.children import Child
 
@@ -161,17 +158,3 @@ def test_hostile_archives_are_read_or_refused(finer: dict[str, bytes], tmp_path:
         path.unlink()
     assert refused > HOSTILE_ARCHIVES / 3
     assert list(tmp_path.iterdir()) == []
-
-
-async def test_a_second_registry_on_the_bus_is_the_one_that_goes(
-    registry: tuple[Path, Child], tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
-    second = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path / "second"))
-    command = [sys.executable, "-m", "aos_registry", str(written_settings(second))]
-    child = await Child.start(command, env={"AOS_LOG": "CRITICAL"})
-    async with asyncio.timeout(HANG_S):
-        assert await child.wait() == 1
-    fault = msgspec.json.decode((tmp_path / "second" / "faults" / "registry.json").read_bytes())
-    assert fault["code"] == "AOS803"
-    assert (await push(bus, keys, finer)).is_accepted
-    assert registry[1].returncode is None

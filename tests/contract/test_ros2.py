@@ -72,11 +72,6 @@ async def count_up(
     return {"sequence": sequence}
 
 
-async def test_a_service_is_called_by_its_name_alone(robot: Node, node: Node) -> None:
-    robot.serve("/lab/add", ADD, add)
-    assert await node.call(ServiceRequest("/lab/add", {"a": 20, "b": 22}, timeout_s=HANG_S)) == {"sum": 42}
-
-
 async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
     robot: Node, node: Node
 ) -> None:
@@ -150,31 +145,6 @@ async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node,
         while (message := await received.get()) == {"data": "new"}:
             pass
         assert message == {"data": "newest"}
-
-
-async def test_an_action_gives_feedback_and_its_result(robot: Node, node: Node) -> None:
-    robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
-    feedback: list[Any] = []
-    end = await node.run_action(
-        ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S, on_feedback=feedback.append)
-    )
-    assert end[:2] == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
-    assert feedback[-1] == {"sequence": [0, 1, 1, 2, 3, 5]}
-
-
-async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) -> None:
-    robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
-    cancelled = asyncio.Event()
-    end = await node.run_action(
-        ActionRequest(
-            "/lab/fibonacci",
-            {"order": 1000},
-            timeout_s=HANG_S,
-            cancelled=cancelled,
-            on_feedback=lambda _: cancelled.set(),
-        )
-    )
-    assert end[:2] == ("canceled", {"sequence": [0, 1, 1]})
 
 
 async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robot: Node, node: Node) -> None:

@@ -207,16 +207,11 @@ async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
         assert (await anext(aiter(feedback)))[1].fields == {"sequence": [0, 1, 2]}
     assert result.fields == {"sequence": [0, 1, 2]}
     assert result.published == {"/count/feedback": 1}
+    log = (lab.folder / "robot.log").read_text()
+    assert "no node serves /lab/wave; served are /lab/add, /lab/count" in log
     with pytest.raises(AosError, match=r"AddTwoInts_?Request has no field c") as raised:
         await lab.call("/sum", {"c": 1}, 3)
     assert raised.value.code == "AOS502"
-
-
-async def test_what_the_robot_lacks_is_logged_with_what_it_serves(lab: Lab) -> None:
-    await lab.until_served("/sum")
-    await lab.until_served("/count")
-    log = (lab.folder / "robot.log").read_text()
-    assert "no node serves /lab/wave; served are /lab/add, /lab/count" in log
 
 
 async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -> None:
@@ -293,15 +288,6 @@ async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
     assert result.published["/lab/said"] >= 1
 
 
-async def test_a_robot_that_leaves_is_withdrawn(lab: Lab) -> None:
-    async with asyncio.timeout(HANG_S), lab.bus.presence(lab.keys.all_serve) as present:
-        async for key, is_alive in present:
-            if key.endswith("/sum"):
-                if not is_alive:
-                    break
-                await lab.robot.close()
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("path", ["/lab/add", "/lab/count"])
 async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_add(
@@ -350,9 +336,13 @@ async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
         await robot.close()
 
 
-async def test_why_a_path_is_not_served_is_told_with_the_node_that_has_left(lab: Lab) -> None:
+async def test_a_robot_that_leaves_is_withdrawn_and_why_a_path_is_not_served_is_told(lab: Lab) -> None:
     none = await lab.until_lacked("/wave", "/lab/add, /lab/count")
     assert none == "no node serves /lab/wave; served are /lab/add, /lab/count"
-    await lab.until_served("/sum")
-    await lab.robot.close()
+    async with asyncio.timeout(HANG_S), lab.bus.presence(lab.keys.all_serve) as present:
+        async for key, is_alive in present:
+            if key.endswith("/sum"):
+                if not is_alive:
+                    break
+                await lab.robot.close()
     assert await lab.until_lacked("/sum", "look whether it runs, and at its log")

@@ -354,12 +354,6 @@ def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path
     assert "aos-up --model" in result.text
 
 
-def test_a_missing_deploy_file_is_named(tmp_path: Path) -> None:
-    with up(tmp_path / "none.yaml") as running:
-        assert running.rest() == 1
-        assert "AOS801: there is no deploy file" in running.error_text()
-
-
 @pytest.mark.parametrize(
     "mistakes",
     [
@@ -396,9 +390,3 @@ def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path) -> None
         result = refused(deploy_file, deploy_file.read_text(), "--listen", endpoint)
     assert result.status == 3
     assert f"cannot listen at {endpoint}: Address already in use. `aos runs` lists what runs" in result.text
-
-
-def test_an_adapter_that_is_not_there_is_named(deploy_file: Path) -> None:
-    result = refused(deploy_file, deploy_file.read_text().replace("/pick: pybullet", "/pick: robotnik"))
-    assert result.status != 0
-    assert "robotnik" in result.text

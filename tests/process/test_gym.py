@@ -156,21 +156,15 @@ def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> 
     subprocess.run([sys.executable, "-c", program], check=True, timeout=COMMAND_S)
 
 
-def test_a_world_has_the_values_of_mission_parameters(root: Path) -> None:
-    environment = AosEnv(root / "deploy" / "bundles" / "errand", mission_values={"target": "bob"})
-    assert "give(to=bob)" in environment.action_names
-    assert "give(to=alice)" not in environment.action_names
-    environment.close()
-
-
-def test_a_deploy_file_stands_for_its_bundles_and_values(root: Path, tmp_path: Path) -> None:
-    deploy = tmp_path / "errand.yaml"
-    bundle = root / "deploy" / "bundles" / "errand"
+def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(
+    bundles: Path, tmp_path: Path
+) -> None:
+    deploy, bundle = tmp_path / "errand.yaml", bundles / "errand"
     deploy.write_text(f"aos: 1\nrobot: errand\nbundles: [{bundle}]\nmission: {{set: {{target: bob}}}}\n")
-    environment = AosEnv(deploy)
-    assert "give(to=bob)" in environment.action_names
-    assert "give(to=alice)" not in environment.action_names
-    environment.close()
+    for environment in (AosEnv(bundle, mission_values={"target": "bob"}), AosEnv(deploy)):
+        assert "give(to=bob)" in environment.action_names
+        assert "give(to=alice)" not in environment.action_names
+        environment.close()
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 from contextlib import ExitStack
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -59,18 +60,11 @@ async def test_the_adapters_start_when_the_programs_are_ready_and_stop_before_th
         await system.until("robot", "ready")
         await system.until("skills", "ready")
     assert system.order("ready").index("nav") < system.order("ready").index("robot")
+    assert system.order("starting")[0] == "router"
+    assert system.order("starting").count("robot") == 1
     stopping = system.order("stopping")
     assert stopping.index("robot") < stopping.index("nav") < stopping.index("registry")
     assert "navigation is up" in system.run.log("nav").read_text()
-
-
-async def test_each_program_waits_for_the_one_before_it(system: System) -> None:
-    first = own("sh", "-c", "echo one; exec sleep 1000", name="first", ready=ReadyPart(line="one"))
-    second = own("sh", "-c", "exec sleep 1000", name="second")
-    async with asyncio.timeout(HANG_S), system.up(first, second):
-        await system.until("second", "ready")
-    changes = [(event.service, event.state) for event in system.events]
-    assert changes.index(("first", "ready")) < changes.index(("second", "starting"))
 
 
 async def test_programs_are_seen_to_be_ready_each_by_its_sign(system: System) -> None:
@@ -92,6 +86,10 @@ async def test_programs_are_seen_to_be_ready_each_by_its_sign(system: System) ->
     async with asyncio.timeout(HANG_S), system.up(*programs):
         for kind in kinds:
             await system.until(kind, "ready")
+    # Each waits for the one before it.
+    changes = [(event.service, event.state) for event in system.events]
+    for before, after in pairwise(kinds):
+        assert changes.index((before, "ready")) < changes.index((after, "starting"))
 
 
 async def test_a_set_up_program_ends_before_the_adapters_start(system: System) -> None:
@@ -401,22 +399,6 @@ def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) ->
     summary = json.loads(Path("runs/latest/summary.json").read_text())
     assert (summary["ending"], summary["exit_code"]) == ("fault", 7)
     assert [(end["name"], end["how"]) for end in summary["process_ends"]] == [("sim", "exit status 5")]
-
-
-def test_what_a_program_has_started_ends_with_a_killed_aos_up(project: Path) -> None:
-    (project / "sim.py").write_text(f"import os\nos.execvp('sh', ['sh', '-c', {TREE!r}])\n")
-    deploy = project / "fetch.yaml"
-    deploy.write_text(deploy.read_text().replace("{line: listening}", "{line: up}, stop_s: 0.3"))
-    words = [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as running:
-        assert running.stdout is not None
-        for line in running.stdout:
-            if re.search("sim ready", line):
-                break
-        pids = descendants(running.pid)
-        running.send_signal(signal.SIGKILL)
-    assert len(pids) > 5
-    asyncio.run(until_ended(pids))
 
 
 def test_two_processes_that_serve_one_path_are_told_at_the_start_each_with_its_process(project: Path) -> None:

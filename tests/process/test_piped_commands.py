@@ -64,8 +64,7 @@ def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    "command",
-    [("calibrate", ".", ".", "--write"), ("test", "missions.yaml", "--junit"), ("solve", ".", "--export")],
+    "command", [("calibrate", ".", ".", "--write"), ("test", "missions.yaml", "--junit")]
 )
 def test_a_file_in_no_folder_is_told_before_the_work_begins(command: tuple[str, ...], tmp_path: Path) -> None:
     target = tmp_path / "none" / "it.pomdp"

@@ -6,8 +6,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from mappings import mapping_text
-from models import engine_of, engine_of_bundle, engine_of_text
+from models import engine_of, engine_of_text
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
@@ -32,10 +31,6 @@ std::vector<double> odds = {state.moves[3 * row], state.moves[3 * row + 1], stat
 state__.place = AOS.SampleDiscrete(odds);
 __moduleResponse = AOS.Bernoulli(state.alarms[row - state.place + state__.place]) ? alarm : quiet;
 """
-
-MAPPING = mapping_text(
-    "alarm: heard == 'alarm'", "quiet: True", project="chance", skill="act", reports={"heard": "string"}
-)
 
 
 class Chance:
@@ -70,7 +65,7 @@ initial_belief:
 state.world = AOS.SampleDiscrete(std::vector<double>({WORLDS}, 1.0 / {WORLDS}));
 state.place = AOS.SampleDiscrete(std::vector<double>({STATES}, 1.0 / {STATES}));
 """
-        return {"chance.ef": environment, "act.sd": SKILL, "act.am": MAPPING}
+        return {"chance.ef": environment, "act.sd": SKILL}
 
     def posterior(
         self, world: int, belief: np.ndarray, action: int, is_alarm: bool
@@ -126,16 +121,6 @@ async def test_random_worlds_have_the_values_that_an_independent_program_gives(
     assert max(truth) - truth[plan.index] < 0.03
 
 
-async def test_the_tiger_is_listened_for_while_it_was_heard_on_both_sides(tiger: BuiltModel) -> None:
-    async with engine_of(tiger) as engine:
-        decisions = []
-        for heard in ("tiger_left", "tiger_right", "tiger_left"):
-            decisions.append((await engine.plan(simulations=50_000, seed=3, planner="pomcp")).best.action)
-            await engine.update("listen", heard)
-        decisions.append((await engine.plan(simulations=50_000, seed=3, planner="pomcp")).best.action)
-    assert decisions == ["listen"] * 4
-
-
 async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) -> None:
     async with engine_of(tiger) as engine:
         exact = {value.action: value.q for value in (await engine.exact_values(4)).actions}
@@ -179,12 +164,3 @@ async def test_pondering_while_acting_leaves_a_warm_start_and_stops_when_it_is_a
         await engine.update(idle.best.action, predicted.predicted[0].response)  # ...and so does this.
         warm = await engine.plan(simulations=100, seed=4, planner="pomcp")
     assert warm.known_simulations > idle.known_simulations
-
-
-async def test_a_belief_that_has_ended_costs_no_simulations(bundles: Path, cache_dir: Path) -> None:
-    async with engine_of_bundle(bundles / "bench" / "tag", cache_dir) as engine:
-        particles = await engine.export_belief()
-        await engine.update("tag", "tagged")
-        ended = await engine.plan(simulations=1000, seed=1, threads=2, planner="pomcp")
-    assert particles.is_exact
-    assert all(value.q == 0 for value in ended.actions)
