@@ -45,6 +45,7 @@ ENVIRONMENT = json_text(
             {"Name": "note", "Type": "string", "Default": "\"a;b\""},
             {"Name": "mode", "Type": "State", "Default": "actions;"},
             {"Name": "cost", "Type": "int", "Parameters": ["tColour", "(1,6,2)"],
+             "IncludeParametersCode": "par1 != eBlue || par2 != 5",
              "DefaultCode": "state.cost[std::make_tuple(par1, par2)] = int(par1) * 10 + par2;"},
             {"Name": "sum", "Type": "int",
              "DefaultCode": "for (auto& c : state.cost) state.sum += c.second;"},
@@ -56,7 +57,8 @@ ENVIRONMENT = json_text(
         "InitialBeliefStateAssignments": [
             {"AssignmentCode": "state.mode = AOS.SampleDiscrete(State, {0.5, 0.5});"},
             {"IteratePreviousStateVars": loops(over="tBox", item="box", where="box.weight > 1.8",
-                                               do="box.weight = 3;")},
+                                               do="box.weight = 3;")
+             + loops(over="tBox", item="it", where="it.weight < box.weight", do="it.weight -= 0.5; break;")},
         ],
         "SpecialStates": [],
         "HeuristicStateValue": [{"AssignmentCode": "__heuristicValue = state.box_a.weight;"}],
@@ -86,7 +88,7 @@ SKILLS = {
                 {"IterateNextStateVars": loops(over="tBox", item="each", where="each.colour != colour",
                                                do="each.colour = colour; break;")},
                 {"AssignmentCode": "if (is_wet) return; state__.sum = ending - enumEnding;"},
-                {"AssignmentCode": "__reward = 1"},
+                {"AssignmentCode": "__reward = 0;\r\n__reward = 1"},
             ],
             GlobalVariableModuleParameters=[
                 {"Name": "colour", "Type": "tColour"}, {"Name": "box", "Type": "tBox"}
@@ -194,13 +196,14 @@ def test_values_have_their_declared_defaults(model: ScriptedModel):
     assert [state["table[1][0]"], state["table[1][1]"]] == ["4", "5"]
     assert state["note"] == "a;b"
     assert state["cost[eBlue,3]"] == "23"
-    assert state["sum"] == str(3 * (1 + 3 + 5) + 3 * (0 + 10 + 20))
+    assert state["cost[eBlue,5]"] == "0"
+    assert state["sum"] == str(3 * (1 + 3 + 5) + 3 * (0 + 10 + 20) - 25)
 
 
 def test_an_initial_belief_may_draw_an_enum_and_change_what_it_iterates_over(model: ScriptedModel):
     played = model.play(initial="1")
     assert played.initial["state"]["box_b.weight"] == "3"
-    assert played.initial["state"]["box_a.weight"] == "1.5"
+    assert played.initial["state"]["box_a.weight"] == "1"
 
 
 def test_a_type_may_have_a_name_that_the_emitted_file_uses_itself(model: ScriptedModel):

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+import pytest
 from mappings import mapping_text
-from scripted_models import scripted, text_project
+from scripted_models import ScriptedModel, scripted, text_project
 
 BENCH = {
     "bench.ef": """project: test
@@ -21,6 +22,7 @@ define_type: tItem
 variable: string label "none"
 variable: tWeight weight
 variable: int counts[]
+variable: int sizes[] {4, 5}
 variable: bool done false
 variable: unsigned long long rank 7
 
@@ -51,6 +53,15 @@ state_variable: vector<vector<int>> grid
 code:
 state.grid = std::vector<std::vector<int>>(2, std::vector<int>(3, -1));
 
+state_variable: tItem[] rest
+code:
+tItem item;
+item.counts = {3, 1};   // project: no section
+state.rest.push_back(item);
+state_variable: vector<bool> ready
+code:
+state.ready = {true, false};
+
 action_parameter: eKind screw
 code:
 state.screw = kScrew;
@@ -66,6 +77,7 @@ if (AOS.Bernoulli(0.5)) { state.left = 2; }
 else if (AOS.Bernoulli(0.25)) { state.left = 1; } else state.left = 0;
 
 extrinsic_code:
+if (shift) return;
 if (poke != nullptr && poke->kind == kScrew && AOS.Bernoulli(0.1)) state_.shaken += 1;
 for (auto* it : state_.tItemObjects) if (it->done && AOS.Bernoulli(.05)) it->done = false;
 
@@ -75,6 +87,12 @@ if (std::all_of(state.tItemObjects.begin(), state.tItemObjects.end(), is_done)) 
     __reward = 50; __isGoalState = true;
 }
 
+reward_code:
+switch (state.shaken) {
+case 9: __reward = 7; break;
+default:
+    return;
+}
 heuristic_code:
 __heuristicValue = count_if(state.tItemObjects.begin(), state.tItemObjects.end(), [](auto t) {
     return t->done;
@@ -133,13 +151,70 @@ __reward = mean - spot.worth - std::hypot(3.0, 4.0);
 switch (kind) { case kScrew: __moduleResponse = ok ? yes : no; break; default: { __moduleResponse = no; } }
 """,
     "poke.am": mapping_text("yes", "no"),
+    "shift.sd": """project: test
+parameter: tWeight load
+parameter: std::string hand
+
+available_parameters_code:
+string hands[] = {"left", "right"};
+tWeight heavy; heavy.kilograms = 2; heavy.of = kPlate;
+for (auto kind : state.eKindObjects)
+    for (const auto& hand : hands)
+        if (kind == kNut) __possibleParameters.push_back(std::make_tuple(heavy, hand));
+
+precondition: __meetPrecondition = std::any_of(state.tItemObjects.begin(), state.tItemObjects.end(),
+    [&](const tItem* item) { return item->weight.of == load.of; }) and not state.names.empty();
+if (hand == "left") return;
+__meetPrecondition = false;
+violate_penalty: -4
+
+dynamic_model:
+tItem* found = nullptr;
+for (int i = 0; i < (int)state__.tItemObjects.size() && found == NULL; i++)
+    if (state__.tItemObjects[i]->weight.of != load.of) found = state__.tItemObjects[i];
+auto longest = std::max_element(state__.tItemObjects.begin(), state__.tItemObjects.end(),
+    [](tItem* a, tItem* b) { return a->counts.size() < b->counts.size(); });
+(*longest)->weight = load;
+if (tItem* near = state__.tItemObjects[1]) near->rank = min((double)near->rank, DBL_MAX) + (found == near);
+vector<int>& row = state__.grid[0];
+vector<int> gates = {7, 8};
+row.insert(row.begin() + 1, gates.begin(), gates.end());
+row.erase(remove_if(row.begin(), row.end(), [](int n) { return n > 7; }), row.end());
+vector<int>::iterator first = state__.grid[0].begin(); *first = 4;
+std::swap(row[1], row[2]);
+std::vector<int> turned = row; std::reverse(turned.begin(), turned.end()); state__.grid[1] = turned;
+std::set<int> seen(row.begin(), row.end());
+vector<int> both; set_union(seen.begin(), seen.end(), gates.begin(), gates.end(), back_inserter(both));
+std::map<std::string, std::vector<int>> groups;
+for (size_t i = 0; i < state.ratios.size(); i++) groups[state.item1.label].push_back(i);
+std::pair<int, double> best(0, -1.0); typedef std::pair<int, int> Spot; std::set<Spot> spots{Spot(1, 2)};
+for (auto it = state__.ratios.begin(); it != state__.ratios.end(); ++it)
+    if ((*it += 0.5) > best.second) best = {3, *it};
+for (vector<tItem>::iterator it = state__.rest.begin(); it != state__.rest.end(); ++it)
+    for (int& n : it->counts) { n = (n + 1) % 4; }
+state__.ready[1] = state__.ready[0] || state.ready[1]; state__.item1.done ^= true;
+const vector<double> odds(2, 1.0 / 2);
+unique_ptr<int> owned(new int(max(AOSUtils::SampleDiscrete(odds), 0)));
+ostringstream out;
+out << hand << ":" << load.of << "x" << std::count(row.begin(), row.end(), -1);
+string key = out.str();
+if (key.rfind(hand, 0) == 0 && key.find_first_of("0123456789") != string::npos && key.length() < 20)
+    state__.item2.label = key + "-" + std::to_string(*owned);
+__reward = -fabs(best.second) - 10 * (int)both.size() - 100 * (int)groups["one"].size() - 1000 * spots.size();
+__moduleResponseStr = key;
+if (__moduleResponseStr.size() > 6) __moduleResponseStr[0] = toupper(__moduleResponseStr[0]);
+""",
 }
 
 
-def test_code_of_many_kinds_does_what_it_says(cache_dir: Path):
-    model = scripted(text_project(BENCH), cache_dir)
-    assert model.walk(500)["steps"] == 500
-    played = model.play("poke(kind=screw)|0 1", initial="2 0 1")
+@pytest.fixture(scope="module")
+def bench(cache_dir: Path) -> ScriptedModel:
+    return scripted(text_project(BENCH), cache_dir)
+
+
+def test_code_of_many_kinds_does_what_it_says(bench: ScriptedModel):
+    assert bench.walk(500)["steps"] == 500
+    played = bench.play("poke(kind=screw)|0 1", initial="2 0 1")
     state = played.steps[0]["state"]
     assert played.initial["state"]["item1.weight.of"] == "kPlate"
     assert [state[f"item1.counts[{index}]"] for index in range(4)] == [str(8 + 1 - 5), "2", "3", "1"]
@@ -148,3 +223,18 @@ def test_code_of_many_kinds_does_what_it_says(cache_dir: Path):
     assert [state["names[0]"], state["mask"], state["grid[1][0]"]] == ["y", str((1 << 40) + 1), "2"]
     assert [state["left"], state["shaken"], state["item1.done"]] == [str(3 + 20 + 400 + 1000), "0", "true"]
     assert (played.rewards, played.observations) == ([-1 - 4 - 5], ["yes"])
+
+
+def test_parameters_containers_and_texts_are_what_cpp_makes_of_them(bench: ScriptedModel):
+    shifts = [f"shift(load={{kilograms=2, of=kPlate}}, hand={hand})" for hand in ("left", "right")]
+    assert [name for name in bench.describe() if name.startswith("shift")] == shifts
+    played = bench.play(f"{shifts[0]}|1", f"{shifts[1]}|0", initial="2 0 1")
+    assert [step["meets_precondition"] for step in played.steps] == [True, False]
+    state = played.steps[0]["state"]
+    assert [state[f"grid[0][{index}]"] for index in range(4)] == ["4", "-1", "7", "-1"]
+    assert [state[f"grid[1][{index}]"] for index in range(4)] == ["-1", "7", "-1", "4"]
+    assert [state["rest[0].counts[0]"], state["rest[0].counts[1]"], state["ready[1]"]] == ["0", "2", "true"]
+    assert [state["item1.weight.kilograms"], state["item1.done"], state["item2.rank"]] == ["2", "true", "8"]
+    assert [state["item1.sizes[1]"], state["item2.label"]] == ["5", "left:2x2-1"]
+    assert played.rewards[0] == pytest.approx(-0.8 - 40 - 300 - 1000)
+    assert played.observations[0] == "Left:2x2"
