@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-from mappings import mapping_text
-
 from aos_protocol.messages import Marginal
 from aos_solver.mission.models.past import Evidence, Past
 
@@ -25,9 +23,6 @@ if (state.cat == Yard) __reward = 1;
 dynamic_model:
 __moduleResponse = AOS.Bernoulli(state.cat == Attic ? 0.9 : 0.2) ? above : below;
 """,
-    "look.am": mapping_text(
-        "above: answer == 'above'", "below: answer == 'below'", project="hall", skill="look"
-    ),
 }
 BELL = "state_variable: bool has_bell\ninitial_belief:\n"
 """Stands before the initial belief of documents with another variable."""
@@ -62,8 +57,4 @@ def marginal(marginals: Sequence[Marginal], variable: str) -> dict[str, float]:
 
 
 def with_peek(files: dict[str, str]) -> dict[str, str]:
-    return {
-        "hall.ef": files["hall.ef"],
-        "peek.sd": files["look.sd"],
-        "peek.am": files["look.am"].replace("/look", "/peek"),
-    }
+    return {"hall.ef": files["hall.ef"], "peek.sd": files["look.sd"]}

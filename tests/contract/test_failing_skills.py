@@ -30,44 +30,43 @@ max_duration: 0.3
 """
 
 
-async def failing(call: SkillCall) -> dict[str, Any]:
-    raise SkillError("the gripper is jammed" if call.id.step == 1 else "no power", code="AOS510")
-
-
 async def with_mapping(system: System, text: str) -> None:
     project = system.registry.current.project
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
     await system.state(system.registry.current.revision)
 
 
-@pytest.mark.parametrize(
-    ("step", "status", "response", "code", "message"),
-    [(1, "observed", "jammed", "AOS510", "the gripper is jammed"), (2, "failed", "", "AOS510", "no power")],
-    ids=["a rule tells it", "no rule tells it"],
-)
-async def test_a_rule_can_tell_how_a_skill_has_failed(
-    system: System, step: int, status: str, response: str, code: str, message: str
-) -> None:
-    await with_mapping(system, JAMMED)
-    await system.adapter.serve("/sense", failing)
-    outcome = await system.activate("sense", step)
-    assert (outcome.status, outcome.response) == (status, response)
-    assert outcome.fault is not None
-    assert (outcome.fault.code, outcome.fault.message) == (code, message)
+async def test_a_rule_can_tell_how_a_skill_has_ended(system: System) -> None:
+    async def ending(call: SkillCall) -> dict[str, Any]:
+        if call.id.step < 3:
+            raise SkillError("the gripper is jammed" if call.id.step == 1 else "no power", code="AOS510")
+        return await hang(call) if call.id.step == 3 else {}
 
-
-async def test_a_rule_can_tell_that_a_skill_was_too_late_or_has_succeeded(system: System) -> None:
     await with_mapping(system, JAMMED)
-    await system.adapter.serve(
-        "/sense", lambda call: hang(call) if call.id.step == 1 else answering({})(call)
-    )
+    await system.adapter.serve("/sense", ending)
     await system.adapter.serve_cancel("/sense")
-    assert (await system.activate("sense", 1)).response == "late"
-    assert (await system.activate("sense", 2)).response == "done"
+    outcomes = [await system.activate("sense", step) for step in (1, 2, 3, 4)]
+    # No rule tells of the second.
+    assert [each.response for each in outcomes] == ["jammed", "", "late", "done"]
+    faults = [each.fault for each in outcomes[:2]]
+    assert [each.status for each in outcomes[:2]] == ["observed", "failed"]
+    assert [(fault.code, fault.message) for fault in faults if fault is not None] == [
+        ("AOS510", "the gripper is jammed"), ("AOS510", "no power"),
+    ]  # fmt: skip
 
 
-async def test_two_adapters_of_one_path_are_an_error_until_one_of_them_leaves(system: System) -> None:
+async def test_an_adapter_that_leaves_and_a_second_one_of_a_path_make_its_skills_unavailable(
+    system: System,
+) -> None:
     await system.adapter.serve("/sense", answering({}))
+    await system.state_when(lambda state: "sense" not in state.unavailable)
+    system.adapter.withdraw("/sense")
+    state = await system.state_when(lambda state: "sense" in state.unavailable)
+    assert state.unavailable["sense"] == "no adapter answers calls of /sense"
+    assert state.announced["sense"] == 1
+    await system.adapter.announce("/sense")
+    state = await system.state_when(lambda state: "sense" not in state.unavailable)
+    assert state.announced["sense"] == 2
     await system.adapter.announce("/sense", "other")
     await system.state_when(lambda state: "is served by" in state.unavailable.get("sense", ""))
     outcome = await system.activate("sense", 1)
@@ -84,18 +83,6 @@ async def test_an_adapter_that_is_there_tells_why_it_does_not_serve_a_path(syste
     why = "no adapter answers calls of /sense: scripted says: AOS509: /sense is of type a/B, not c/D"
     assert state.unavailable["sense"] == why
     assert_refused(await system.activate("sense", 1), "AOS505", why)
-
-
-async def test_an_adapter_that_leaves_makes_its_skills_unavailable(system: System) -> None:
-    await system.adapter.serve("/sense", answering({}))
-    await system.state_when(lambda state: "sense" not in state.unavailable)
-    system.adapter.withdraw("/sense")
-    state = await system.state_when(lambda state: "sense" in state.unavailable)
-    assert state.unavailable["sense"] == "no adapter answers calls of /sense"
-    assert state.announced["sense"] == 1
-    await system.adapter.announce("/sense")
-    state = await system.state_when(lambda state: "sense" not in state.unavailable)
-    assert state.announced["sense"] == 2
 
 
 async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -> None:

@@ -38,18 +38,15 @@ asyncio.run(main())
 """
 
 
-async def test_it_takes_the_project_from_the_registry_and_shows_the_modules(system: System) -> None:
+async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_running_model(
+    system: System,
+) -> None:
     state = await system.state(1)
     skills = ("navigate", "observe_arm_outstretched", "observe_holding", "pick", "sense", "serve")
     assert (state.revision, state.skills, state.refused) == (1, skills, 0)
     assert state.unavailable.keys() == set(skills)
     folder = system.run_dir / "generated" / "python"
     assert sorted(path.stem for path in folder.iterdir()) == list(state.skills)
-
-
-async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_running_model(
-    system: System,
-) -> None:
     await system.adapter.serve("/sense", answering({}))
     assert (await system.activate("sense", 1)).response == "quiet"
     renamed = skill_of(SENSE.replace("quiet", "silent"), "sense.am")
@@ -79,6 +76,10 @@ async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(
     await system.adapter.serve("/pick", succeed)
     first = await system.activate("pick")
     assert await system.activate("pick") == first
+    # An id that stands for another motion moves nothing, and is a step of the mission.
+    outcome = await system.activate("serve")
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("refused", "AOS514")
     await system.stop()
     await system.start(endpoint)
     await system.state(1)
@@ -106,14 +107,13 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
     assert len(system.adapter.calls) == 1
 
 
-@pytest.mark.parametrize("ending", ["killed", "stopped"])
 @pytest.mark.parametrize(
-    ("skill", "path", "result"),
-    [("pick", "/pick", ("observed", "pick_succeeded")), ("sense", "/sense", ("unknown", ""))],
-    ids=["its_result_tells_all", "its_topics_were_missed"],
+    ("ending", "skill", "result"),
+    [("killed", "pick", ("observed", "pick_succeeded")), ("stopped", "sense", ("unknown", ""))],
+    ids=["killed, its_result_tells_all", "stopped, its_topics_were_missed"],
 )
 async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
-    system: System, endpoint: str, ending: str, skill: str, path: str, result: tuple[str, str]
+    system: System, endpoint: str, ending: str, skill: str, result: tuple[str, str]
 ) -> None:
     may_end = asyncio.Event()
 
@@ -121,7 +121,7 @@ async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
         await may_end.wait()
         return {"success": True}
 
-    await system.adapter.serve(path, move)
+    await system.adapter.serve(f"/{skill}", move)
     assert system.child is not None
     async with asyncio.TaskGroup() as tasks:
         cut_off = tasks.create_task(_error_of(system.activate(skill)))
@@ -158,17 +158,6 @@ async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(
     outcome = await system.activate("pick")
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS505")
-
-
-async def test_an_id_that_stands_for_another_motion_moves_nothing_and_is_a_step_of_the_mission(
-    system: System,
-) -> None:
-    await system.adapter.serve("/pick", succeed)
-    assert (await system.activate("pick")).status == "observed"
-    outcome = await system.activate("serve")
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("refused", "AOS514")
-    assert len(system.adapter.calls) == 1
 
 
 async def test_an_adapter_killed_during_the_call_leaves_the_outcome_unknown(

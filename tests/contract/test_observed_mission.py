@@ -233,30 +233,20 @@ async def test_the_belief_follows_what_the_robot_finds_until_the_goal(
     assert second.remark.endswith("do not correct the belief: order has no value")
     assert (first.remark, third.remark) == ("", "")
     assert third.belief.goal_probability == pytest.approx(1.0)
-
-
-async def test_a_low_level_value_that_came_with_a_response_is_given_to_the_next_call(
-    robot: Robot, stock: BuiltModel
-) -> None:
-    await mission(stock, robot)
+    # A low-level value that came with a response is given to the next call.
     assert robot.calls == [{"x": 1.0}, {"x": 1.25}, {"x": 1.5}]
 
-
-async def test_the_journal_holds_what_corrected_the_belief(robot: Robot, stock: BuiltModel) -> None:
-    await mission(stock, robot)
-    first = robot.outcomes[0]
-    assert (first.local_variables["items"], first.local_variables["order"]) == ("2", "0.1")
-    assert first.assigned == {"left.place": {"x": 1.25}}
-
-
-async def test_a_number_beside_the_response_weighs_the_belief(robot: Robot, stock: BuiltModel) -> None:
-    await mission(stock, robot)
+    # The journal holds what corrected the belief.
+    told = robot.outcomes[0]
+    assert (told.local_variables["items"], told.local_variables["order"]) == ("2", "0.1")
+    assert told.assigned == {"left.place": {"x": 1.25}}
+    # A number beside the response weighs the belief.
     assert [outcome.numbers for outcome in robot.outcomes] == [{"weight_kg": 1.9}, {}, {"weight_kg": 1.6}]
-    first, second, third = (values(record.belief, "is_damp").get("true", 0.0) for record in robot.records)
+    damp = [values(record.belief, "is_damp").get("true", 0.0) for record in robot.records]
     odds = math.exp((0.9**2 - 0.1**2) / (2 * 0.25))
-    assert first == second == pytest.approx(odds / (1 + odds))
+    assert damp[0] == damp[1] == pytest.approx(odds / (1 + odds))
     odds *= math.exp((0.6**2 - 0.4**2) / (2 * 0.25))
-    assert third == pytest.approx(odds / (1 + odds))
+    assert damp[2] == pytest.approx(odds / (1 + odds))
     assert robot.records[1].remark.startswith(
         'the numbers of count(shelf=left) do not count (weight_kg = "?"): '
         "the model reports others with the response counted"

@@ -145,7 +145,7 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIte
 
 
 async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: Robot) -> None:
-    await robot.start(drive="robot.py:drive")
+    await robot.start(drive="robot.py:drive", pick="robot.py:Arm.pick", count="robot.py:Arm.count")
     progress = robot.bus.listen(robot.keys.progress("/drive"), SkillProgress)
     poses = robot.bus.listen(robot.keys.topic("/pose"), TopicMessage)
     async with asyncio.timeout(HANG_S), progress, poses:
@@ -158,12 +158,9 @@ async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: R
         ("executing", 0.5, "half way"),
         ("succeeded", 1.0, ""),
     ]
-
-
-async def test_methods_of_a_class_share_one_object(robot: Robot) -> None:
-    await robot.start(pick="robot.py:Arm.pick", count="robot.py:Arm.count")
-    assert (await robot.call("/pick", 1)).fields == {}
-    assert (await robot.call("/count", 2)).fields == {"picks": 1}
+    # Methods of a class share one object.
+    assert (await robot.call("/pick", 2)).fields == {}
+    assert (await robot.call("/count", 3)).fields == {"picks": 1}
 
 
 async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) -> None:

@@ -1,6 +1,6 @@
 """The tutorial of docs/adapters, followed line by line; and templates of adapters, run as they are.
 
-The template of a command runs in test_own_programs.py.
+The template of a command runs in test_own_programs.py, and that of a class in test_adapter_package.py.
 """
 
 import os
@@ -53,13 +53,9 @@ def test_the_tutorial_can_be_followed(root: Path) -> None:
     assert '"response":"taken"' in Path("runs/latest/journal.db").read_bytes().decode(errors="replace")
 
 
-@pytest.mark.parametrize("kind", ["class", "external"])
-def test_a_new_adapter_runs_as_it_is(kind: str, root: Path) -> None:
+def test_a_new_external_adapter_runs_as_it_is() -> None:
     run("aos new project fetch")
-    run(f"aos new adapter {kind} --in fetch")
-    if kind != "external":
-        assert "mission ended: the goal is reached" in run("aos-up fetch.yaml --plain")
-        return
+    run("aos new adapter external --in fetch")
     arguments = ["fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]
     with subprocess.Popen([BIN / "aos-up", *arguments], stdout=subprocess.PIPE, text=True) as up:
         assert up.stdout is not None

@@ -1,6 +1,5 @@
 """The main job: `aos-up` with the real services, watched from outside, ended in every way."""
 
-import asyncio
 import contextlib
 import json
 import os
@@ -220,18 +219,6 @@ def test_nothing_is_left_after_a_normal_end(mission: Mission, scratch: Path) -> 
     assert not files_left(scratch)
 
 
-def test_nothing_is_left_after_an_interrupt(deploy_file: Path, scratch: Path) -> None:
-    with up(deploy_file) as running:
-        running.until("decision")
-        os.kill(running.process.pid, signal.SIGINT)
-        assert running.rest() == 130
-    assert not any(is_running(pid) for pid in running.pids)
-    assert not has_a_bus(latest(deploy_file))
-    assert not files_left(scratch)
-    assert json.loads((latest(deploy_file) / "summary.json").read_text())["ending"] == "cancelled"
-    assert account_of(latest(deploy_file)).verdict().ending == "cancelled"
-
-
 async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch: Path) -> None:
     with up(deploy_file) as running:
         running.until("decision")
@@ -241,17 +228,6 @@ async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch:
     assert check_run(latest(deploy_file)).violations == []
     assert not has_a_bus(latest(deploy_file))
     assert not files_left(scratch)
-
-
-@pytest.fixture(scope="module")
-def slow_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The deploy file of a robot that goes on as a test wants it to, for three steps: it computes nothing."""
-    return slow_deploy_file(tmp_path_factory.mktemp("slow"), step_limit=3)
-
-
-def let_it_go_on(deploy_file: Path) -> None:
-    """Gives the slow robot more turns than it needs."""
-    (deploy_file.parent / "turns").write_bytes(b"." * 9)
 
 
 def pids_of(deploy_file: Path) -> dict[str, int]:
@@ -287,44 +263,21 @@ def test_a_mission_goes_on_after_the_deaths_of_its_engine_and_of_services_and_en
         assert running.rest() == 130
     assert not any(is_running(pid) for pid in running.pids)
     assert not files_left(scratch)
-    assert summary_of(file)["ending"] == "cancelled"
+    assert not has_a_bus(latest(file))
+    assert account_of(latest(file)).verdict().ending == summary_of(file)["ending"] == "cancelled"
     assert [end["name"] for end in summary_of(file)["process_ends"] if end["name"] in victims] == [*victims]
 
 
-def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was(slow_file: Path) -> None:
-    with up(slow_file) as running:
-        running.until("decision")
-        os.kill(running.process.pid, signal.SIGKILL)
-        running.process.wait()
-    asyncio.run(until_ended(running.pids))
-    run = latest(slow_file)
-    with up(run, "--resume") as resumed:
-        resumed.until_ready("solver")
-        let_it_go_on(slow_file)
-        assert resumed.rest() in ENDINGS.values()
-    assert latest(slow_file) == run
-    steps = [event["step"] for event in resumed.events if event["event"] == "decision"]
-    assert steps == sorted(steps)
-    assert steps[0] == 1
-    with Journal.read(run / "journal.db") as journal:
-        begun = [json.loads(row.payload)["epoch"] for row in journal.rows("begun")]
-    assert begun == [1, 2]
-    assert subprocess.run([BIN / "aos", "check", run], capture_output=True, check=False).returncode == 0
-    with up(run, "--resume") as refused_run:
-        assert refused_run.rest() == 1
-        assert "AOS810" in refused_run.error_text()
-
-
-def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(slow_file: Path) -> None:
-    with up(slow_file) as running:
+def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(tmp_path: Path) -> None:
+    file = slow_deploy_file(tmp_path, step_limit=3)
+    with up(file) as running:
         running.until("decision")
         assert running.process.stdout is not None
         running.process.stdout.close()
-        let_it_go_on(slow_file)
+        (tmp_path / "turns").write_bytes(b"." * 9)
         assert running.process.wait(HANG_S) == 130
         assert running.error_text() == ""
-    summary = json.loads((latest(slow_file) / "summary.json").read_text())
-    assert summary["ending"] == "cancelled"
+    assert summary_of(file)["ending"] == "cancelled"
 
 
 class Refused(NamedTuple):

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of
 
 EXIT = {
@@ -28,7 +27,6 @@ dynamic_model:
 __reward = -AOS.SampleUniform(-1, 1);
 __moduleResponse = done;
 """,
-    **{f"{skill}.am": mapping_text("done: True", project="ward", skill=skill) for skill in ("leave", "wait")},
 }
 
 

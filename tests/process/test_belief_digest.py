@@ -4,7 +4,6 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of
 from processes import kill_engine
 
@@ -27,9 +26,6 @@ async def drifting(start: str, cache_dir: Path) -> BuiltModel:
             "project: drift\ndynamic_model:\nif (AOS.Bernoulli(0.3)) state__.at = state.at + 0.5;\n"
             "const double odds = 1 / (1 + exp(-2 * state__.at));\n"
             "__moduleResponse = AOS.Bernoulli(odds) ? right : left;\n"
-        ),
-        "look.am": mapping_text(
-            "right: seen == 1", "left: True", project="drift", skill="look", reports={"seen": "int"}
         ),
     }
     return await built_text(files, cache_dir)

@@ -2,11 +2,9 @@
 
 import random
 import re
-from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
 
@@ -14,14 +12,6 @@ from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.child.engine import Engine
 
 STATES, ACTIONS, RESPONSES = 5, 2, 3
-
-
-def reading(project: str, skill: str = "read", parameters: Sequence[str] = ()) -> str:
-    """The mapping of a skill that answers yes or no."""
-    reports = {"is_on": "bool"}
-    return mapping_text(
-        "yes: is_on", "no: True", project=project, skill=skill, parameters=parameters, reports=reports
-    )
 
 
 def weights(dice: random.Random, count: int) -> list[float]:
@@ -60,12 +50,6 @@ class RandomModel:
                 "state__.at = AOS.SampleDiscrete(moves[state.at]);\n"
                 "const int responses[] = {" + ", ".join(f"r{r}" for r in range(RESPONSES)) + "};\n"
                 "__moduleResponse = responses[AOS.SampleDiscrete(sights[state__.at])];\n"
-            )
-            files[f"act{action}.am"] = mapping_text(
-                *(f"r{r}: seen == {r}" for r in range(RESPONSES)),
-                project="chain",
-                skill=f"act{action}",
-                reports={"seen": "int"},
             )
         return files
 
@@ -148,7 +132,6 @@ LAMPS = 18
 MANY_STATES = {
     "lamps.ef": row_of_bools("lamps", LAMPS, "0.02 + 0.02 * i"),
     "read.sd": looking_at_one("lamps", LAMPS, "AOS.Bernoulli(state.lamps[number] ? 0.9 : 0.2)"),
-    "read.am": reading("lamps", parameters=["number"]),
 }
 """2^18 states, more than a belief holds; each lamp is independent of the others."""
 
@@ -189,7 +172,6 @@ state__.level = AOS.SampleUniform(0, 1);
 bool is_open = AOS.Bernoulli(0.02);
 __moduleResponse = is_open && AOS.Bernoulli(0.01 * state__.level) ? yes : no;
 """,
-    "read.am": reading("rare"),
 }
 """A response of probability 1 in 10,000, decided by the last two draws after a continuous one."""
 
@@ -206,7 +188,6 @@ CARDS = 28
 DEPLETING = {
     "cards.ef": row_of_bools("cards", CARDS, "0.5"),
     "turn.sd": looking_at_one("cards", CARDS, "state.cards[number]"),
-    "turn.am": reading("cards", parameters=["number"]),
 }
 """2^28 states, of which each activation rules out half: 5,000 particles last for 12 of 28."""
 

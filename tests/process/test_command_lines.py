@@ -6,7 +6,6 @@ from asyncio.subprocess import PIPE
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text
 from processes import HANG_S
 
@@ -19,7 +18,6 @@ LAMP = {
     "lamp.ef": "project: lamp\nhorizon: 3\nstate_variable: bool is_on\nreward_code:\n"
     "if (state.is_on) __reward = 1;\n",
     "press.sd": "project: lamp\ndynamic_model:\nstate__.is_on = !state.is_on;\n__moduleResponse = clicked;\n",
-    "press.am": mapping_text("clicked: True", project="lamp", skill="press"),
 }
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from mappings import mapping_text
 from models import engine_of
 from scripted_models import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
@@ -52,14 +51,12 @@ dynamic_model:
 __moduleResponse = AOS.Bernoulli(0.85) == state.is_hot ? red : black;
 __reward = -1;
 """,
-    "look.am": mapping_text("red", "black"),
     "touch.sd": """project: test
 
 dynamic_model:
 state__.is_done = true;
 __moduleResponse = touched;
 """,
-    "touch.am": mapping_text("touched"),
 }
 """A hob is hot with probability 0.3, each look is right with 0.85, and touching a hot one costs nothing."""
 
@@ -86,9 +83,7 @@ state__.cuts = state.cuts < 9 ? state.cuts + 1 : 9;
 __moduleResponse = ended;
 __reward = 1;
 """,
-    "cut.am": mapping_text("ended"),
     "rest.sd": "project: test\n\ndynamic_model:\n__moduleResponse = ended;\n",
-    "rest.am": mapping_text("ended"),
 }
 """Each cut hurts with probability 0.004, and nobody tells."""
 
@@ -108,7 +103,6 @@ dynamic_model:
 state__.level = state.level + AOS.SampleNormal(0, 1);
 __moduleResponse = ended;
 """,
-    "drain.am": mapping_text("ended"),
 }
 
 TOUCHES_HOT = "touch && state.is_hot"

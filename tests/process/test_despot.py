@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from mappings import mapping_text
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.child.engine import Restriction
@@ -38,9 +37,6 @@ __moduleResponse = done;
 dynamic_model:
 __moduleResponse = done;
 """,
-} | {
-    f"{skill}.am": mapping_text("done: True", project="counter", skill=skill)
-    for skill in ("bet", "wait", "stop")
 }
 """A level that is drawn anew by waiting: to bet loses 6 on average, to wait 1, to stop nothing."""
 

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from mappings import mapping_text
 from models import engine_of_text
 from scripted_missions import Surroundings, observed
 from test_taking_up import rows_of
@@ -32,7 +31,6 @@ reward_code:
 if (state.is_on) { __reward = 10; __isGoalState = true; }
 """,
     "press.sd": PRESS,
-    "press.am": mapping_text("pressed", "stuck", project="lamp", skill="press"),
 }
 
 

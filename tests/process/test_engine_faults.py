@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 from hostile.counters import counting
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from processes import HANG_S
 from scripted_models import text_project
@@ -34,7 +33,6 @@ dynamic_model:
 state__.is_on = !state.is_on;
 __moduleResponse = clicked;
 """,
-    "press.am": mapping_text("clicked: True", project="lamp", skill="press"),
 }
 BROKEN_START = """initial_belief:
 vector<int> none;

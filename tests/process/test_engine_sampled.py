@@ -3,16 +3,7 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import engine_of_text
-
-
-def reading(project: str, skill: str = "read") -> str:
-    """The mapping of a skill that tells high from low."""
-    return mapping_text(
-        "high: level == 'high'", "low: True", project=project, skill=skill, reports={"level": "string"}
-    )
-
 
 GAUGE = {
     "gauge.ef": """project: gauge
@@ -31,7 +22,6 @@ __reward = -1;
 if (state__.level + AOS.SampleNormal(0, 1) > 0) __moduleResponse = high;
 else __moduleResponse = low;
 """,
-    "read.am": reading("gauge"),
 }
 """A level that is never seen, only its sign under noise of the same size."""
 
@@ -52,7 +42,6 @@ __reward = -1;
 if (state__.on > 12) __moduleResponse = high;
 else __moduleResponse = low;
 """,
-    "read.am": reading("switches"),
 }
 """2^24 combinations of draws, of which only the number of ones is kept."""
 
@@ -69,8 +58,7 @@ __heuristicValue = 10;
 
 dynamic_model:
 __moduleResponse = high;
-""",
-    "leap.am": reading("gauge", "leap"),
+"""
 }
 """The only skill that play-outs prefer cannot be run."""
 
@@ -127,7 +115,6 @@ state__.level = AOS.SampleNormal(0, 1);
 __reward = {leap};
 __moduleResponse = high;
 """,
-    "leap.am": reading("gauge", "leap"),
 }
 """Play-outs only ever read, which costs 2 on average; no state is worth more than another."""
 

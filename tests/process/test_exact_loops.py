@@ -8,14 +8,12 @@ from random import Random
 import pytest
 from commands import aos
 from loop_programs import loop_program, solved
-from mappings import mapping_text
 from models import engine_of_text
 from texts import write_texts
 
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine
 
-MAPPING = mapping_text("yes: is_on", "no: True", project="loops", skill="turn", reports={"is_on": "bool"})
 ENVIRONMENT = """project: loops
 horizon: 2
 discount: 0.5
@@ -189,7 +187,6 @@ FILES = {
     "heard.sd": f"project: loops\n\ndynamic_model:\n{HEARD}\n",
     "given.sd": f"project: loops\n\ndynamic_model:\n__moduleResponse = yes;\n{GIVEN}",
 }
-FILES |= {name.replace(".sd", ".am"): MAPPING for name in FILES if name.endswith(".sd")}
 
 
 def spots(belief: BeliefSummary) -> dict[str, float]:
@@ -236,7 +233,7 @@ async def check_sensor(engine: Engine) -> None:
 
 
 async def check_correction(engine: Engine) -> None:
-    after = (await engine.update("given", "yes", {"is_on": "true"})).summary
+    after = (await engine.update("given", "yes", {"response": '"yes"'})).summary
     assert after.error_bound == 0
     assert spots(after) == approximately({0: Fraction(1, 2), 2: Fraction(1, 2)})
     await engine.reset_belief()
@@ -280,7 +277,7 @@ __moduleResponse = yes;
 def test_the_command_plans_exactly_after_a_loop(tmp_path: Path) -> None:
     loop = f"int x = 1;\n{DEEP[0]}\nstate.side = spot;"
     mean = sum((spot * odds for spot, odds in DEEP[1](1).items()), Fraction())
-    files = {"loops.ef": ISSUE.format(loop=loop), "turn.sd": TURN, "turn.am": MAPPING}
+    files = {"loops.ef": ISSUE.format(loop=loop), "turn.sd": TURN}
     write_texts(files, tmp_path)
     result = aos("plan", tmp_path, "--exact", "--json")
     assert result.exit_code == 0, result.output

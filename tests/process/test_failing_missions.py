@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of_text
 from scripted_missions import Clock, Surroundings, jammed, observed, run_mission, timed_out
 
@@ -62,15 +61,7 @@ __reward = is_there ? -2 : -20;
 
 def fetch(**skills: str) -> dict[str, str]:
     """The tutorial's documents: the thing is on one of two sides."""
-    responses = {
-        "look": ("seen_left", "seen_right"),
-        "ask": ("said_left", "said_right"),
-        "take": ("taken", "missed"),
-        "grab": ("grabbed", "missed"),
-        "feel": ("empty", "full"),
-    }
-    mappings = {f"{name}.am": mapping_text(*responses[name], project="fetch") for name in skills}
-    return {"fetch.ef": SHELF, **{f"{name}.sd": text for name, text in skills.items()}, **mappings}
+    return {"fetch.ef": SHELF, **{f"{name}.sd": text for name, text in skills.items()}}
 
 
 Build = Callable[[Mapping[str, str]], BuiltModel]
@@ -271,9 +262,7 @@ bool works = AOS.Bernoulli(0.5);
 __moduleResponse = works ? (seems_left ? seen_left : seen_right) : no_picture;
 __reward = -0.1;
 """
-    documents = {**fetch(ask=ASK, take=TAKE), "look.sd": look}
-    documents["look.am"] = mapping_text("seen_left", "seen_right", "no_picture", project="fetch")
-    built = await built_text(documents, cache_dir)
+    built = await built_text(fetch(ask=ASK, take=TAKE, look=look), cache_dir)
 
     def robot(request: Activate) -> Outcome:
         answers = {"ask": "said_right", "take": "taken"}

@@ -6,7 +6,6 @@ import traceback
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from processes import COMMAND_S
 
 pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
@@ -33,17 +32,15 @@ if (state.degrees > 3) {
     "heat.sd": """project: kettle
 dynamic_model:
 if (AOS.Bernoulli(0.5)) state__.degrees++;
-__moduleResponse = state__.degrees > 1 ? warm : cold;
+__moduleResponse = state__.degrees < 2 ? cold : warm;
 __reward = -1;
 """,
-    "heat.am": mapping_text("cold: False", "warm: True", project="kettle", skill="heat"),
 }
 READING = {
     "read.sd": """project: kettle
 dynamic_model:
 __moduleResponseStr = state.degrees > 1 ? "warm" : "cold";
-""",
-    "read.am": mapping_text(project="kettle", skill="read", response_from="text"),
+"""
 }
 SENSING = {
     "sense.sd": """project: kettle
@@ -51,10 +48,7 @@ dynamic_model:
 __moduleResponse = sensed;
 __observed.weight = AOS.SampleNormal(7, 0.5);
 for (int i = 1; i < 3; i++) __observed.echoes.push_back(AOS.SampleUniform(i, i + 1));
-""",
-    "sense.am": mapping_text(
-        "sensed: True", project="kettle", skill="sense", reports={"weight": "float", "echoes": "float[]"}
-    ),
+"""
 }
 
 

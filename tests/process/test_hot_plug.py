@@ -43,9 +43,8 @@ def picked(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def deploy_file(root: Path, tmp_path: Path, picked: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def deploy_file(root: Path, tmp_path: Path, picked: Path) -> Path:
     """The shipped hot-plug deploy file on a free port, with runs of its own and the patient pick."""
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     (tmp_path / "patient.py").write_text(PATIENT_PICK)
     text = (root / "deploy" / "armadillo-hotplug.yaml").read_text()
     for old, new in {

@@ -5,7 +5,6 @@ import signal
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 
 from aos_protocol.messages import BeliefSummary
@@ -31,15 +30,10 @@ if (state.red && state.blue) { __reward = 10; __isGoalState = true; }
     },
     "press.sd": "project: lamps\ndynamic_model:\nstate__.red = true;\n__moduleResponse = done;\n",
     "check.sd": "project: lamps\ndynamic_model:\n__moduleResponse = state.red ? done : dark;\n",
-    **{
-        f"{name}.am": mapping_text("done", "dark", project="lamps")
-        for name in ("red", "blue", "press", "check")
-    },
     "see.sd": """project: lamps
 dynamic_model:
 __moduleResponse = AOS.Bernoulli(0.8) == state.red ? light : darkness;
 """,
-    "see.am": mapping_text("light", "darkness", project="lamps"),
 }
 
 

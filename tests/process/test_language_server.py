@@ -132,10 +132,36 @@ async def test_an_edit_in_one_file_is_checked_against_the_others(editor: Editor,
     assert {finding.range.start.line for finding in found} == {3, 4}
 
 
-async def test_words_are_explained_and_completed_and_sections_listed(editor: Editor, bundle: Path) -> None:
+async def test_words_are_coloured_explained_and_completed_and_sections_listed(
+    editor: Editor, bundle: Path
+) -> None:
     environment, skill = bundle / "lamp.ef", bundle / "press.sd"
+    for path, text, expected in (
+        (
+            skill,
+            SKILL,
+            {
+                ("project", "keyword"),
+                ("is_lit", "variable"),
+                ("AOS", "macro"),
+                ("Bernoulli", "function"),
+                ("0.9", "number"),
+                ("__reward", "macro"),
+                ("lit", "enumMember"),
+            },
+        ),
+        (
+            bundle / "press.am",
+            MAPPING,
+            {("response_rule", "keyword"), ("True", "keyword"), ("success", "variable")},
+        ),
+    ):
+        editor.open(path)
+        document = types.TextDocumentIdentifier(path.as_uri())
+        tokens = await editor.text_document_semantic_tokens_full_async(types.SemanticTokensParams(document))
+        assert tokens is not None
+        assert expected <= words_of(tokens.data, text.split("\n"))
     editor.open(environment)
-    editor.open(skill)
     document = types.TextDocumentIdentifier(skill.as_uri())
 
     hover = await editor.text_document_hover_async(types.HoverParams(document, types.Position(5, 3)))
@@ -172,7 +198,9 @@ def place(location: types.Location) -> tuple[str, int, int]:
     return location.uri.rpartition("/")[2], start.line, start.character
 
 
-async def test_names_lead_to_their_declaration_and_to_all_their_uses(editor: Editor, bundle: Path) -> None:
+async def test_names_lead_to_their_declaration_and_all_their_uses_and_are_renamed_in_all_files(
+    editor: Editor, bundle: Path
+) -> None:
     skill, environment = bundle / "press.sd", bundle / "lamp.ef"
     editor.open(skill)
     asked = at(skill, SKILL, "is_lit")
@@ -199,11 +227,12 @@ async def test_names_lead_to_their_declaration_and_to_all_their_uses(editor: Edi
     assert isinstance(found, types.Location)
     assert place(found) == ("press.am", 2, len("response: "))
     assert environment.read_text() == ENVIRONMENT
-
-
-async def test_a_state_variable_is_renamed_in_all_files(editor: Editor, bundle: Path) -> None:
-    skill = bundle / "press.sd"
-    editor.open(skill)
+    no_names = [(word, "cannot be a name") for word in ("while", "state__", "__reward")]
+    for name, reason in (("is_lit", "has a is_lit already"), *no_names):
+        with pytest.raises(JsonRpcException, match=reason):
+            await editor.text_document_rename_async(
+                types.RenameParams(asked.text_document, asked.position, name)
+            )
     asked = at(skill, SKILL, "is_lit", nth=1)
     edit = await editor.text_document_rename_async(
         types.RenameParams(asked.text_document, asked.position, "is_on")
@@ -223,18 +252,6 @@ async def test_a_state_variable_is_renamed_in_all_files(editor: Editor, bundle: 
     assert (bundle / "press.am").read_text() == MAPPING
 
 
-async def test_a_name_that_is_taken_is_refused_with_the_reason(editor: Editor, bundle: Path) -> None:
-    skill = bundle / "press.sd"
-    editor.open(skill)
-    asked = at(skill, SKILL, "is_lit")
-    no_names = [(word, "cannot be a name") for word in ("while", "state__", "__reward")]
-    for name, reason in (("is_lit", "has a is_lit already"), *no_names):
-        with pytest.raises(JsonRpcException, match=reason):
-            await editor.text_document_rename_async(
-                types.RenameParams(asked.text_document, asked.position, name)
-            )
-
-
 def test_an_editor_that_closes_the_server_gets_exit_code_0() -> None:
     asked = [{"id": 1, "method": "initialize", "params": {"capabilities": {}}}]
     asked += [{"id": 2, "method": "shutdown"}, {"method": "exit"}]
@@ -242,31 +259,6 @@ def test_an_editor_that_closes_the_server_gets_exit_code_0() -> None:
     sent = "".join(f"Content-Length: {len(text)}\r\n\r\n{text}" for text in texts).encode()
     ended = subprocess.run([AOS, "language-server"], input=sent, capture_output=True, timeout=COMMAND_S)
     assert (ended.returncode, ended.stderr) == (0, b"")
-
-
-async def test_words_of_both_languages_have_their_colours(editor: Editor, bundle: Path) -> None:
-    mapping, skill = bundle / "press.am", bundle / "press.sd"
-    for path, text, expected in (
-        (
-            skill,
-            SKILL,
-            {
-                ("project", "keyword"),
-                ("is_lit", "variable"),
-                ("AOS", "macro"),
-                ("Bernoulli", "function"),
-                ("0.9", "number"),
-                ("__reward", "macro"),
-                ("lit", "enumMember"),
-            },
-        ),
-        (mapping, MAPPING, {("response_rule", "keyword"), ("True", "keyword"), ("success", "variable")}),
-    ):
-        editor.open(path)
-        document = types.TextDocumentIdentifier(path.as_uri())
-        tokens = await editor.text_document_semantic_tokens_full_async(types.SemanticTokensParams(document))
-        assert tokens is not None
-        assert expected <= words_of(tokens.data, text.split("\n"))
 
 
 def words_of(data: Sequence[int], lines: list[str]) -> set[tuple[str, str]]:

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from exam.bundles import told_of_bundle
-from mappings import mapping_text
 from models import built_text, engine_of
 from texts import write_texts
 
@@ -19,15 +18,6 @@ state__.left -= state.full[box];
 __moduleResponse = state.full[box] ? found : nothing;
 state__.full[box] = false;
 """
-OPEN_MAPPING = mapping_text(
-    "found: code == 'found'",
-    "nothing: True",
-    project="boxes",
-    skill="open",
-    parameters=("box",),
-    reports={"code": "string"},
-)
-
 COINS = {
     "coins.ef": """project: boxes
 horizon: 40
@@ -55,7 +45,6 @@ if (state.left == 0) {
 }
 """,
     "open.sd": OPEN,
-    "open.am": OPEN_MAPPING,
 }
 """Four of 40 boxes hold a coin, and an opening costs 1: the coins that are left say what a state is worth."""
 
@@ -98,9 +87,6 @@ state__.berries &= ~(1 << state__.at);
 __reward = picked;
 __moduleResponse = picked ? found : nothing;
 """,
-    "go.am": OPEN_MAPPING.replace("project: boxes", "project: berries")
-    .replace("/open", "/go")
-    .replace("box", "by"),
 }
 """A ring of 24 bushes, of which a number has a bit each: no table of few values tells of the berries."""
 
@@ -128,9 +114,6 @@ dynamic_model:
 state__.at = std::clamp(state.at + by, 0, 15);
 __moduleResponse = nothing;
 """,
-    "go.am": OPEN_MAPPING.replace("project: boxes", "project: shelves")
-    .replace("/open", "/go")
-    .replace("box", "by"),
     "look.sd": """project: shelves
 parameter: int shelf
 
@@ -141,9 +124,6 @@ dynamic_model:
 __reward = -0.1;
 __moduleResponse = state.full[shelf] == AOS.Bernoulli(0.8) ? found : nothing;
 """,
-    "look.am": OPEN_MAPPING.replace("project: boxes", "project: shelves")
-    .replace("/open", "/look")
-    .replace("box", "shelf"),
     "take.sd": """project: shelves
 
 dynamic_model:
@@ -151,9 +131,6 @@ __reward = state.full[state.at] ? 10 : -10;
 __moduleResponse = state.full[state.at] ? found : nothing;
 state__.full[state.at] = false;
 """,
-    "take.am": mapping_text(
-        "found: code == 'found'", "nothing: True", project="shelves", skill="take", reports={"code": "string"}
-    ),
 }
 """A robot before 16 shelves: a million states. Looks at all shelves lead to the same states."""
 

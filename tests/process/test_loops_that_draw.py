@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import engine_of_text
 
 from aos_protocol.errors import ModelError
@@ -31,7 +30,6 @@ LOOPS = {
 }
 """Code, and the probability that it does not go round."""
 
-MAPPING = mapping_text("yes: is_on", "no: True", project="loops", skill="turn", reports={"is_on": "bool"})
 ENVIRONMENT = """project: loops
 horizon: 5
 discount: 0.95
@@ -74,8 +72,8 @@ __moduleResponse = yes;
 async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir: Path) -> None:
     files = {"loops.ef": ENVIRONMENT}
     for name, (loop, _) in LOOPS.items():
-        files |= {f"{name}.sd": SKILL.format(loop=loop), f"{name}.am": MAPPING}
-    files |= {"weights.sd": MANY_WEIGHTS, "weights.am": MAPPING}
+        files |= {f"{name}.sd": SKILL.format(loop=loop)}
+    files |= {"weights.sd": MANY_WEIGHTS}
     async with engine_of_text(files, cache_dir) as engine:
         names = [action.name for action in engine.description.actions]
         start = await engine.summary()
@@ -133,11 +131,10 @@ while (true) {
 state__.carried = 0;
 __moduleResponse = placed;
 """
-PLACED = mapping_text("placed: is_done", project="slots", skill="place", reports={"is_done": "bool"})
 
 
 async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_dir: Path) -> None:
-    files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
+    files = {"slots.ef": SLOTS, "place.sd": PLACE}
     async with engine_of_text(files, cache_dir) as engine:
         # The reward before the loop is not earned.
         values = await engine.exact_values(horizon=1)
@@ -153,7 +150,7 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
 
 
 async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision(cache_dir: Path) -> None:
-    files = {"slots.ef": SLOTS, "place.sd": PLACE, "place.am": PLACED}
+    files = {"slots.ef": SLOTS, "place.sd": PLACE}
     async with engine_of_text(files, cache_dir) as engine:
         chooser = Chooser(
             Terms(name="m", search=Search(simulations=100, seed=1)), Failures(), QuietPorts(), RiskBudget(())
@@ -165,7 +162,7 @@ async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decisi
 
 
 async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path) -> None:
-    files = {"loops.ef": ENVIRONMENT, "turn.sd": ENDLESS, "turn.am": MAPPING}
+    files = {"loops.ef": ENVIRONMENT, "turn.sd": ENDLESS}
     with pytest.raises(ModelError) as raised:
         async with engine_of_text(files, cache_dir) as engine:
             await engine.update("turn", "yes")

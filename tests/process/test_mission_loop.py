@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_bundle, built_text
 from scripted_missions import Surroundings, jammed, observed, run_mission, timed_out
 
@@ -186,7 +185,6 @@ async def field(cache_dir: Path) -> BuiltModel:
     files = {"field.ef": FIELD}
     for skill, code in FIELD_SKILLS.items():
         files[f"{skill}.sd"] = f"project: field\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
-        files[f"{skill}.am"] = mapping_text("done", project="field", skill=skill)
     return await built_text(files, cache_dir)
 
 

@@ -15,6 +15,7 @@ from models import built_bundle, built_text, engine_of
 from processes import COMMAND_S, HANG_S
 from scripted_models import text_project
 
+from aos_deploy.history_check.files import check_run
 from aos_deploy.runs.directory import RunDirectory
 from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option
@@ -288,7 +289,7 @@ def give(call, to):
 """
 
 
-def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_killed(
+def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_its_command(
     root: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "robot.py").write_text(SLOW_GIVE)
@@ -305,11 +306,19 @@ def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_kille
         up.kill()
     (tmp_path / "may_give").touch()
     run = (tmp_path / "runs" / "latest").resolve()
-    resumed = subprocess.run([BIN / "aos-up", "--resume", run], check=False, timeout=COMMAND_S)
-    assert resumed.returncode == 0
+    resume = [BIN / "aos-up", "--resume", run, "--json"]
+    resumed, refused = (
+        subprocess.run(resume, capture_output=True, text=True, timeout=COMMAND_S) for _ in range(2)
+    )
+    assert resumed.returncode == 0, resumed.stderr
+    steps = [event["step"] for event in map(json.loads, resumed.stdout.splitlines()) if "action" in event]
+    assert steps == sorted(steps)
+    assert steps[0] == 1
+    assert (refused.returncode, "AOS810" in refused.stderr) == (1, True)
+    assert check_run(run).violations == []
     with Journal.read(run / "journal.db") as journal:
         begun = [msgspec.json.decode(row.payload, type=MissionBegun) for row in journal.rows("begun")]
-    assert [row.mission_parameters for row in begun] == [{"target": "bob"}] * 2
+    assert [(row.epoch, row.mission_parameters) for row in begun] == [(n, {"target": "bob"}) for n in (1, 2)]
     summary = RunDirectory(run).read_summary()
     assert summary is not None
     assert summary.mission_parameters == {"target": "bob"}

@@ -5,8 +5,6 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
-from mappings import mapping_text
-
 from aos_language.load import load_files
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
@@ -31,7 +29,6 @@ dynamic_model:
 __moduleResponse = state.is_on ? light : dark;
 __reward = -COST;
 """,
-    "look.am": mapping_text("light: True", "dark: True", project="lamp", skill="look"),
 }
 
 LIGHT = Evidence("look", "look", "light")

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import engine_of_text
 
 from aos_protocol.errors import DocumentError, IntractableError
@@ -25,7 +24,6 @@ state__.cells[cell] = 0;
 state__.count_99 += 1;
 __moduleResponse = done;
 """,
-    "dig.am": mapping_text("done: True", project="odd"),
 }
 """1,000 actions, 100 variables, an array of 1,000 cells."""
 
@@ -49,15 +47,10 @@ while (AOS.Bernoulli(0.5)) state__.tosses++;
 __reward = state__.tosses;
 __moduleResponseStr = state.is_hot ? "it is hot" : "it is cold";
 """,
-    "toss.am": mapping_text(project="odd", response_from="text"),
 }
 """One action, texts as observations, and a loop that only chance ends."""
 
-NOTHING = {
-    "odd.ef": CROWDED["odd.ef"],
-    "dig.sd": CROWDED["dig.sd"].replace("cell < 1000", "cell < 0"),
-    "dig.am": CROWDED["dig.am"],
-}
+NOTHING = {"odd.ef": CROWDED["odd.ef"], "dig.sd": CROWDED["dig.sd"].replace("cell < 1000", "cell < 0")}
 """No action at all."""
 
 

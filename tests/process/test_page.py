@@ -276,59 +276,59 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
 
 
 def test_a_number_of_many_values_is_shown_by_its_median_and_range(
-    browser: Browser, tmp_path: Path, cache_dir: Path
+    browser: Browser, past: tuple[Gateway, str], cache_dir: Path
 ) -> None:
+    served, _ = past
     depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
-    name = write_long_run(tmp_path / "runs", 5, depth)
-    with gateway(tmp_path, cache_dir) as served:
-        for width in (390, 1440):
-            page = opened(browser, served, width)
-            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
-            expect(
-                page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
-            ).to_be_visible()
-            kept(page, f"numbers-{width}")
-            assert violations(page, cache_dir) == []
-            page.close()
+    name = write_long_run(served.folder / "runs", 5, depth)
+    for width in (390, 1440):
+        page = opened(browser, served, width)
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+        expect(
+            page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
+        ).to_be_visible()
+        kept(page, f"numbers-{width}")
+        assert violations(page, cache_dir) == []
+        page.close()
 
 
 def test_long_names_are_told_whole_and_widen_no_screen(
-    browser: Browser, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    browser: Browser, past: tuple[Gateway, str], cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    served, _ = past
     long = "where_the_robot_that_carries_the_longest_of_all_names_stands_at_the_moment"
     actions = tuple(
         f"inspect_the_shelf(target=shelf_in_the_north_eastern_corridor_{n:03d})" for n in range(200)
     )
     monkeypatch.setattr(long_run, "SKILLS", actions)
     certain = (Marginal(f"{long}_{number}", {f"value_of_{long}": 1.0}) for number in range(30))
-    name = write_long_run(tmp_path / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
-    with gateway(tmp_path, cache_dir) as served:
-        for width in (390, 1440):
-            page = opened(browser, served, width)
-            for view in ("", "/why", "/steps", "/model"):
-                page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
-                expect(page.locator(".stepper-place")).to_have_text("110 of 120")
-                assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
-                kept(page, f"long-{width}{view.replace('/', '-')}")
-            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step=110")
-            expect(page.locator(".value-name")).to_have_count(9)
-            is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
-            assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
-            assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
-            page.close()
+    name = write_long_run(served.folder / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
+    for width in (390, 1440):
+        page = opened(browser, served, width)
+        for view in ("", "/why", "/steps", "/model"):
+            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
+            expect(page.locator(".stepper-place")).to_have_text("110 of 120")
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
+            kept(page, f"long-{width}{view.replace('/', '-')}")
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step=110")
+        expect(page.locator(".value-name")).to_have_count(9)
+        is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
+        assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
+        assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
+        page.close()
 
 
-def test_a_thousand_steps_are_loaded_with_little(browser: Browser, tmp_path: Path, cache_dir: Path) -> None:
-    name = write_long_run(tmp_path / "runs", 1000)
-    with gateway(tmp_path, cache_dir) as served:
-        page = opened(browser, served)
-        page.goto("about:blank")
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
-        expect(page.locator(".stepper-place")).to_have_text("1000 of 1000")
-        expect(page.locator("[aria-busy=true]")).to_have_count(0)
-        sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
-        assert page.evaluate(sizes) <= MOST_BYTES
-        kept(page, "thousand")
+def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[Gateway, str]) -> None:
+    served, _ = past
+    name = write_long_run(served.folder / "runs", 1000)
+    page = opened(browser, served)
+    page.goto("about:blank")
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+    expect(page.locator(".stepper-place")).to_have_text("1000 of 1000")
+    expect(page.locator("[aria-busy=true]")).to_have_count(0)
+    sizes = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
+    assert page.evaluate(sizes) <= MOST_BYTES
+    kept(page, "thousand")
 
 
 def test_a_mission_whose_model_is_compiled_says_so_in_the_answer_the_stream_and_the_page(

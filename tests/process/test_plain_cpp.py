@@ -174,7 +174,6 @@ async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path) -> None:
     files = {"odd.ef": ENVIRONMENT}
     for name, (code, _) in CODE.items():
         files[f"{name}.sd"] = SKILL.format(code=code)
-        files[f"{name}.am"] = mapping_text("done: True", project="odd", skill=name)
     async with engine_of_text(files, cache_dir) as engine:
         values = await engine.exact_values(horizon=1)
     rewards = {value.action.split("(")[0]: value.q for value in values.values}

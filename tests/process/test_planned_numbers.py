@@ -4,7 +4,6 @@ import re
 from pathlib import Path
 
 import numpy as np
-from mappings import mapping_text
 from models import engine_of_text
 
 from aos_solver.child.engine import Engine, Planner
@@ -59,12 +58,6 @@ __moduleResponse = read;
 """
 
 
-def mapping(skill: str, **reports: str) -> str:
-    """The mapping of a skill that reads, and reports these numbers."""
-    reports = {"code": "string", **reports}
-    return mapping_text("read: code == 'read'", project="doors", skill=skill, reports=reports)
-
-
 def value_of_listening() -> float:
     """Computes the value by iteration over the log-odds of the tiger's place, to which a reading z adds 2
     z."""
@@ -82,13 +75,7 @@ def value_of_listening() -> float:
     return float(listened[len(odds) // 2])
 
 
-DOCUMENTS_OF_DOORS = {
-    "doors.ef": DOORS,
-    "listen.sd": LISTEN,
-    "open.sd": OPEN,
-    "listen.am": mapping("listen", side="double"),
-    "open.am": mapping("open"),
-}
+DOCUMENTS_OF_DOORS = {"doors.ef": DOORS, "listen.sd": LISTEN, "open.sd": OPEN}
 
 
 async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:

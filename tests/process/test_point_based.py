@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.building.build import BuiltModel
@@ -32,7 +31,6 @@ dynamic_model:
 __reward = state.is_winner ? 2 : -1;
 __moduleResponse = done;
 """,
-    "check.am": mapping_text("done: True", project="ticket", skill="check"),
 }
 
 FIELD = {
@@ -64,7 +62,6 @@ else state__.north = (state.north + 1) % 150;
 __reward = state.east * 0.01 - state.north * 0.005;
 __moduleResponse = done;
 """,
-    "walk.am": mapping_text("done: True", project="field", skill="walk"),
 }
 """22,500 places that all matter."""
 
@@ -157,13 +154,11 @@ async def test_a_later_decision_knows_what_an_earlier_one_has_found_out(tag: Bui
     assert kept >= known > lost + 5
 
 
-async def test_an_opponent_that_flees_is_tagged_in_the_same_way_each_time(tag: BuiltModel) -> None:
+async def test_an_opponent_that_flees_is_tagged(tag: BuiltModel) -> None:
     search = Search(simulations=5_000, seed=2, planner="sarsop")
     limits = MissionLimits(goal_probability=0.999, step_limit=90)
     async with engine_of(tag) as engine:
-        runs = [await simulate_mission(engine, search, limits) for _ in range(2)]
-    assert runs[0].ending == "goal"
-    assert runs[0] == runs[1]
+        assert (await simulate_mission(engine, search, limits)).ending == "goal"
 
 
 async def test_a_belief_that_no_observation_leads_to_is_reckoned_with(tag: BuiltModel) -> None:

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of
 
 from aos_solver.child.engine import Planner
@@ -47,10 +46,6 @@ if (state.cell == {CELLS}) {{
 }}
 __moduleResponseStr = "done";
 """,
-    **{
-        f"{skill}.am": mapping_text(project="vault", skill=skill, response_from="text")
-        for skill in ("look", "walk", "open")
-    },
 }
 
 WORTH = {"7 full": 100 * 0.99**CELLS, "8 empty": 0.0, "9 full": 100 * 0.99**CELLS}

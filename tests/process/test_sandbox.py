@@ -34,14 +34,11 @@ REACHING = {
 
 
 @pytest.fixture(scope="module")
-def reaching(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The documents of the lamp: all skills are of one model, which is compiled once."""
-    folder = tmp_path_factory.mktemp("reaching")
-    secret = folder / "secret"
-    secret.write_text("canary")
+def reaching() -> dict[str, str]:
+    """The documents of the lamp: all skills are of one model. Its secret is this file, so that it is kept."""
     files: dict[str, str] = {}
     for skill, what in REACHING.items():
-        code = MODELS[what].replace("SECRET", str(secret)).replace("FOLDER", str(folder))
+        code = MODELS[what].replace("SECRET", __file__).replace("FOLDER", str(Path(__file__).parent))
         files |= counting("lamp", skill, code=code, steps="3")
     return files
 

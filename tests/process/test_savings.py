@@ -27,6 +27,10 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
         assert plan.planner == "savings"
         same = await other.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto")
         assert same.actions == plan.actions
+        # An action that is barred saves nothing.
+        within = Restriction(barred=[plan.index])
+        barred = await other.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto", within=within)
+        assert (barred.planner, barred.index == plan.index) == ("savings", False)
         limits = MissionLimits(goal_probability=1, step_limit=60)
         searches = (Search(simulations=_FEW_SIMULATIONS, seed=seed) for seed in range(1, 1 + _MISSIONS))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
@@ -47,12 +51,3 @@ async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_a
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=30))
     assert sum(action == "clean" for action in run.actions) >= 8
     assert {"charge", "empty_bin"} <= set(run.actions)
-
-
-async def test_an_action_that_is_barred_saves_nothing(cache_dir: Path) -> None:
-    async with engine_of_text(greenhouse(5), cache_dir) as engine:
-        plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
-        within = Restriction(barred=[plan.index])
-        other = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto", within=within)
-    assert other.planner == "savings"
-    assert other.index != plan.index

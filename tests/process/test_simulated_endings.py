@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 from commands import aos
-from mappings import mapping_text
 from models import engine_of_text
 from texts import write_texts
 
@@ -37,13 +36,11 @@ dynamic_model:
 state__.cup = AOS.Bernoulli({SERVED}) ? Served : Spilt;
 __moduleResponse = done;
 """,
-    "serve.am": mapping_text("done", project="table"),
     "keep.sd": """project: table
 dynamic_model:
 state__.cup = Kept;
 __reward = -1;
 """,
-    "keep.am": mapping_text(project="table"),
 }
 LIMITS = MissionLimits(goal_probability=0.9, step_limit=3)
 

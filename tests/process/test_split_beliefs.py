@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from numpy.typing import NDArray
 from processes import kill_engine
@@ -42,13 +41,6 @@ if (!AOS.Bernoulli({SEES})) seen = AOSUtils::SampleDiscrete(vector<double>{{0.25
 const int responses[] = {{w0, w1, w2, w3}};
 __moduleResponse = responses[seen];
 """,
-    "inspect.am": mapping_text(
-        *(f"w{level}: seen == {level}" for level in range(LEVELS)),
-        project="machines",
-        skill="inspect",
-        parameters=["number"],
-        reports={"seen": "int"},
-    ),
 }
 """Each of 4^12 states has up to 2^12 outcomes; the machines are independent of one another."""
 
@@ -133,17 +125,9 @@ if (!state.is_dealt) for (int i = 0; i < {cards}; i++) state__.cards[i] = AOS.Be
 state__.is_dealt = true;
 __moduleResponse = state__.cards[number] ? yes : no;
 """
-    rules = mapping_text(
-        "yes: is_on",
-        "no: True",
-        project="cards",
-        skill="turn",
-        parameters=["number"],
-        reports={"is_on": "bool"},
-    )
     dice = random.Random(4)
     hand = [dice.random() < 0.5 for _ in range(cards)]
-    files = {"cards.ef": environment, "turn.sd": turn, "turn.am": rules}
+    files = {"cards.ef": environment, "turn.sd": turn}
     async with engine_of_text(files, cache_dir) as engine:
         for card, is_on in enumerate(hand):
             update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")

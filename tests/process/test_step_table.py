@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import engine_of_text
 
 ODDS = (0.02, 0.5, 0.18, 0.3)
@@ -49,9 +48,6 @@ if (throws) {{
 }}
 __moduleResponse = AOS.Bernoulli(0.9) == (state__.face < 2) ? low : high;
 """,
-        "play.am": mapping_text(
-            "low: face < 2", "high: True", project="die", skill="play", reports={"face": "int"}
-        ),
     }
 
 

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 
 BOXES = """project: boxes
@@ -42,9 +41,6 @@ state__.full[box] = false;
 if (carefully) __reward -= 0.5;
 else if (AOS.Bernoulli(0.0001)) __reward -= 100000;
 """,
-    "open.am": mapping_text(
-        project="boxes", skill="open", parameters=["box", "carefully"], response_from="code"
-    ),
 }
 """Care costs 0.5. Without it a box costs 10 on average: once in 10,000 times 100,000."""
 
@@ -60,21 +56,18 @@ dynamic_model:
 __moduleResponseStr = state.full[box] ? "bomb" : "nothing";
 if (state.full[box]) state__.end = 2;
 """,
-    "open.am": mapping_text(project="boxes", skill="open", parameters=["box"], response_from="code"),
     "wait.sd": """project: boxes
 
 dynamic_model:
 __reward = -0.1;
 __moduleResponseStr = "nothing";
 """,
-    "wait.am": mapping_text(project="boxes", skill="wait", response_from="code"),
     "leave.sd": """project: boxes
 
 dynamic_model:
 state__.end = 1;
 __moduleResponseStr = "left";
 """,
-    "leave.am": mapping_text(project="boxes", skill="leave", response_from="code"),
 }
 """Boxes hold nothing but bombs, so that it is best to leave. Who waits pays 0.1 for each step."""
 
@@ -111,9 +104,6 @@ for (int i = 0; i < 30; i++) {
 for (double& each : odds) each /= sum;
 __moduleResponseStr = "alarm " + std::to_string(AOSUtils::SampleDiscrete(odds));
 """,
-    "restart.am": mapping_text(
-        project="alarms", skill="restart", parameters=["machine"], response_from="code"
-    ),
 }
 """Machines in a ring fail beside one that is down. Each step has an alarm, as a rule of one that is down."""
 

@@ -4,7 +4,6 @@ import math
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 
 CORRIDOR = {
@@ -30,7 +29,6 @@ __reward = -1;
 __moduleResponseStr = "";
 for (int i = 0; i < 12; i++) __moduleResponseStr += char('a' + int(AOS.SampleUniform(0, 20)));
 """,
-    "walk.am": mapping_text(project="corridor", skill="walk", response_from="code"),
 }
 
 
@@ -89,16 +87,13 @@ for (int i = 0; i < 3; i++) {
     __moduleResponseStr += to_string(int(floor(4 * heard))) + ";";
 }
 """,
-    "listen.am": mapping_text(project="doors", skill="listen", response_from="code"),
     "wait.sd": "project: doors\ndynamic_model:\n__reward = 0;\n",
-    "wait.am": mapping_text(project="doors", skill="wait"),
     "open.sd": """project: doors
 parameter: Side side
 dynamic_model:
 __reward = (side == Left) == state.is_left ? 10 : -100;
 state__.is_left = AOS.Bernoulli(0.5);
 """,
-    "open.am": mapping_text(project="doors", skill="open", parameters=("side",)),
 }
 
 

@@ -4,6 +4,7 @@ import json
 import shutil
 from pathlib import Path
 
+from commands import aos
 from test_missions import up
 
 LINES = 8
@@ -67,14 +68,13 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(root: Path, 
         assert "simulations: 200 in A, 100 in B" in out
 
 
-def test_a_plan_may_begin_with_another_belief(root: Path, tmp_path: Path) -> None:
-    with up(root, tmp_path) as system:
-        bundle = str(root / "deploy" / "bundles" / "bench" / "tiger")
-        supposed = tmp_path / "belief.txt"
-        supposed.write_text("tiger_behind=Left:0.999\n")
-        for belief in ("tiger_behind=Left:0.999", str(supposed)):
-            code, out, error = system.aos("plan", bundle, "--belief", belief, "--json")
-            assert code == 0, error
-            assert json.loads(out)["action"] == "open(door=right_door)"
-            assert "supposed tiger_behind=Left: 0.999 instead of 0.5" in error
-        assert "AOS501: there is no variable lion" in system.aos("plan", bundle, "--belief", "lion=Left:1")[2]
+def test_a_plan_may_begin_with_another_belief(bundles: Path, tmp_path: Path) -> None:
+    bundle, supposed = bundles / "bench" / "tiger", tmp_path / "belief.txt"
+    supposed.write_text("tiger_behind=Left:0.999\n")
+    for belief in ("tiger_behind=Left:0.999", supposed):
+        done = aos("plan", bundle, "--belief", belief, "--json")
+        assert done.exit_code == 0, done.output
+        assert json.loads(done.stdout)["action"] == "open(door=right_door)"
+        assert "supposed tiger_behind=Left: 0.999 instead of 0.5" in done.stderr
+    unknown = aos("plan", bundle, "--belief", "lion=Left:1")
+    assert "AOS501: there is no variable lion" in str(unknown.exception)
