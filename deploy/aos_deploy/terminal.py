@@ -47,12 +47,16 @@ def write_what_fits(stream: object) -> None:
 
 
 def progress(*columns: ProgressColumn) -> Progress:
-    """A bar on standard error that goes away in the end; nothing at all where that is no terminal."""
+    """A bar on standard error that goes away in the end; lines there where that is no terminal."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from aos_deploy.told_progress import ToldProgress
 
     usual = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     shown = console(stderr=True)
-    return Progress(*(columns or usual), console=shown, transient=True, disable=not shown.is_terminal)
+    if not shown.is_terminal:
+        return ToldProgress()
+    return Progress(*(columns or usual), console=shown, transient=True)
 
 
 @contextmanager
@@ -73,7 +77,7 @@ def waiting(what: str) -> Iterator[Callable[[str], None]]:
     there as a line, every LINE_EVERY_S at most.
     """
     if sys.stderr is None or not sys.stderr.isatty():
-        yield _Lines(what).tell
+        yield TimedLines(what).tell
         return
     from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -82,7 +86,7 @@ def waiting(what: str) -> Iterator[Callable[[str], None]]:
         yield lambda text: shown.update(task, description=f"{what}: {text}")
 
 
-class _Lines:
+class TimedLines:
     """Tells how far work is in lines, for logs: the first after LINE_EVERY_S."""
 
     def __init__(self, what: str) -> None:

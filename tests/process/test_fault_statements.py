@@ -16,7 +16,7 @@ WARD = """project: ward
 horizon: 4
 
 define_type: tFault
-enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn, eEmpty
+enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn, eEmpty, eFirst, eMost
 
 shared_code:
 int bed_of(const auto& state__, int i) {
@@ -37,7 +37,7 @@ SLIP = """project: ward
 parameter: tFault fault
 
 available_parameters_code:
-for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn, eEmpty})
+for (tFault fault : state.tFaultObjects)
     __possibleParameters.push_back(make_tuple(fault));
 
 dynamic_model:
@@ -69,6 +69,15 @@ switch (fault) {
         shelf.cups.pop_back();  // eEmpty
         break;
     }
+    case eFirst: {
+        vector<int> none;
+        state__.rooms = *none.begin();  // eFirst
+        break;
+    }
+    case eMost:
+        state__.beds.clear();
+        state__.rooms = *std::max_element(state__.beds.begin(), state__.beds.end());  // eMost
+        break;
     case eShared:
         state__.rooms = bed_of(state__, twice(2));
         break;
@@ -95,6 +104,8 @@ FAULTS = {
     "eShared": ("AOS215", "element 6 of a vector of 3"),
     "eOwn": ("AOS215", "element 3 of a vector of 3"),
     "eEmpty": ("AOS215", "element 0 of a vector of 0"),
+    "eFirst": ("AOS215", "element 0 of a vector of 0"),
+    "eMost": ("AOS215", "element 0 of a vector of 0"),
 }
 
 

@@ -57,6 +57,8 @@ def test_any_text_gives_a_value_or_an_error(text: str):
         ('{"a" 1}', "1:6", 'expected ":" after "a", found \'1\''),
         ('{"a": 1', "1:1", 'this "{" is never closed'),
         ('{"a":\n [1, 2', "2:2", 'this "[" is never closed'),
+        ('{\n "a": {\n "a": {\n  "b": 1\n },\n "c": 2\n}\n', "2:7", 'this "{" is never closed'),
+        ('{\n "a": [\n "a": [\n 1\n ]\n}\n', "3:5", 'expected "," or "]", found \':\''),
         ('{"a": "x\n"}', "1:7", "this string is not closed on its line"),
         ('{"a": "x\\q"}', "1:9", "no such escape in JSON"),
         ('{"a": "\\ud800"}', "1:8", "half of a surrogate pair"),

@@ -77,6 +77,11 @@ def test_plain_code_stands_as_it_is(code):
          "if (a && aos::at(row, i)) n = aos::filled(aos::at(grid.rows, y)).back();"),
         ("all.pop_back(); end = &row[2][9]; n = f(x)[k];",
          "aos::filled(all).pop_back(); end = &aos::at(row, 2)[9]; n = aos::at(f(x), k);"),
+        ("n = *row.begin() + *std::max_element(row.begin(), row.end()); v.begin()->x = 1; i = row.begin();",
+         "n = *aos::filled(row).begin() + *std::max_element(aos::filled(row).begin(), row.end());"
+         " aos::filled(v).begin()->x = 1; i = row.begin();"),
+        ("n = *std::ranges::min_element(state.row) + *f(x).begin() + *p->begin();",
+         "n = *std::ranges::min_element(aos::filled(state.row)) + *f(x).begin() + *p->begin();"),
         ("b = slips(odds[i][0]);", "b = slips(AOS, aos::at(aos::at(odds, i), 0));"),
         ("std::vector<tBox*> a = state__.tBoxObjects; n = state.tBoxObjects.size();",
          "std::vector<tBox*> a = state__.tBoxObjects(); n = state.tBoxObjects().size();"),

@@ -127,8 +127,8 @@ def _ranges(steps: list[int]) -> str:
 
 
 def diff(
-    first: Annotated[Path, typer.Argument(metavar="A", help="A run directory")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another one")],
+    first: Annotated[Path | None, typer.Argument(metavar="A", help="A run directory")] = None,
+    second: Annotated[Path | None, typer.Argument(metavar="B", help="Another one")] = None,
     mission: Mission = None,
     as_json: AsJson = False,
 ) -> None:
@@ -136,6 +136,10 @@ def diff(
 
     Prints the settings that differ and the first step that does. The exit code is 1 where they differ.
     """
+    if first is None or second is None:
+        raise typer.BadParameter(
+            "two run directories are compared. `aos runs` lists what ran here", param_hint="A B"
+        )
     opened = [StudiedRun.open(chosen_run(run, None).path, mission) for run in (first, second)]
     found = difference(*opened)
     if as_json:

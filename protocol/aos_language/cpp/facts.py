@@ -61,7 +61,8 @@ class Mention(msgspec.Struct, frozen=True):
 class Element(msgspec.Struct, frozen=True):
     """An element that a container has to have: `row[i]`, or that of `row.back()` and its like.
 
-    `brackets` are those of the index; None for a method. `root` is the name that the container begins with.
+    `brackets` are those of the index; None for a method. `root` is the name that the container begins with;
+    empty where a container of the state has to be asked, too.
     """
 
     container: Extent

@@ -22,6 +22,8 @@ from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
 _OF_FILLED = frozenset({"back", "front", "pop", "pop_back", "pop_front", "top"})
+_BEGINNINGS = frozenset({"begin", "cbegin", "crbegin", "rbegin"})
+_EXTREMES = frozenset({"max_element", "min_element"})
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
 """Expressions that do nothing but have a value."""
 
@@ -138,7 +140,10 @@ class TreeReader:
                 current = _child(current, "argument")
             elif current.type == "field_expression":
                 parts += reversed(_names(current.child_by_field_name("field")))
+                is_arrow = text_of(current.children[1]) == "->"
                 current = _child(current, "argument")
+                if is_arrow:
+                    self._dereferenced(current)
             elif current.type == "subscript_expression":
                 parts.append("[]")
                 indices = current.child_by_field_name("indices")
@@ -158,10 +163,27 @@ class TreeReader:
                 return (), None
 
     def _element(self, container: tree_sitter.Node, brackets: Extent | None = None) -> None:
-        root = container
-        while root.type in ("field_expression", "subscript_expression"):
-            root = _child(root, "argument")
-        self.elements.append(Element(self.extent(container), brackets, text_of(root)))
+        self.elements.append(Element(self.extent(container), brackets, text_of(_root(container))))
+
+    def _dereferenced(self, iterator: tree_sitter.Node) -> None:
+        """Asks the container of `*row.begin()` or `*max_element(row.begin(), row.end())` for an element."""
+        if iterator.type != "call_expression":
+            return
+        function = _child(iterator, "function")
+        if function.type != "field_expression":
+            first = _child(iterator, "arguments").named_children[:1]
+            if not _EXTREMES.isdisjoint(_names(function)[-1:]) and first:
+                taken = self._filled if "ranges" in _names(function) else self._dereferenced
+                taken(first[0])
+            return
+        method = _names(function.child_by_field_name("field"))
+        if not _BEGINNINGS.isdisjoint(method) and text_of(function.children[1]) == ".":
+            self._filled(_child(function, "argument"))
+
+    def _filled(self, container: tree_sitter.Node) -> None:
+        """Asks a container that has a name; also one of the state, whose iterators check nothing."""
+        if _root(container).type == "identifier":
+            self.elements.append(Element(self.extent(container)))
 
     def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
         while node is not None and node.type == "qualified_identifier":
@@ -204,6 +226,8 @@ class TreeReader:
 
     def _pointer(self, node: tree_sitter.Node, access: Access) -> None:
         is_address = node.children[0].type == "&"
+        if not is_address:
+            self._dereferenced(_child(node, "argument"))
         self._push([node.child_by_field_name("argument")], Access.BIND if is_address else access)
 
     def _pass_on(self, node: tree_sitter.Node, access: Access) -> None:
@@ -378,6 +402,12 @@ def _is_checked(subscript: tree_sitter.Node, indices: tree_sitter.Node) -> bool:
     is_address = outer is not None and outer.type == "pointer_expression" and outer.children[0].type == "&"
     is_one = [part.type for part in indices.named_children if part.type != "comment"]
     return not is_address and len(is_one) == 1 and is_one[0] not in ("initializer_list", "comma_expression")
+
+
+def _root(container: tree_sitter.Node) -> tree_sitter.Node:
+    while container.type in ("field_expression", "subscript_expression"):
+        container = _child(container, "argument")
+    return container
 
 
 def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:

@@ -121,6 +121,7 @@ class _Reader:
         self._findings = findings
         self._at = 0
         self._has_comments = False
+        self._crooked: int | None = None
 
     def value(self, depth: int) -> JsonValue:
         self._skip_blank()
@@ -178,9 +179,13 @@ class _Reader:
     def _closes(self, bracket: str, start: int) -> bool:
         self._skip_blank()
         if self._at >= len(self._text):
+            # Where a bracket inside was closed further to the left than it begins, that one lacks its own.
+            start = self._crooked if self._crooked is not None else start
             raise _Unreadable(f'this "{self._text[start]}" is never closed', start)
         if self._text[self._at] != bracket:
             return False
+        if self._crooked is None and self._indent(self._at) < self._indent(start):
+            self._crooked = start
         self._at += 1
         return True
 
@@ -200,10 +205,16 @@ class _Reader:
             span = self._source.span(end)
             self._findings.error("AOS104", "a comma is missing here", span)
         elif character and character != bracket:
-            hint = self._opened(start) if character in "}]" else ""
+            is_other = character in "}]" or character + bracket == ":]"
+            hint = self._opened(start) if is_other else ""
             if self._text[end - 1] == '"' and character.isalnum():
                 hint = 'A text ended before it: is a quote missing there? In a text a quote is written \\"'
             raise _Unreadable(f'expected "," or "{bracket}", found {self._found()}', self._at, hint)
+
+    def _indent(self, at: int) -> int:
+        """The number of blanks that the line of a place begins with."""
+        match = _BLANK.match(self._text, self._text.rfind("\n", 0, at) + 1)
+        return len(match.group()) if match else 0
 
     def _opened(self, start: int) -> str:
         return f'The "{self._text[start]}" on line {self._source.span(start).line} is still open'

@@ -1,6 +1,7 @@
 """Edits that check the elements which a document's own vectors, arrays and strings are asked for.
 
-Those of the state check their own. The standard library's read, beyond their end, what happens to be there.
+Those of the state check their own, but for iterators. The standard library's read, beyond their end, what
+happens to be there.
 """
 
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ def index_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
 
     - `row[i][k]` becomes `aos::at(aos::at(row, i), k)`
     - `row.back()`, `row.front()`, `row.pop_back()` and their like become `aos::filled(row).back()`
+    - `*row.begin()` becomes `*aos::filled(row).begin()`
     """
     own = [element for element in cpp.elements if element.root not in STATES]
     own.sort(key=lambda element: (element.container.start, -element.container.end))

@@ -1,0 +1,28 @@
+"""A progress that tells its steps in lines, where there is no terminal to draw a bar on."""
+
+from typing import Any
+
+from rich.progress import Progress, TaskID
+
+from aos_deploy.terminal import TimedLines
+
+
+class ToldProgress(Progress):
+    """Counts as a bar does, and draws nothing: a line now and then tells how far the last task is."""
+
+    def __init__(self) -> None:
+        super().__init__(disable=True)
+        self._lines = TimedLines("working")
+
+    def update(self, task_id: TaskID, **changes: Any) -> None:
+        super().update(task_id, **changes)
+        self._tell(task_id)
+
+    def advance(self, task_id: TaskID, advance: float = 1) -> None:
+        super().advance(task_id, advance)
+        self._tell(task_id)
+
+    def _tell(self, task_id: TaskID) -> None:
+        task = next(task for task in self.tasks if task.id == task_id)
+        of_all = f" of {task.total:,.0f}" if task.total else ""
+        self._lines.tell(f"{task.description}: {task.completed:,.0f}{of_all}")
