@@ -5,11 +5,9 @@ import json
 from asyncio.subprocess import PIPE
 from pathlib import Path
 
-import pytest
 from models import built_text
 from processes import HANG_S
 
-from aos_protocol.errors import ModelError
 from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.lines.command_line import command_line
@@ -94,6 +92,5 @@ def test_a_belief_is_a_command_with_a_list() -> None:
     ]  # fmt: skip
 
 
-def test_a_text_that_would_be_two_fields_is_no_field() -> None:
-    with pytest.raises(ModelError, match="tab or a line end"):
-        command_line("update", response="clicked\ttwice")
+def test_a_text_is_one_field_whatever_is_in_it() -> None:
+    assert command_line("update", response="a\tb\n\\n") == "update\tresponse=a\\tb\\n\\\\n"

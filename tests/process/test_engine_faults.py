@@ -44,11 +44,27 @@ async def started(built: BuiltModel) -> Engine:
     return await Engine.start(built, seed=1)
 
 
-async def test_a_response_that_no_text_can_be_is_refused(cache_dir: Path) -> None:
-    async with engine_of_text(LAMP, cache_dir) as engine:
-        with pytest.raises(ModelError, match="tab or a line end") as caught:
-            await engine.update("press", "clicked\ttwice")
-    assert caught.value.code == "AOS310"
+def speaking(code: str) -> dict[str, str]:
+    """The lamp with a skill whose response is a text."""
+    return LAMP | {"tell.sd": f"project: lamp\ndynamic_model:\n{code}\n"}
+
+
+async def test_a_response_is_any_text(cache_dir: Path) -> None:
+    code = r'__moduleResponseStr = AOS.Bernoulli(0.25) ? "a\tb\n\\n\"é" : "";'
+    async with engine_of_text(speaking(code), cache_dir) as engine:
+        told = {each.response: each.probability for each in (await engine.predict(1)).predicted}
+        assert told == {'a\tb\n\\n"é': pytest.approx(0.25), "": pytest.approx(0.75)}
+        assert (await engine.update("tell", 'a\tb\n\\n"é')).probability == pytest.approx(0.25)
+
+
+async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line(cache_dir: Path) -> None:
+    async with engine_of_text(
+        speaking('__moduleResponseStr = "aé";\n__moduleResponseStr.pop_back();'), cache_dir
+    ) as engine:
+        with pytest.raises(ModelError, match="no UTF-8 at its byte 1") as caught:
+            await engine.predict(1)
+    (told,) = caught.value.diagnostics
+    assert (told.code, told.span.file, told.span.line) == ("AOS215", "tell.sd", 4)
 
 
 async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path) -> None:
@@ -109,14 +125,6 @@ async def test_of_slow_code_in_many_places_the_environment_document_is_told(cach
     refusal = await refused(documents, cache_dir)
     assert (refusal.code, refusal.span.file) == ("AOS211", "lamp.ef")
     assert "no one place" in refusal.message
-
-
-async def test_a_response_that_is_no_text_is_an_answer_that_makes_no_sense(cache_dir: Path) -> None:
-    files = counting("lamp", "press", code='__moduleResponseStr = "\\xff";', steps="3")
-    files["press.sd"] = files["press.sd"].replace("__moduleResponse = done;\n", "")
-    async with engine_of_text(files, cache_dir) as engine:
-        with pytest.raises(ModelError, match="the engine's answer makes no sense"):
-            await engine.plan(seed=1, simulations=20)
 
 
 async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:

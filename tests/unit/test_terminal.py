@@ -20,6 +20,17 @@ def test_long_work_tells_a_log_now_and_then_how_far_it_is(
     assert not said.out
 
 
+def test_counted_work_tells_a_log_now_and_then_how_much_is_done(capsys, monkeypatch):
+    monkeypatch.setattr(terminal, "LINE_EVERY_S", 0.0)
+    with terminal.progress() as bar:
+        task = bar.add_task("hard-table", total=10)
+        bar.advance(task)
+        bar.update(task, description="easy-table", completed=4)
+    first, second = capsys.readouterr().err.splitlines()
+    assert first == "aos: working for 0 s: hard-table: 1 of 10"
+    assert second == "aos: working for 0 s: easy-table: 4 of 10"
+
+
 @pytest.mark.parametrize(
     ("encoding", "written"),
     [("latin-1", b"\xe9 ??"), ("ascii", b"? ??"), ("utf-8", b"\xc3\xa9 \xe2\x94\x83\\udcff")],

@@ -9,11 +9,12 @@ _STDERR = 2
 def _import_silently() -> None:
     """Imports pybullet, which writes when it was built on standard error, without that line."""
     kept = os.dup(_STDERR)
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), _STDERR)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, _STDERR)
+    os.close(nowhere)
     try:
         with contextlib.suppress(ImportError):
-            import pybullet  # noqa: F401, PLC0415
+            import pybullet  # noqa: F401
     finally:
         os.dup2(kept, _STDERR)
         os.close(kept)

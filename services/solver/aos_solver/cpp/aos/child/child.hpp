@@ -101,7 +101,7 @@ int run_child(int argc, char** argv) {
     if (!text.empty() && text.back() == '\n') text.remove_suffix(1);
     json.clear();
     progress::tell_to(detail::say_progress);
-    guarded(json, [&] { commands->answer(Command{text}, json); });
+    guarded(json, [&] { commands->answer(Command{std::string{text}}, json); });
     progress::tell_to(nullptr);  // nobody reads while nothing is asked
     watchdog::allow(0);
     detail::say(out, json);

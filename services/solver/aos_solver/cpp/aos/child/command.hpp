@@ -1,13 +1,16 @@
 // A command to the engine, as one line of parts between tabs. The parts are the command's name and its fields
 // as `name=value`. A command that takes a list has an empty part and then the items. The order of fields does
-// not matter, and unused ones are ignored. A missing or malformed field is a BadCommand.
+// not matter, and unused ones are ignored. A missing or malformed field is a BadCommand. Within a part \t, \n and \\ are
+// a tab, a line end and a backslash.
 // aos_solver/child/lines/command_line.py writes the lines.
 #pragma once
 
 #include <charconv>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace aos {
@@ -43,8 +46,9 @@ Number number_in(std::string_view text) {
 
 class Command {
  public:
-  explicit Command(std::string_view line) {
-    const auto parts = detail::parts_of(line, '\t');
+  explicit Command(std::string line) : line_{std::move(line)} {
+    auto parts = detail::parts_of(line_, '\t');
+    for (auto& part : parts) part = unescaped(part);
     name_ = parts[0];
     auto part = parts.begin() + 1;
     for (; part != parts.end() && !part->empty(); ++part) {
@@ -54,6 +58,9 @@ class Command {
     }
     if (part != parts.end()) items_.assign(part + 1, parts.end());
   }
+
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
 
   std::string_view name() const { return name_; }
   const std::vector<std::string_view>& items() const { return items_; }
@@ -81,6 +88,20 @@ class Command {
     std::string_view value;
   };
 
+  // In the place of the part, as it only becomes shorter.
+  std::string_view unescaped(std::string_view part) {
+    if (part.find('\\') == std::string_view::npos) return part;
+    char* const begin = line_.data() + (part.data() - line_.data());
+    char* end = begin;
+    for (std::size_t at = 0; at < part.size(); ++at) {
+      const bool is_escape = part[at] == '\\' && at + 1 < part.size();
+      const char letter = is_escape ? part[++at] : part[at];
+      *end++ = !is_escape ? letter : letter == 't' ? '\t' : letter == 'n' ? '\n' : letter;
+    }
+    return {begin, end};
+  }
+
+  std::string line_;
   std::string_view name_;
   std::vector<Field> fields_;
   std::vector<std::string_view> items_;

@@ -68,6 +68,10 @@ void Text::overflow(std::size_t size) {
 
 namespace detail {
 
+void no_text(std::size_t byte) {
+  throw ModelFault{"AOS215", "the response's text is no UTF-8 at its byte " + std::to_string(byte) +
+                                 ", where a letter is cut or none is"};
+}
 void no_such_response(int response) {
   throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(response) + ", which is no response"};
 }

@@ -3,11 +3,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "aos/base/fault.hpp"
+#include "aos/base/json.hpp"
 #include "aos/base/reward_ledger.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/grounding.hpp"
@@ -155,6 +158,7 @@ namespace detail {
 
 // These throw a ModelFault. They are kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void no_such_response(int response);
+[[noreturn, gnu::cold]] void no_text(std::size_t byte);
 [[noreturn, gnu::cold]] void no_such_reward(double reward);
 // Called after each phase that has a reward, so that this phase is blamed and not the one after it.
 inline void check_reward(double reward) {
@@ -164,7 +168,14 @@ inline void check_reward(double reward) {
 template <class Skill>
 Observation observation_of(const auto& effect) {
   if constexpr (Skill::has_text_response) {
-    if (effect.text != no_text_response) return text_observation(effect.text);
+    if (effect.text != no_text_response) {
+      for (std::string_view text = effect.text; !text.empty();) {
+        const std::size_t size = letter_size(text);
+        if (size == 0) no_text(effect.text.size() - text.size());
+        text.remove_prefix(size);
+      }
+      return text_observation(effect.text);
+    }
   }
   constexpr int last = static_cast<int>(Skill::response_names.size());
   if (effect.response < 0 || effect.response > last) no_such_response(effect.response);
