@@ -16,7 +16,7 @@ from aos_deploy.runs.living import chosen_run
 from aos_deploy.views.lines import lines_of, on_one_line
 from aos_protocol.access import WATCHER
 from aos_protocol.messages import DecisionRecord, MissionState
-from aos_runtime.disk.mission_folders import mission_folder, mission_folders
+from aos_runtime.disk.mission_folders import JOURNAL, mission_folder, mission_folders
 
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
@@ -105,14 +105,12 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
 def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord | MissionState]:
     """The decisions of a mission that is over, and how it ended; by number in a system that stays."""
     from aos_deploy.runs.verdict import message_of_row
-    from aos_runtime.disk.journal import Journal
+    from aos_runtime.disk.journal import rows_of
 
-    folder = mission_folder(directory.path, mission) if mission else directory.path
-    with Journal.read(folder / "journal.db") as journal:
-        for row in journal.walk():
-            event = message_of_row(row)
-            if isinstance(event, DecisionRecord) or (event is not None and event.phase == "ended"):
-                yield event
+    for row in rows_of(mission_folder(directory.path, mission) / JOURNAL):
+        event = message_of_row(row)
+        if isinstance(event, DecisionRecord) or (event is not None and event.phase == "ended"):
+            yield event
 
 
 async def _stream(aos: AosClient, show: Show, *, is_following: bool) -> bool:

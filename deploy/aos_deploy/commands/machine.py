@@ -17,6 +17,7 @@ import typer
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
 from aos_deploy.places import cache_dir
+from aos_deploy.printing import print_json
 from aos_protocol.errors import AosError
 from aos_runtime.distribution import pip_install
 from aos_runtime.processes.sandbox_trial import what_a_confined_program_can
@@ -57,7 +58,7 @@ def doctor(
     if deploy is not None:
         findings += examine_needs(deploy)
     if as_json:
-        typer.echo(msgspec.json.format(msgspec.json.encode(findings), indent=2))
+        print_json(findings)
     else:
         marks = {"ok": "ok     ", "absent": "-      ", "missing": "MISSING"}
         for finding in findings:

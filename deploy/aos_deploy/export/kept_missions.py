@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import DECISION
-from aos_runtime.disk.journal import Journal, JournalRow
-from aos_runtime.disk.mission_folders import mission_folders, mission_name
+from aos_runtime.disk.journal import Journal, JournalRow, rows_of
+from aos_runtime.disk.mission_folders import journals, mission_name
 
 
 class KeptMission(NamedTuple):
@@ -18,8 +18,7 @@ class KeptMission(NamedTuple):
 
     def rows(self) -> Iterator[JournalRow]:
         """The rows in their order; StorageError AOS702 at one that is damaged."""
-        with Journal.read(self.journal) as journal:
-            yield from journal.walk()
+        return rows_of(self.journal)
 
     def decisions(self) -> Iterator[DecisionRecord]:
         """The decision records in their order; StorageError AOS702 at a row that is damaged."""
@@ -31,7 +30,5 @@ class KeptMission(NamedTuple):
 def kept_missions(run: Path) -> list[KeptMission]:
     """The missions of a run that have a journal, the oldest first."""
     run = run.resolve()
-    folders = mission_folders(run)
-    places = [(mission_name(run, number), folder) for number, folder in folders.items()]
-    found = [KeptMission(name, folder / "journal.db") for name, folder in places or [(run.name, run)]]
+    found = [KeptMission(mission_name(run, number), path) for number, path in journals(run).items()]
     return [mission for mission in found if mission.journal.is_file()]

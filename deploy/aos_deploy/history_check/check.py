@@ -9,10 +9,11 @@ from aos_deploy.history_check.rules import BY_TIME, Violation
 from aos_deploy.runs.verdict import Verdict
 from aos_protocol.errors import StorageError
 from aos_runtime.disk.journal import JournalError, JournalRow
+from aos_runtime.disk.mission_folders import JOURNAL
 
 SET_BACK_NS = 10_000_000
 """Times of one file that go back by less say nothing of the clock."""
-JOURNAL, MIDDLEWARE = "journal.db", "middleware.db"
+MIDDLEWARE = "middleware.db"
 
 
 class _Takes(Protocol):

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.history_check.check import JOURNAL
 from aos_deploy.history_check.rules import Violation
 from aos_deploy.runs.studied import StudiedRun
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BeliefSummary, DecisionRecord
-from aos_runtime.disk.mission_folders import mission_folders
+from aos_runtime.disk.mission_folders import JOURNAL, mission_folders
 
 
 class Replay(msgspec.Struct):

@@ -36,6 +36,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
+from aos_runtime.disk.mission_folders import JOURNAL
 from aos_runtime.parties.asking import ask_until_answered
 from aos_runtime.parties.steering import start_mission
 from aos_runtime.processes.lifecycle import ServiceSettings, root_cause
@@ -267,7 +268,7 @@ class MissionRun:
         """Says whether the journal has the end that somebody tells. One that is gone, or cannot be read, says
         nothing.
         """
-        if not (self._run.path / "journal.db").exists():
+        if not (self._run.path / JOURNAL).exists():
             return True
         try:
             account = account_of(self._run.path)

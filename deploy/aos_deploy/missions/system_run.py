@@ -18,9 +18,9 @@ from aos_protocol.errors import AosError, MissionRunsError, SteeringError, Stora
 from aos_protocol.messages import DecisionRecord, MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import DECISION
 from aos_runtime.disk.journal import Journal
-from aos_runtime.disk.mission_folders import make_folder_of_missions, mission_folder
+from aos_runtime.disk.mission_folders import JOURNAL, make_folder_of_missions, mission_folder
 from aos_runtime.parties.steering import start_mission
-from aos_solver.mission.records.logbook import JOURNAL, entries_of, entry_of
+from aos_solver.mission.records.logbook import entries_of, entry_of
 
 
 class SystemRun(MissionRun):
@@ -96,7 +96,7 @@ class SystemRun(MissionRun):
             process_ends=(),
         )
         try:
-            self._run.write_summary_of_mission(entry.number, summary)
+            self._run.write_summary(summary, entry.number)
         except StorageError as error:
             self.error = self.error or error
         return summary

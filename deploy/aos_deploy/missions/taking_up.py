@@ -13,8 +13,8 @@ from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
 from aos_protocol.messages import ActivationId
 from aos_runtime.disk.journal import Journal, JournalRow
-from aos_runtime.disk.mission_folders import stays
-from aos_solver.mission.records.logbook import JOURNAL, entries_of
+from aos_runtime.disk.mission_folders import JOURNAL, stays
+from aos_solver.mission.records.logbook import entries_of
 from aos_solver.mission.records.memory import MissionMemory, folded
 
 

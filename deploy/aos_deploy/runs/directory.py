@@ -204,12 +204,11 @@ class RunDirectory:
         except UNREADABLE as error:
             raise DeployError(f"{path}: {error}", code="AOS801") from error
 
-    def write_summary(self, summary: Summary) -> None:
-        """All of it, or nothing and StorageError AOS701."""
-        _write_whole(self.path / "summary.json", _pretty(summary), "up.summary")
+    def write_summary(self, summary: Summary, number: int = 0) -> None:
+        """Writes the summary of the run, or of a mission in a system that stays.
 
-    def write_summary_of_mission(self, number: int, summary: Summary) -> None:
-        """All of it, or nothing and StorageError AOS701."""
+        All of it, or nothing and StorageError AOS701.
+        """
         _write_whole(mission_folder(self.path, number) / "summary.json", _pretty(summary), "up.summary")
 
     def read_summary(self, number: int = 0) -> Summary | None:
@@ -217,9 +216,9 @@ class RunDirectory:
 
         None while the mission runs, or if aos-up was killed.
         """
-        folder = mission_folder(self.path, number) if number else self.path
+        path = mission_folder(self.path, number) / "summary.json"
         try:
-            return msgspec.json.decode((folder / "summary.json").read_bytes(), type=Summary)
+            return msgspec.json.decode(path.read_bytes(), type=Summary)
         except (OSError, *UNREADABLE):
             return None
 

@@ -6,26 +6,24 @@ from aos_deploy.runs.verdict import Account, Verdict, message_of_row
 from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import MissionBegun
 from aos_protocol.mission_rows import BEGUN, STATE
-from aos_runtime.disk.journal import Journal
-
-_JOURNAL = "journal.db"
+from aos_runtime.disk.journal import Journal, rows_of
+from aos_runtime.disk.mission_folders import JOURNAL
 
 
 def account_of(run: Path) -> Account:
     """The account in a run's journal, an empty one if it has none; StorageError AOS702 if it is damaged."""
     account = Account()
-    if (run / _JOURNAL).exists():
-        with Journal.read(run / _JOURNAL) as journal:
-            for row in journal.walk():
-                message = message_of_row(row)
-                if message is not None:
-                    account.take(message)
+    if (run / JOURNAL).exists():
+        for row in rows_of(run / JOURNAL):
+            message = message_of_row(row)
+            if message is not None:
+                account.take(message)
     return account
 
 
 def beginning_of(run: Path) -> MissionBegun | None:
     """The first `begun` row of a mission's folder; None where there is none, or it cannot be read."""
-    path = run / _JOURNAL
+    path = run / JOURNAL
     if not path.is_file():
         return None
     try:
@@ -48,10 +46,8 @@ def settled(
     lacking: StorageError | None = None
     try:
         account = account_of(run)
-        if heard.has_ended and not (run / _JOURNAL).exists():
-            raise StorageError(
-                f"the journal {run / _JOURNAL} was removed while it was written", code="AOS702"
-            )
+        if heard.has_ended and not (run / JOURNAL).exists():
+            raise StorageError(f"the journal {run / JOURNAL} was removed while it was written", code="AOS702")
     except StorageError as error:
         account, lacking = heard, error
     stopped = None
@@ -60,7 +56,7 @@ def settled(
     if stopped is not None:
         account.take(stopped)
         try:
-            with Journal.open(run / _JOURNAL) as journal:
+            with Journal.open(run / JOURNAL) as journal:
                 journal.append(STATE, stopped)
         except StorageError as error:
             lacking = lacking or error

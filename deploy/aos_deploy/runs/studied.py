@@ -15,14 +15,12 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError, StudyError
 from aos_registry.catalogue import Catalogue
-from aos_runtime.disk.journal import Journal
-from aos_runtime.disk.mission_folders import mission_folder, mission_folders
+from aos_runtime.disk.journal import rows_of
+from aos_runtime.disk.mission_folders import JOURNAL, mission_folder, mission_folders
 from aos_solver.settings import Settings
 from aos_solver.study.recorded import RecordedMission, recorded
 from aos_solver.study.replaying import NICENESS, ReplayedMission
 from aos_solver.study.study import Study
-
-JOURNAL = "journal.db"
 
 T = TypeVar("T")
 
@@ -48,8 +46,7 @@ class StudiedRun:
         if number is not None and number not in folders:
             hint = f"It has {len(folders)} missions" if folders else "It has one mission: leave --mission out"
             raise StudyError(f"{run.name} has no mission {number}", hint=hint)
-        folder = run if number is None else mission_folder(run, number)
-        return cls.of_journal(run, str((folder / JOURNAL).relative_to(run)))
+        return cls.of_journal(run, str((mission_folder(run, number or 0) / JOURNAL).relative_to(run)))
 
     @classmethod
     def of_journal(cls, run: Path, file: str) -> StudiedRun:
@@ -61,8 +58,7 @@ class StudiedRun:
             raise StorageError(
                 f"the settings of the solver in {run} cannot be read: {error}", code="AOS702"
             ) from error
-        with Journal.read(run / file) as journal:
-            mission = recorded(journal.walk())
+        mission = recorded(rows_of(run / file))
         settings = msgspec.structs.replace(settings, cache_dir=str(cache_dir()))
         return cls(run, mission, settings)
 

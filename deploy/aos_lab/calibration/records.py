@@ -15,6 +15,7 @@ from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import DECISION
 from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import JOURNAL
 
 _TRUTHS = ("world.jsonl", "model.jsonl")
 
@@ -66,7 +67,7 @@ def _missions(path: Path) -> Iterator[RecordedMission]:
         yield from _of_file(path)
     elif (path / "missions.jsonl").is_file():
         yield from _of_file(path / "missions.jsonl")
-    elif (path / "journal.db").is_file():
+    elif (path / JOURNAL).is_file():
         yield _of_run(path)
     elif path.is_dir():
         for below in sorted(
@@ -101,11 +102,8 @@ def _of_run(run: Path) -> RecordedMission:
     start = begun.start if begun is not None else None
     if start is not None and (start.belief != "initial" or start.given or start.idle):
         return RecordedMission(name, (), "the mission did not begin with the initial belief")
-    journal = Journal.read(run / "journal.db")
-    try:
-        rows = [row.read_as(DecisionRecord) for row in journal.rows(DECISION)]
-    finally:
-        journal.close()
+    with Journal.read(run / JOURNAL) as journal:
+        rows = [row.read_as(DecisionRecord) for row in journal.walk(DECISION)]
     recorded: list[tuple[str, str, dict[str, Any]]] = []
     for record in rows:
         if record.outcome is not None:

@@ -214,6 +214,12 @@ class Journal:
         return JournalError(self._path, what)
 
 
+def rows_of(path: Path) -> Iterator[JournalRow]:
+    """Yields all rows of the journal in a file; StorageError AOS702 as from `Journal.read` and `walk`."""
+    with Journal.read(path) as journal:
+        yield from journal.walk()
+
+
 def _checksum(stamp_ns: int, kind: str, payload: str) -> int:
     return zlib.crc32(f"{stamp_ns} {kind} {payload}".encode())
 

@@ -3,7 +3,8 @@
     <run>/missions/3/journal.db     the mission `<run>-3`
     <run>/missions/3/summary.json   how it ended
 
-A system that ends with its mission has none: its mission has the run's name, and its files are the run's own.
+A system that ends with its mission has none: its mission has the run's name and the number 0, and its files
+are the run's own.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from pathlib import Path
 
 from aos_protocol.errors import StorageError
 
+JOURNAL = "journal.db"
 _FOLDER = "missions"
 
 
@@ -27,7 +29,7 @@ def make_folder_of_missions(run: Path) -> None:
 
 def mission_folder(run: Path, number: int) -> Path:
     """The folder of a mission."""
-    return run / _FOLDER / str(number)
+    return run / _FOLDER / str(number) if number else run
 
 
 def make_mission_folder(run: Path, number: int) -> Path:
@@ -42,9 +44,15 @@ def mission_folders(run: Path) -> dict[int, Path]:
     return dict(sorted(by_number.items()))
 
 
+def journals(run: Path) -> dict[int, Path]:
+    """The places of the missions' journals, by number, in this order."""
+    folders = mission_folders(run) if stays(run) else {0: run}
+    return {number: folder / JOURNAL for number, folder in folders.items()}
+
+
 def mission_name(run: Path, number: int) -> str:
-    """The name of a mission: `<run>-<number>`."""
-    return f"{run.name}-{number}"
+    """The name of a mission: `<run>-<number>`, or the run's own."""
+    return f"{run.name}-{number}" if number else run.name
 
 
 def number_of(mission: str) -> tuple[str, int] | None:

@@ -7,7 +7,7 @@ from aos_protocol.documents import Project
 from aos_protocol.keys import Keys
 from aos_protocol.messages import DecisionTree, TreeQuery, WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.bus.bus import Bus
-from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.journal import rows_of
 from aos_runtime.parties.registry_watch import RegistryWatch
 from aos_solver.mission.records.logbook import Logbooks
 from aos_solver.settings import Settings
@@ -69,5 +69,4 @@ class _Logged:
 
 
 def _read(path: Path) -> RecordedMission:
-    with Journal.read(path) as journal:
-        return recorded(journal.walk())
+    return recorded(rows_of(path))

@@ -21,7 +21,8 @@ from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionEntry, MissionState
 from aos_protocol.mission_rows import STATE
 from aos_runtime.disk.journal import Journal
-from aos_solver.mission.records.logbook import JOURNAL, entries_of
+from aos_runtime.disk.mission_folders import JOURNAL
+from aos_solver.mission.records.logbook import entries_of
 
 _log = logging.getLogger("aos.gateway")
 

@@ -19,9 +19,16 @@ from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEn
 from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.client import AosClient
 from aos_runtime.disk.journal import Journal
-from aos_runtime.disk.mission_folders import mission_folder, mission_folders, mission_name, number_in, stays
+from aos_runtime.disk.mission_folders import (
+    JOURNAL,
+    mission_folder,
+    mission_folders,
+    mission_name,
+    number_in,
+    stays,
+)
 from aos_solver.mission.records.history import history_page
-from aos_solver.mission.records.logbook import JOURNAL, entries_of
+from aos_solver.mission.records.logbook import entries_of
 
 _ANSWER_S = 5.0
 _BEGINNING_S = 1.0

@@ -7,17 +7,16 @@ import msgspec
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Message, MissionBegun, MissionEntry, MissionState, StartMission
 from aos_protocol.mission_rows import BEGUN, STATE
-from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.journal import Journal, rows_of
 from aos_runtime.disk.mission_folders import (
+    JOURNAL,
+    journals,
     make_mission_folder,
     mission_folder,
-    mission_folders,
     mission_name,
     number_in,
 )
 from aos_solver.mission.records.memory import MissionMemory, folded
-
-JOURNAL = "journal.db"
 
 
 class Logbook:
@@ -63,7 +62,7 @@ class Logbooks:
         if not stay:
             self.newest = Logbook(run.name, run / JOURNAL, 0, seed)
             return
-        numbers = [number for number, folder in mission_folders(run).items() if (folder / JOURNAL).exists()]
+        numbers = [number for number, path in journals(run).items() if path.exists()]
         self.newest = self._book(numbers[-1]) if numbers else None
         if self.newest is not None and self.newest.memory.epoch == 0:
             # Its solver died before it began.
@@ -101,25 +100,22 @@ class Logbooks:
 
     def memory_of(self, number: int) -> MissionMemory:
         """The memory of an earlier mission; StorageError AOS702 if its journal cannot be read."""
-        with Journal.read(mission_folder(self.run, number) / JOURNAL) as journal:
-            return folded(journal.walk())
+        return folded(rows_of(mission_folder(self.run, number) / JOURNAL))
 
     def path_of(self, mission: str) -> Path:
         """The journal of a mission, by its name; SkillError AOS501 if there is none."""
         if self.newest is not None and mission in ("", self.newest.name):
             return self.newest.path
-        for number, folder in mission_folders(self.run).items():
+        for number, path in journals(self.run).items():
             if mission_name(self.run, number) == mission:
-                return folder / JOURNAL
+                return path
         raise SkillError(
             f"there is no mission {mission or 'yet'}", code="AOS501", hint="See `aos mission list`"
         )
 
     def entries(self) -> tuple[MissionEntry, ...]:
         """The missions so far, the oldest first. Those that have ended are read once."""
-        folders = mission_folders(self.run)
-        places = {number: folder / JOURNAL for number, folder in folders.items()} or {0: self.run / JOURNAL}
-        for number, path in places.items():
+        for number, path in journals(self.run).items():
             known = self._entries.get(number)
             if known is None or not known.ended_ns:
                 self._entries.update({entry.number: entry for entry in _entry(path, number)})
@@ -136,10 +132,7 @@ class Logbooks:
 
 def entries_of(run: Path) -> tuple[MissionEntry, ...]:
     """The missions in the folder of a run, the oldest first; StorageError AOS702 if one cannot be read."""
-    folders = mission_folders(run)
-    if not folders:
-        return tuple(_entry(run / JOURNAL, 0))
-    return tuple(entry for number, folder in folders.items() for entry in _entry(folder / JOURNAL, number))
+    return tuple(entry for number, path in journals(run).items() for entry in _entry(path, number))
 
 
 def entry_of(run: Path, mission: str) -> MissionEntry | None:
