@@ -197,11 +197,13 @@ const vector<double> odds(2, 1.0 / 2);
 unique_ptr<int> owned(new int(max(AOSUtils::SampleDiscrete(odds), 0)));
 ostringstream out;
 out << hand << ":" << load.of << "x" << std::count(row.begin(), row.end(), -1);
-string key = out.str();
-if (key.rfind(hand, 0) == 0 && key.find_first_of("0123456789") != string::npos && key.length() < 20)
-    state__.item2.label = key + "-" + std::to_string(*owned);
+string& label = state__.item2.label;
+label = out.str();
+string key = label + "-" + std::to_string(*owned);
+if (label.rfind(hand, 0) == 0 && label.find_first_of("0123456789") != string::npos) label = key;
+else label.clear();
 __reward = -fabs(best.second) - 10 * (int)both.size() - 100 * (int)groups["one"].size() - 1000 * spots.size();
-__moduleResponseStr = key;
+__moduleResponseStr = out.str();
 if (__moduleResponseStr.size() > 6) __moduleResponseStr[0] = toupper(__moduleResponseStr[0]);
 """,
 }
