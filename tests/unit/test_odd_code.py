@@ -177,9 +177,9 @@ auto longest = std::max_element(state__.tItemObjects.begin(), state__.tItemObjec
 (*longest)->weight = load;
 if (tItem* near = state__.tItemObjects[1]) near->rank = min((double)near->rank, DBL_MAX) + (found == near);
 vector<int>& row = state__.grid[0];
-vector<int> gates = {7, 8};
+vector<int> gates = {6, 7, 8};
 row.insert(row.begin() + 1, gates.begin(), gates.end());
-row.erase(remove_if(row.begin(), row.end(), [](int n) { return n > 7; }), row.end());
+row.erase(remove_if(row.begin(), row.end(), [](int n) { return n == 7; }), row.end());
 vector<int>::iterator first = state__.grid[0].begin(); *first = 4;
 std::swap(row[1], row[2]);
 std::vector<int> turned = row; std::reverse(turned.begin(), turned.end()); state__.grid[1] = turned;
@@ -233,10 +233,10 @@ def test_parameters_containers_and_texts_are_what_cpp_makes_of_them(bench: Scrip
     played = bench.play(f"{shifts[0]}|1", f"{shifts[1]}|0", initial="2 0 1")
     assert [step["meets_precondition"] for step in played.steps] == [True, False]
     state = played.steps[0]["state"]
-    assert [state[f"grid[0][{index}]"] for index in range(4)] == ["4", "-1", "7", "-1"]
-    assert [state[f"grid[1][{index}]"] for index in range(4)] == ["-1", "7", "-1", "4"]
+    assert [state[f"grid[0][{index}]"] for index in range(5)] == ["4", "8", "6", "-1", "-1"]
+    assert [state[f"grid[1][{index}]"] for index in range(5)] == ["-1", "-1", "6", "8", "4"]
     assert [state["rest[0].counts[0]"], state["rest[0].counts[1]"], state["ready[1]"]] == ["0", "2", "true"]
     assert [state["item1.weight.kilograms"], state["item1.done"], state["item2.rank"]] == ["2", "true", "8"]
     assert [state["item1.sizes[1]"], state["item2.label"]] == ["5", "left:2x2-1"]
-    assert played.rewards[0] == pytest.approx(-0.8 - 40 - 300 - 1000)
+    assert played.rewards[0] == pytest.approx(-0.8 - 50 - 300 - 1000)
     assert played.observations[0] == "Left:2x2"
