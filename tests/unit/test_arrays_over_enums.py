@@ -4,10 +4,9 @@ import json
 from pathlib import Path
 
 import pytest
+from dialects import project_of, say_the_same
 from scripted_models import ScriptedModel, scripted, text_project
-from texts import encoded
 
-from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
 from aos_language.outline import outline
 from aos_language.reading.document import array_type
@@ -106,23 +105,10 @@ def test_a_list_of_another_length_is_a_fault(model: ScriptedModel):
 
 
 def test_all_dialects_say_the_same():
-    bundle = load_files(files())
-    assert bundle.project is not None, bundle.diagnostics
-    assert "variable Place[Item] at = Shelf" in outline(bundle.project)
-    texts, findings = convert(files(), Dialect.JSON)
-    assert findings == ()
-    assert '"IndexedBy": "Item"' in texts["environment.ef.json"]
-    as_json = encoded(texts)
-    papers = {
-        name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
-        for name, data in as_json.items()
-    }
-    back, _ = convert(as_json, Dialect.SDL)
-    assert "state_variable: Place at [Item]" in back["environment.ef"]
-    for other in (as_json, papers, encoded(back)):
-        project = load_files(other).project
-        assert project is not None
-        assert without_origins(project) == without_origins(bundle.project)
+    assert "variable Place[Item] at = Shelf" in outline(project_of(files()))
+    as_json, sdl = say_the_same(files())
+    assert b'"IndexedBy": "Item"' in as_json["environment.ef.json"]
+    assert b"state_variable: Place at [Item]" in sdl["environment.ef"]
 
 
 @pytest.mark.parametrize(

@@ -3,15 +3,15 @@
 from pathlib import Path
 
 import pytest
+from dialects import converted, say_the_same
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from texts import encoded
 from typer.testing import CliRunner
 
 from aos_deploy.commands.convert import register
-from aos_language.convert import Dialect, convert, without_origins
+from aos_language.convert import Dialect, convert
 from aos_language.load import load_files, read_bundle_files
-from aos_protocol.documents import Project
 
 CORPUS = [
     "armadillo-finer", "armadillo-rough", "paper-example-json", "paper-example-sdl", "sampling-rate",
@@ -20,42 +20,20 @@ CORPUS = [
 ENVIRONMENT = b"project: p\nhorizon: 3\nstate_variable: bool done\n"
 
 
-def converted(files: dict[str, bytes], dialect: Dialect) -> dict[str, bytes]:
-    texts, findings = convert(files, dialect)
-    assert [finding for finding in findings if finding.is_error] == []
-    assert texts
-    return encoded(texts)
-
-
-def project_of(files: dict[str, bytes]) -> Project:
-    loaded = load_files(files)
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
-
-
-def says_the_same_in_both_dialects(files: dict[str, bytes]) -> None:
-    original = without_origins(project_of(files))
-    sdl, json = converted(files, Dialect.SDL), converted(files, Dialect.JSON)
-    for bundle in (sdl, json, converted(json, Dialect.SDL), converted(sdl, Dialect.JSON)):
-        assert without_origins(project_of(bundle)) == original
-    assert converted(sdl, Dialect.SDL) == sdl == converted(json, Dialect.SDL)
-
-
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", CORPUS)
 def test_an_original_bundle_says_the_same_in_both_dialects(corpus: Path, name):
-    says_the_same_in_both_dialects(read_bundle_files(corpus / name)[0])
+    say_the_same(read_bundle_files(corpus / name)[0])
 
 
 @pytest.mark.parametrize("name", ["armadillo-finer", "armadillo-rough"])
 def test_a_shipped_bundle_says_the_same_in_both_dialects(bundles: Path, name):
-    says_the_same_in_both_dialects(read_bundle_files(bundles / name)[0])
+    say_the_same(read_bundle_files(bundles / name)[0])
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
 def test_the_language_pages_examples_say_the_same_in_both_dialects(root: Path, dialect):
-    files, _ = read_bundle_files(root / "docs" / "examples" / f"kettle-{dialect}")
-    says_the_same_in_both_dialects(files)
+    say_the_same(read_bundle_files(root / "docs" / "examples" / f"kettle-{dialect}")[0])
 
 
 def test_file_names_come_from_the_documents_not_from_the_files(root: Path):

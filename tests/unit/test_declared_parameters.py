@@ -1,9 +1,9 @@
 """Mission parameters in the documents of all dialects, and the values that somebody sets."""
 
-import json
 from pathlib import Path
 
 import pytest
+from dialects import say_the_same
 from scripted_models import text_project
 from texts import encoded, write_texts
 
@@ -12,7 +12,7 @@ from aos_deploy.deployment.reading import read_deploy_file
 from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option, parameter_leaves, usable_values
 from aos_language.outline import outline
-from aos_protocol.documents import Project, StateVariable
+from aos_protocol.documents import StateVariable
 from aos_protocol.errors import DeployError, DocumentError, PlanningError
 from aos_solver.child.lines.parameter_arguments import parameter_arguments
 from aos_solver.offline.alpha_vectors import AlphaVectors
@@ -50,50 +50,7 @@ if (state.holder == state.target && state.wanted[alice] && state.count > 0) __re
 if (state.word == "so") __isGoalState = true;
 """
 SKILL = "project: home\n\ndynamic_model:\n__reward = -1;\n__moduleResponse = done;\n"
-JSON_TYPES = [
-    {"TypeName": "Person", "Type": "enum", "EnumValues": ["alice", "bob", "carol"]},
-    {
-        "TypeName": "Spot",
-        "Type": "compound",
-        "Variables": [
-            {"Name": "x_m", "Type": "double", "Default": "1.5"},
-            {"Name": "near", "Type": "Person", "Default": "bob"},
-            {"Name": "log", "Type": "int[]"},
-        ],
-    },
-]
-JSON_VARIABLES = [
-    {"Name": "holder", "Type": "Person"},
-    {"Name": "target", "Type": "Person", "IsMissionParameter": True, "Default": "bob"},
-    {"Name": "dock", "Type": "Spot", "IsMissionParameter": True},
-    {"Name": "wanted", "Type": "bool", "IndexedBy": "Person", "IsMissionParameter": True, "Default": "true"},
-    {"Name": "count", "Type": "int", "IsMissionParameter": True, "DefaultCode": "state.count = 3;"},
-    {"Name": "word", "Type": "string", "IsMissionParameter": True},
-]
-CONDITION = "state.holder == state.target && state.wanted[alice] && state.count > 0 && state.dock.x_m > 0"
-
-
-def json_environment(main: str) -> str:
-    return json.dumps({
-        main: {"Project": "home", "Name": "environment", "Type": "Environment"},
-        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
-        "GlobalVariableTypes": JSON_TYPES,
-        "GlobalVariablesDeclaration": JSON_VARIABLES,
-        "InitialBeliefStateAssignments": [],
-        "SpecialStates": [{"StateConditionCode": CONDITION + ' && state.word == "so"', "Reward": 1}],
-        "ExtrinsicChangesDynamicModel": [],
-    })  # fmt: skip
-
-
-DIALECTS = {
-    "SDL": {"home.ef": SDL},
-    "v1.x JSON": {"home.json": json_environment("PlpMain")},
-    "paper JSON": {"home.json": json_environment("GsdlMain")},
-}
-
-
-def project(files: dict[str, str]) -> Project:
-    return text_project({"act.sd": SKILL, **files})
+FILES = {"home.ef": SDL, "act.sd": SKILL}
 
 
 def said(variable: StateVariable) -> tuple[object, ...]:
@@ -102,9 +59,9 @@ def said(variable: StateVariable) -> tuple[object, ...]:
     return variable.name, variable.type, variable.index_enum, variable.is_mission_parameter, *texts
 
 
-@pytest.mark.parametrize("dialect", DIALECTS)
-def test_every_dialect_declares_the_same_parameters(dialect):
-    variables = project(DIALECTS[dialect]).environment.variables
+def test_every_dialect_declares_the_same_parameters():
+    say_the_same(encoded(FILES))
+    variables = text_project(FILES).environment.variables
     assert [said(variable) for variable in variables] == [
         ("holder", "Person", "", False, None, None),
         ("target", "Person", "", True, "bob", None),
@@ -116,7 +73,7 @@ def test_every_dialect_declares_the_same_parameters(dialect):
 
 
 def test_what_is_read_of_a_bundle_shows_parameters_with_type_and_default():
-    shown = outline(project(DIALECTS["SDL"]))
+    shown = outline(text_project(FILES))
     assert "mission parameter Person target = bob " in shown
     assert "mission parameter bool[Person] wanted = true " in shown
 
@@ -143,7 +100,7 @@ MISTAKES = {
 @pytest.mark.parametrize("declared", MISTAKES)
 def test_a_mistake_with_a_parameter_is_told_in_its_line(declared):
     code, message = MISTAKES[declared]
-    files = {"home.ef": f"{SDL}\n{declared}\n", "act.sd": SKILL}
+    files = FILES | {"home.ef": f"{SDL}\n{declared}\n"}
     loaded = load_files(encoded(files))
     (found,) = [diagnostic for diagnostic in loaded.diagnostics if diagnostic.is_error]
     assert found.code == code
@@ -152,10 +109,10 @@ def test_a_mistake_with_a_parameter_is_told_in_its_line(declared):
 
 
 def test_a_variable_is_no_parameter_of_actions_and_of_missions_at_once():
-    both = json_environment("PlpMain").replace(
-        '"IsMissionParameter": true', '"IsMissionParameter": true, "IsActionParameterValue": true', 1
-    )
-    loaded = load_files({"home.json": both.encode(), "act.sd": SKILL.encode()})
+    files, _ = say_the_same(encoded(FILES))
+    one = b'"IsMissionParameter": true'
+    environment = files["environment.ef.json"].replace(one, one + b', "IsActionParameterValue": true', 1)
+    loaded = load_files(files | {"environment.ef.json": environment})
     assert [(d.code, d.is_error) for d in loaded.diagnostics] == [("AOS106", True)]
 
 
@@ -165,12 +122,12 @@ def test_a_local_variable_of_a_mapping_with_its_name_does_not_tell_it():
         "path: /act\n\nlocal_variable: count\ntype: int\nfrom_ros_service_response: true\ncode:\n"
         "count = __input.count\n"
     )
-    loaded = load_files(encoded({"home.ef": SDL, "act.sd": SKILL, "act.am": mapping}))
+    loaded = load_files(encoded(FILES | {"act.am": mapping}))
     assert [d.code for d in loaded.diagnostics if d.code in ("AOS128", "AOS134")] == []
 
 
 def values(*options: str) -> dict[str, str]:
-    leaves = parameter_leaves(project(DIALECTS["SDL"]).environment)
+    leaves = parameter_leaves(text_project(FILES).environment)
     return usable_values([mission_value_of_option(option) for option in options], leaves)
 
 
@@ -191,7 +148,7 @@ def test_values_have_one_spelling_and_the_last_counts():
 
 
 def test_an_engine_gets_them_as_the_numbers_of_a_saved_state():
-    leaves = parameter_leaves(project(DIALECTS["SDL"]).environment)
+    leaves = parameter_leaves(text_project(FILES).environment)
     found = parameter_arguments(leaves, values("target=carol", "wanted.bob=true", "count=-2", "word=ab"))
     assert found == ("target=2", "wanted[bob]=1", "count=-2", "word=2 97 98")
 
@@ -235,7 +192,7 @@ bind: {"*": model}
 @pytest.fixture
 def deploy_file(tmp_path: Path) -> Path:
     (tmp_path / "home").mkdir()
-    write_texts({"home.ef": SDL, "act.sd": SKILL}, tmp_path / "home")
+    write_texts(FILES, tmp_path / "home")
     path = tmp_path / "home.yaml"
     path.write_text(DEPLOY)
     return path

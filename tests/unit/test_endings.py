@@ -4,15 +4,13 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from dialects import say_the_same
 from mappings import mapping_text
 from scripted_models import ScriptedModel, scripted, text_project
 from texts import encoded
 
-from aos_deploy.exit_codes import exit_code_of_mission
-from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
-from aos_protocol.documents import Environment
-from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds, MissionState
+from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds
 from aos_solver.mission.rules.endings import (
     Ending,
     MissionLimits,
@@ -115,21 +113,9 @@ def test_endings_that_their_reward_decides_are_told(room: ScriptedModel):
 
 
 def test_both_dialects_say_the_same_of_failure():
-    sdl = {"environment.ef": ROOM.encode()}
-    as_json, findings = convert(sdl, Dialect.JSON)
-    assert not any(finding.is_error for finding in findings)
-    assert as_json["environment.ef.json"].count('"IsFailureState": false') == 1
-    assert as_json["environment.ef.json"].count('"IsFailureState": true') == 2
-    back, _ = convert(encoded(as_json), Dialect.SDL)
-    again = load_files({**BUNDLE_OF_SKILL, "room.ef": back["environment.ef"].encode()}).project
-    assert said(again.environment) == said(text_project(BUNDLE).environment)
-
-
-BUNDLE_OF_SKILL = {name: text.encode() for name, text in BUNDLE.items() if name != "room.ef"}
-
-
-def said(environment: Environment) -> list[object]:
-    return [without_origins(special) for special in environment.special_states]
+    as_json, _ = say_the_same(encoded(BUNDLE))
+    assert as_json["environment.ef.json"].count(b'"IsFailureState": false') == 1
+    assert as_json["environment.ef.json"].count(b'"IsFailureState": true') == 2
 
 
 def belief(goal: float, over: float, failure: float) -> BeliefSummary:
@@ -191,11 +177,6 @@ def test_a_mission_whose_end_is_not_known_is_not_said_to_be_without_its_goal(goa
     ending = believed_ending(state, limits)
     assert ending is not None
     assert remark_of(ending, state, limits).startswith(said)
-
-
-def test_every_ending_has_an_exit_code_of_its_own():
-    codes = {ending: exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending)) for ending in Ending}
-    assert len(set(codes.values())) == len(Ending)
 
 
 GIVES_UP, GOES_ON = Ending.NOTHING_WORTHWHILE, None

@@ -3,12 +3,11 @@
 from pathlib import Path
 
 import pytest
+from dialects import project_of, say_the_same
 from texts import encoded, write_texts
 
 from aos_editor.symbols import read_bundle
-from aos_language.convert import Dialect, convert, without_origins
-from aos_language.load import load_files, read_bundle_files
-from aos_protocol.documents import Project
+from aos_language.load import load_files
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lowering.lower import lower
 
@@ -116,11 +115,7 @@ def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused():
 
 
 def test_both_dialects_say_the_same():
-    files = read_bundle_files(Path(__file__).parents[1] / "data" / "bundles" / "battery")[0]
-    original = without_origins(project_of(files))
-    json = encoded(convert(files, Dialect.JSON)[0])
-    sdl = encoded(convert(json, Dialect.SDL)[0])
-    assert without_origins(project_of(json)) == original == without_origins(project_of(sdl))
+    say_the_same(encoded(BATTERY))
 
 
 def test_a_model_is_another_one_with_other_responses_of_a_monitor_and_without_it():
@@ -135,12 +130,6 @@ def test_a_model_is_another_one_with_other_responses_of_a_monitor_and_without_it
     del files["battery.am"]
     digests.add(emitted(files))
     assert len(digests) == 3
-
-
-def project_of(files: dict[str, bytes]) -> Project:
-    loaded = load_files(files)
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
 
 
 def emitted(files: dict[str, str]) -> str:

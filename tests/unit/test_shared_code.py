@@ -4,11 +4,11 @@ import json
 from pathlib import Path
 
 import pytest
+from dialects import project_of, say_the_same
 from scripted_models import ScriptedModel, scripted, text_project
 from texts import encoded
 
 from aos_editor.symbols import read_bundle
-from aos_language.convert import Dialect, convert, without_origins
 from aos_language.cpp.shared import shared_code
 from aos_language.load import load_files, read_bundle_files
 from aos_language.outline import outline
@@ -118,22 +118,9 @@ def test_a_function_that_draws_ends_where_its_draws_say(model: ScriptedModel):
 
 
 def test_all_dialects_say_the_same(tmp_path: Path):
-    project = load_files(files()).project
-    assert project is not None
-    assert "  | bool slips() { return slips(1); }" in outline(project)
-    texts, findings = convert(files(), Dialect.JSON)
-    assert findings == ()
-    assert json.loads(texts["environment.ef.json"])["SharedCode"] == SHARED.split("\n")
-    as_json = encoded(texts)
-    back, _ = convert(as_json, Dialect.SDL)
-    papers = {
-        name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
-        for name, data in as_json.items()
-    }
-    for other in (as_json, papers, encoded(back)):
-        read = load_files(other).project
-        assert read is not None
-        assert without_origins(read) == without_origins(project)
+    assert "  | bool slips() { return slips(1); }" in outline(project_of(files()))
+    json_texts, _ = say_the_same(files())
+    assert json.loads(json_texts["environment.ef.json"])["SharedCode"] == SHARED.split("\n")
     for name, data in files().items():
         (tmp_path / name).write_bytes(data)
     bundle = read_bundle(tmp_path, {})

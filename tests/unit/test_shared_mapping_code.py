@@ -3,15 +3,13 @@
 import json
 
 import pytest
+from dialects import project_of, say_the_same
 from mapping_runs import loaded, observed
-from texts import encoded
 
-from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files
 from aos_language.outline import outline
 from aos_middleware.mappings.revisions import emit_project
 from aos_middleware.workers.worker import LoadedMapping
-from aos_protocol.documents import Project
 
 SHARED = """import math
 
@@ -66,14 +64,10 @@ def files(change: str = "") -> dict[str, bytes]:
     return {name: text.replace(old, new, 1).encode() for name, text in FILES.items()}
 
 
-def project_of(change: str = "") -> Project:
-    bundle = load_files(files(change))
-    assert bundle.project is not None, bundle.diagnostics
-    return bundle.project
-
-
 def running(skill: str, change: str = "") -> LoadedMapping:
-    return loaded(next(mapping for mapping in emit_project(project_of(change)) if mapping.skill == skill))
+    return loaded(
+        next(mapping for mapping in emit_project(project_of(files(change))) if mapping.skill == skill)
+    )
 
 
 def test_all_mappings_call_the_functions_and_know_the_constants():
@@ -85,7 +79,7 @@ def test_all_mappings_call_the_functions_and_know_the_constants():
 
 def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents():
     look, step = (
-        next(mapping for mapping in emit_project(project_of()) if mapping.skill == name)
+        next(mapping for mapping in emit_project(project_of(files())) if mapping.skill == name)
         for name in ("look", "step")
     )
     lines = look.python.split("\n")
@@ -95,17 +89,9 @@ def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents():
 
 
 def test_all_dialects_say_the_same():
-    project = project_of()
-    assert "shared code of the mappings" in outline(project)
-    texts, findings = convert(files(), Dialect.JSON)
-    assert [finding for finding in findings if finding.is_error] == []
-    assert json.loads(texts["environment.ef.json"])["SharedMappingCode"] == SHARED.split("\n")
-    as_json = encoded(texts)
-    back, _ = convert(as_json, Dialect.SDL)
-    for other in (as_json, encoded(back)):
-        read = load_files(other).project
-        assert read is not None
-        assert without_origins(read) == without_origins(project)
+    assert "shared code of the mappings" in outline(project_of(files()))
+    as_json, _ = say_the_same(files())
+    assert json.loads(as_json["environment.ef.json"])["SharedMappingCode"] == SHARED.split("\n")
 
 
 @pytest.mark.parametrize(
