@@ -345,14 +345,6 @@ def test_the_screen_says_what_was_remarkable_about_a_step():
     assert "step 1: the local variables do not correct the belief" in shown(screen)
 
 
-def test_the_live_view_draws_and_lets_go_of_the_terminal():
-    text = io.StringIO()
-    with LiveView("armadillo", Console(file=text, width=120, force_terminal=True)) as view:
-        for event in EVENTS:
-            view(event)
-    assert "pick_succeeded" in text.getvalue()
-
-
 @pytest.mark.parametrize(
     ("options", "kind"),
     [

@@ -208,95 +208,125 @@ def test_a_mission_that_was_steered_breaks_no_rule():
     assert history.broken_rules() == set()
 
 
-def _damaged_row(history: History) -> None:
+BREAKS: dict[Callable[[History], None], str] = {}
+
+
+def breaks(rule: str) -> Callable[[Callable[[History], None]], None]:
+    """Marks a change of the history that breaks a rule."""
+    return lambda spoil: BREAKS.update({spoil: rule})
+
+
+@breaks("rows")
+def _damaged_row(history: History):
     history.journal[4] = Entry(0, "decision", state("planning", 1))
 
 
-def _sequence_with_a_gap(history: History) -> None:
+@breaks("sequence")
+def _sequence_with_a_gap(history: History):
     history.change("decision", 5, sequence=6)
 
 
-def _step_decided_twice(history: History) -> None:
+@breaks("steps")
+def _step_decided_twice(history: History):
     history.change("decision", 1, outcome=None)
 
 
-def _other_belief(history: History) -> None:
+@breaks("belief")
+def _other_belief(history: History):
     history.change("decision", 2, belief=belief(3))
 
 
-def _belief_of_no_replay(history: History) -> None:
+@breaks("belief")
+def _belief_of_no_replay(history: History):
     """Particles without a digest may be replaced by a new solver; others may not."""
     for number in (3, 4):
         history.change("decision", number, belief=replace(belief(2), digest="0" if number == 3 else ""))
 
 
-def _epoch_that_falls(history: History) -> None:
+@breaks("epochs")
+def _epoch_that_falls(history: History):
     history.change("decision", 0, epoch=2)
 
 
-def _epoch_that_leaps(history: History) -> None:
+@breaks("epochs")
+def _epoch_that_leaps(history: History):
     begun = messages.MissionBegun(MISSION, 3, 1, 2, "")
     history.journal.insert(history.place("decision", 2), Entry(190, "begun", begun))
 
 
-def _call_of_an_older_epoch(history: History) -> None:
+@breaks("epochs")
+def _call_of_an_older_epoch(history: History):
     history.change("started", 0, history.robot, epoch=2)
 
 
-def _intention_of_something_else(history: History) -> None:
+@breaks("intention")
+def _intention_of_something_else(history: History):
     history.change("intended", 1, skill="stay")
 
 
-def _intention_without_a_decision(history: History) -> None:
+@breaks("intention")
+def _intention_without_a_decision(history: History):
     history.journal.insert(history.place("outcome", 0) + 2, history.journal[history.place("intended", 1)])
 
 
-def _outcome_of_another_step(history: History) -> None:
+@breaks("outcome")
+def _outcome_of_another_step(history: History):
     history.change("outcome", 1, id=messages.ActivationId(MISSION, 1))
 
 
-def _outcome_that_changed_on_its_way(history: History) -> None:
+@breaks("outcome")
+def _outcome_that_changed_on_its_way(history: History):
     history.change("ended", 1, history.middleware, response="lost")
 
 
-def _outcome_that_nobody_has_brought(history: History) -> None:
+@breaks("outcome")
+def _outcome_that_nobody_has_brought(history: History):
     del history.middleware[history.place("ended", 1, history.middleware)]
 
 
-def _record_of_another_outcome(history: History) -> None:
+@breaks("outcome")
+def _record_of_another_outcome(history: History):
     history.change("decision", 3, outcome=replace(outcome(2), response="lost"))
 
 
-def _motion_with_other_parameters(history: History) -> None:
+@breaks("id")
+def _motion_with_other_parameters(history: History):
     history.change("started", 1, history.robot, parameters={"to": 9})
 
 
-def _motion_that_nobody_intended(history: History) -> None:
+@breaks("id")
+def _motion_that_nobody_intended(history: History):
     history.other.append(Entry(120, "started", call(4)))
 
 
-def _motion_twice(history: History) -> None:
+@breaks("motion")
+def _motion_twice(history: History):
     history.robot.insert(2, history.robot[0])
 
 
-def _motion_in_two_adapters(history: History) -> None:
+@breaks("motion")
+def _motion_in_two_adapters(history: History):
     history.other.append(history.robot[0])
 
 
-def _motion_by_hand_twice(history: History) -> None:
+@breaks("motion")
+def _motion_by_hand_twice(history: History):
     history.other.append(history.other[0])
 
 
-def _end_without_a_start(history: History) -> None:
+@breaks("ends")
+def _end_without_a_start(history: History):
     history.robot.insert(0, Entry(1, "ended", messages.SkillResult(messages.ActivationId(MISSION, 3), {})))
 
 
-def _decision_while_it_holds(history: History) -> None:
+@breaks("hold")
+def _decision_while_it_holds(history: History):
     place = history.place("decision", 4)
     history.journal[place - 1], history.journal[place] = history.journal[place], history.journal[place - 1]
 
 
-def _motion_while_it_holds(history: History) -> None:
+@breaks("hold")
+def _motion_while_it_holds(history: History):
     place = history.place("started", 1, history.robot)
     history.robot[place] = history.robot[place]._replace(stamp_ns=290)
 
@@ -307,74 +337,48 @@ def _steer(history: History, place: int, *steers: messages.Steer) -> None:
     history.journal[place:place] = [Entry(stamp_ns, "steered", steer) for steer in steers]
 
 
-def _decision_while_somebody_holds_it(history: History) -> None:
+@breaks("steering")
+def _decision_while_somebody_holds_it(history: History):
     _steer(history, history.place("decision", 2), messages.Steer("hold", by="ana"))
 
 
-def _decision_before_what_somebody_wants(history: History) -> None:
+@breaks("steering")
+def _decision_before_what_somebody_wants(history: History):
     _steer(history, history.place("decision", 2), messages.Steer("act", ("stay",), by="ana", request="r"))
 
 
-def _decision_that_nobody_wants(history: History) -> None:
+@breaks("steering")
+def _decision_that_nobody_wants(history: History):
     for number in (2, 3):
         history.change("decision", number, chosen_by="operator")
 
 
-def _decision_for_what_is_left_out(history: History) -> None:
+@breaks("steering")
+def _decision_for_what_is_left_out(history: History):
     _steer(history, history.place("decision", 2), messages.Steer("leave_out", name="go(to=2)", by="ana"))
 
 
-def _refusal_that_nobody_asked_for(history: History) -> None:
+@breaks("steering")
+def _refusal_that_nobody_asked_for(history: History):
     place = history.place("decision", 2)
     history.journal.insert(place, Entry(205, "refused", messages.ActionRefused("stay", "r", "why")))
 
 
-def _row_after_the_end(history: History) -> None:
+@breaks("over")
+def _row_after_the_end(history: History):
     history.journal.append(Entry(1100, "mission", state("planning", 3)))
 
 
-def _motion_after_the_end(history: History) -> None:
+@breaks("over")
+def _motion_after_the_end(history: History):
     place = history.place("started", 2, history.robot)
     history.robot[place] = history.robot[place]._replace(stamp_ns=1001)
 
 
-def _summary_that_differs(history: History) -> None:
+@breaks("verdict")
+def _summary_that_differs(history: History):
     verdict = Account().verdict()
     history.summary = replace(verdict, ending="fault")
-
-
-BREAKS: dict[Callable[[History], None], str] = {
-    _belief_of_no_replay: "belief",
-    _damaged_row: "rows",
-    _sequence_with_a_gap: "sequence",
-    _step_decided_twice: "steps",
-    _other_belief: "belief",
-    _epoch_that_falls: "epochs",
-    _epoch_that_leaps: "epochs",
-    _call_of_an_older_epoch: "epochs",
-    _intention_of_something_else: "intention",
-    _intention_without_a_decision: "intention",
-    _outcome_of_another_step: "outcome",
-    _outcome_that_changed_on_its_way: "outcome",
-    _outcome_that_nobody_has_brought: "outcome",
-    _record_of_another_outcome: "outcome",
-    _motion_with_other_parameters: "id",
-    _motion_that_nobody_intended: "id",
-    _motion_twice: "motion",
-    _motion_in_two_adapters: "motion",
-    _motion_by_hand_twice: "motion",
-    _end_without_a_start: "ends",
-    _decision_while_it_holds: "hold",
-    _motion_while_it_holds: "hold",
-    _decision_while_somebody_holds_it: "steering",
-    _decision_before_what_somebody_wants: "steering",
-    _decision_that_nobody_wants: "steering",
-    _decision_for_what_is_left_out: "steering",
-    _refusal_that_nobody_asked_for: "steering",
-    _row_after_the_end: "over",
-    _motion_after_the_end: "over",
-    _summary_that_differs: "verdict",
-}
 
 
 @pytest.mark.parametrize(
