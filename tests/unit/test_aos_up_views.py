@@ -97,7 +97,7 @@ def test_a_decision_among_many_actions_names_the_six_best_and_counts_the_others(
     assert "a2 " not in line
 
 
-def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]):
+def test_plain_lines_tell_each_event_once(capsys):
     with PlainView() as view:
         for event in EVENTS:
             view(event)
@@ -117,30 +117,30 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]):
     ]
 
 
-def test_a_removal_that_is_refused_is_told_with_its_project(capsys: pytest.CaptureFixture[str]):
+def test_a_removal_that_is_refused_is_told_with_its_project(capsys):
     PlainView()(BundleReport("fetch", False, 3))
     assert capsys.readouterr().out == "a change of fetch refused, nothing has changed\n"
 
 
-def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]):
+def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys):
     worse = replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
     PlainView()(replace(OBSERVED, belief=worse))
     assert "goal 0.100  failure 0.250\n" in capsys.readouterr().out
 
 
-def test_the_goal_without_what_nobody_observed_is_told_where_it_differs(capsys: pytest.CaptureFixture[str]):
+def test_the_goal_without_what_nobody_observed_is_told_where_it_differs(capsys):
     worse = replace(BELIEF, cautious=EndingOdds(0.0, 0.0, 0.0))
     PlainView()(replace(OBSERVED, belief=worse))
     assert "goal 0.100 (cautious 0.000)\n" in capsys.readouterr().out
 
 
-def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]):
+def test_an_outcome_without_an_observation_says_why(capsys):
     lost = Outcome(OUTCOME.id, "pick", "timed_out", fault=Fault("AOS503", "no answer within 9 s"))
     PlainView()(replace(OBSERVED, outcome=lost))
     assert "pick -> timed_out (no answer within 9 s)" in capsys.readouterr().out
 
 
-def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(capsys: pytest.CaptureFixture[str]):
+def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(capsys):
     lost = Outcome(OUTCOME.id, "pick", "failed", fault=Fault("AOS510", "no\nmap \x1b[31m"))
     PlainView()(replace(OBSERVED, outcome=lost))
     assert "pick -> failed (no map  [31m)" in capsys.readouterr().out
@@ -148,12 +148,12 @@ def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(capsys: 
     assert reason.isprintable()
 
 
-def test_an_empty_text_as_a_response_is_seen(capsys: pytest.CaptureFixture[str]):
+def test_an_empty_text_as_a_response_is_seen(capsys):
     PlainView()(replace(OBSERVED, outcome=replace(OUTCOME, response="")))
     assert 'pick -> ""  surprise' in capsys.readouterr().out
 
 
-def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.CaptureFixture[str]):
+def test_how_far_a_decision_is_is_told_once_for_each_work(capsys):
     view = PlainView()
     for remark in ("listing states: 1 of 2", "listing states: 2 of 3", "computing first bounds: 1 of 10"):
         view(MissionState("m", "planning", 0, 0.0, remark=remark))
@@ -164,7 +164,7 @@ def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.Capture
     ]
 
 
-def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]):
+def test_every_event_is_one_json_object(capsys):
     with JsonView() as view:
         for event in EVENTS:
             view(event)
@@ -316,7 +316,7 @@ def test_progress_of_another_step_or_by_hand_is_not_shown_as_that_of_the_skill()
         assert "50%" not in shown(screen, 80, 24)
 
 
-def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.MonkeyPatch):
+def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     text = io.StringIO()
     with LiveView("armadillo", Console(file=text, width=80, height=24, force_terminal=True)) as view:
@@ -329,7 +329,7 @@ def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch: pytest.Monkey
     assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(rest)
 
 
-def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch):
+def test_without_colour_there_is_no_style_at_all(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     monkeypatch.setenv("FORCE_COLOR", "1")
     shown_on = console()

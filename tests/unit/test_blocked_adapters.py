@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from processes import COMMAND_S
@@ -30,7 +29,7 @@ asyncio.run(call())
         ("pass", ""),
     ],
 )
-def test_only_a_loop_that_stands_still_ends_the_process(tmp_path: Path, takes_time, told):
+def test_only_a_loop_that_stands_still_ends_the_process(tmp_path, takes_time, told):
     robot = tmp_path / "robot.py"
     # A loop that goes on has all the time that a busy machine may need.
     robot.write_text(PROGRAM.format(takes_time=takes_time, answer_s=0.1 if told else 60.0))

@@ -97,7 +97,7 @@ async def test_progress_says_what_takes_the_time(cache_dir: Path):
     ],
 )
 async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
-    length, ready, chosen, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    length, ready, chosen, cache_dir: Path, monkeypatch
 ):
     usual = await build_engine(cache_dir)
     compiler = await find_compiler()
@@ -118,7 +118,7 @@ async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
 
 @pytest.mark.parametrize(("processors", "gigabytes", "at_once"), [(2, 8, 2), (2, 1, 1), (1, 8, 1), (4, 4, 2)])
 async def test_an_engine_has_a_compiler_for_each_processor_and_its_longest_part_begins(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, processors, gigabytes, at_once
+    tmp_path, monkeypatch, processors, gigabytes, at_once
 ):
     begun: list[str] = []
     ended: list[str] = []
@@ -139,9 +139,7 @@ async def test_an_engine_has_a_compiler_for_each_processor_and_its_longest_part_
     assert (begun[:2], len(ended), most) == (["engine.o", "numbers.o"], 4, at_once)
 
 
-async def test_a_part_of_the_engine_that_fails_stops_the_others(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_part_of_the_engine_that_fails_stops_the_others(tmp_path, monkeypatch):
     ended: list[str] = []
 
     async def compiled(_: Compiler, command: list[str], *__: Any, **___: Any) -> tuple[str, int]:
@@ -222,9 +220,7 @@ async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: 
     assert "Unheard of;" in text_of(kept)
 
 
-async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(tmp_path, monkeypatch):
     pids, cache, scratch = tmp_path / "pids", tmp_path / "cache", tmp_path / "scratch"
     pids.touch()
     scratch.mkdir()
@@ -238,7 +234,7 @@ async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(
     await until_ended([int(pid) for pid in pids.read_text().split()])
 
 
-async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path: Path):
+async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path):
     async def fail(staging: Path) -> None:
         (staging / "half").write_text("half")
         raise ModelError("no")
@@ -248,7 +244,7 @@ async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp
     assert entries(tmp_path) == []
 
 
-async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path: Path):
+async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path):
     async def make(staging: Path) -> None:
         (staging / "part").write_text("whole")
 
@@ -264,7 +260,7 @@ async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path: Path):
 
 
 async def test_what_models_include_is_compiled_once_and_changes_nothing(
-    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cache_dir: Path, tmp_path, monkeypatch
 ):
     compiler = await find_compiler()
     engine = await build_engine(cache_dir)

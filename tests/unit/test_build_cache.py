@@ -50,7 +50,7 @@ async def make(staging: Path) -> None:
     (staging / "part").write_text("whole")
 
 
-async def test_one_makes_an_entry_and_the_others_wait_for_it(tmp_path: Path):
+async def test_one_makes_an_entry_and_the_others_wait_for_it(tmp_path):
     makers: list[Path] = []
     others_wait = asyncio.Event()
 
@@ -74,7 +74,7 @@ async def test_one_makes_an_entry_and_the_others_wait_for_it(tmp_path: Path):
     assert names(tmp_path) == ["model-a"]
 
 
-async def test_what_another_process_makes_is_waited_for(tmp_path: Path):
+async def test_what_another_process_makes_is_waited_for(tmp_path):
     entry = tmp_path / "model-b"
     with another_process_makes(entry) as holder:
 
@@ -86,20 +86,20 @@ async def test_what_another_process_makes_is_waited_for(tmp_path: Path):
     assert names(entry) == []  # the other one's
 
 
-async def test_what_a_killed_process_did_not_finish_is_made_here(tmp_path: Path):
+async def test_what_a_killed_process_did_not_finish_is_made_here(tmp_path):
     with another_process_makes(tmp_path / "model-c") as holder:
         entry = await BuildCache(tmp_path).fill("model-c", make, patience_s=HANG_S, on_wait=holder.kill)
     assert (entry / "part").read_text() == "whole"
     assert names(tmp_path) == ["model-c"]
 
 
-async def test_a_process_that_does_not_get_on_is_waited_for_until_a_deadline(tmp_path: Path):
+async def test_a_process_that_does_not_get_on_is_waited_for_until_a_deadline(tmp_path):
     with another_process_makes(tmp_path / "model-d"):
         entry = await BuildCache(tmp_path).fill("model-d", make, patience_s=0.3)
     assert (entry / "part").read_text() == "whole"
 
 
-async def test_who_waits_for_a_failure_tries_by_itself(tmp_path: Path):
+async def test_who_waits_for_a_failure_tries_by_itself(tmp_path):
     somebody_waits = asyncio.Event()
 
     async def fail(_: Path) -> None:
@@ -114,13 +114,13 @@ async def test_who_waits_for_a_failure_tries_by_itself(tmp_path: Path):
     assert (entry / "part").exists()
 
 
-async def test_a_cache_that_cannot_be_written_is_told_with_the_way_to_another(tmp_path: Path):
+async def test_a_cache_that_cannot_be_written_is_told_with_the_way_to_another(tmp_path):
     (tmp_path / "file").write_text("no folder can be here")
     with pytest.raises(StorageError, match=r"cannot be written: .*AOS_CACHE_DIR"):
         await BuildCache(tmp_path / "file" / "cache").fill("model-1", make)
 
 
-async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path: Path):
+async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path):
     async def make_large(staging: Path) -> None:
         (staging / "headers").mkdir()
         (staging / "headers" / "part").write_bytes(bytes(100_000))
@@ -139,7 +139,7 @@ async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longes
     assert sorted(names(tmp_path)) == ["model-new", "model-newest", "model-older"]
 
 
-async def test_what_may_be_running_stays_though_the_cache_is_too_large(tmp_path: Path):
+async def test_what_may_be_running_stays_though_the_cache_is_too_large(tmp_path):
     for name in ("model-a", "model-b", "model-c"):
         await BuildCache(tmp_path, size_bytes=1).fill(name, make)
     assert len(names(tmp_path)) == 3

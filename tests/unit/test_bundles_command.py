@@ -25,7 +25,7 @@ def test_lint_of_a_good_bundle_ends_with_zero(bundles: Path):
     assert result.output.endswith("0 errors, 1 warning\n")
 
 
-def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Path, tmp_path: Path):
+def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Path, tmp_path):
     folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
     path = folder / "pick.sd"
     path.write_text(path.read_text().replace("bool in_hand =", "bool in_hand = in_the_hand &&"))
@@ -123,7 +123,7 @@ def test_inspect_of_a_broken_bundle_raises_with_all_findings(broken: Path):
     assert {d.code for d in result.exception.diagnostics if d.is_error} == {"AOS115", "AOS116"}
 
 
-def test_a_push_without_a_running_system_says_so(bundles: Path, tmp_path: Path):
+def test_a_push_without_a_running_system_says_so(bundles: Path, tmp_path):
     arguments = ["bundle", "push", str(bundles / "armadillo-finer"), "--runs", str(tmp_path)]
     result = aos(*arguments)
     assert "there is no run in" in str(result.exception)

@@ -25,7 +25,7 @@ def bundle(folder: Path, name: str, **files: str) -> Path:
     return path
 
 
-def test_one_may_hold_the_environment_alone(tmp_path: Path):
+def test_one_may_hold_the_environment_alone(tmp_path):
     bundles = (bundle(tmp_path, "world", yard_ef=ENVIRONMENT), bundle(tmp_path, "skills", push_sd=SKILL))
     together = files_of_bundles(bundles, ())
     project = load_files(together.files, name="yard.yaml").project
@@ -33,7 +33,7 @@ def test_one_may_hold_the_environment_alone(tmp_path: Path):
     assert together.bundles == {"yard.ef": bundles[0], "push.sd": bundles[1]}
 
 
-def test_a_later_document_replaces_the_one_of_its_kind_and_name_whatever_the_file_is_called(tmp_path: Path):
+def test_a_later_document_replaces_the_one_of_its_kind_and_name_whatever_the_file_is_called(tmp_path):
     first = bundle(tmp_path, "first", yard_ef=ENVIRONMENT, push_sd=SKILL)
     second = bundle(tmp_path, "second", other_ef=ENVIRONMENT.replace("3", "7"))
     together = files_of_bundles((first, second), ())
@@ -42,7 +42,7 @@ def test_a_later_document_replaces_the_one_of_its_kind_and_name_whatever_the_fil
     assert project.environment.horizon == 7
 
 
-def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path: Path):
+def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path):
     bundle(tmp_path, "world", yard_ef=ENVIRONMENT + "\nmission_parameter: int laps\ndefault_value: 2\n")
     bundle(tmp_path, "skills", push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"
@@ -57,7 +57,7 @@ def test_a_deploy_file_stands_for_its_bundles_and_what_it_sets(tmp_path: Path):
     assert (linted.exit_code, "0 errors" in linted.stdout) == (0, True)
 
 
-def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path: Path):
+def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     (tmp_path / "yard.yaml").write_text("aos: 1\nrobot: yard\nbundles: [yard]\n")
     assert sorted(planned_of(tmp_path).files) == ["push.sd", "yard.ef"]
@@ -66,7 +66,7 @@ def test_a_folder_with_one_deploy_file_stands_for_it(tmp_path: Path):
         planned_of(tmp_path)
 
 
-def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path: Path):
+def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path):
     bundle(tmp_path, "world", yard_ef=ENVIRONMENT)
     bundle(tmp_path, "skills", push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"
@@ -78,7 +78,7 @@ def test_commands_on_documents_take_the_bundles_of_a_deploy_file_as_one(tmp_path
     assert (converted.exit_code, len(list(out.iterdir()))) == (0, 2)
 
 
-def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bundle(tmp_path: Path):
+def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bundle(tmp_path):
     first = bundle(tmp_path, "first", yard_ef=ENVIRONMENT.replace("\nhorizon", "\nversion: 2\nhorizon"))
     second = bundle(tmp_path, "second", yard_ef=ENVIRONMENT.replace("\nhorizon", "\nversion: 1\nhorizon"))
     with pytest.raises(DocumentError, match="second is refused") as refused:
@@ -87,7 +87,7 @@ def test_a_changed_document_with_a_version_that_is_not_higher_is_told_in_its_bun
     assert (found.code, Path(found.span.file).parts[-2:]) == ("AOS129", ("second", "yard.ef"))
 
 
-async def test_documents_with_mistakes_are_refused_before_a_service_starts(tmp_path: Path):
+async def test_documents_with_mistakes_are_refused_before_a_service_starts(tmp_path):
     wrong = SKILL.replace("state__.open", "state__.opn").replace("-1", "minus_one")
     bundle(tmp_path, "world", yard_ef=ENVIRONMENT.replace("horizon", "horzon"))
     bundle(tmp_path, "skills", push_sd=wrong)
@@ -103,7 +103,7 @@ async def test_documents_with_mistakes_are_refused_before_a_service_starts(tmp_p
     assert {"world/2", "skills/4"} <= places
 
 
-def test_mistakes_in_constraints_and_in_what_is_set_are_told_together(tmp_path: Path):
+def test_mistakes_in_constraints_and_in_what_is_set_are_told_together(tmp_path):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"
     mission = '{set: {laps: 3}, constraints: [{never: "state.opn", probability: 0.1}]}'

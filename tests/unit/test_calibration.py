@@ -85,9 +85,7 @@ def test_how_many_records_would_tell_falls_with_how_far_they_are_off():
     assert counted(discrete(1.0, 0.0), 4, 0).records_to_tell == 0
 
 
-def test_a_terminal_of_any_width_shows_the_whole_table(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
+def test_a_terminal_of_any_width_shows_the_whole_table(capsys, monkeypatch):
     result = Calibration(9, 9, (), (counted(discrete(0.5, 0.5), 5, 4),), (), "", "", ())
     shown = {}
     for width in ("30", "80", "300"):

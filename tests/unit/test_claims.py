@@ -1,7 +1,6 @@
 """Claims about missions, what they mean, and how sure a share is."""
 
 import math
-from pathlib import Path
 
 import msgspec
 import pytest
@@ -176,7 +175,7 @@ def test_intervals_are_those_of_the_tables():
     assert interval_of_mean([]) is None
 
 
-def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path):
+def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path):
     path = tmp_path / "missions.yaml"
     path.write_text(
         "aos: 1\ntests:\n  one:\n    deploy: x.yaml\n    seeds: 0\n    claims:\n"
@@ -192,7 +191,7 @@ def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path)
 @pytest.mark.parametrize(
     "path", sorted(shipped("deploy/experiments").glob("*.yaml")), ids=lambda path: path.stem
 )
-def test_shipped_experiments_name_what_is_there(path, tmp_path: Path):
+def test_shipped_experiments_name_what_is_there(path, tmp_path):
     for part in read_experiment(path).parts.values():
         deployment_of(part, path.parent, tmp_path)
 
@@ -200,7 +199,7 @@ def test_shipped_experiments_name_what_is_there(path, tmp_path: Path):
 @pytest.mark.parametrize(
     "path", sorted(shipped("deploy/experiments/statistics").glob("*.yaml")), ids=lambda path: path.stem
 )
-def test_shipped_scripts_name_what_is_there(path, tmp_path: Path):
+def test_shipped_scripts_name_what_is_there(path, tmp_path):
     file = read_script_file(path)
     for part in file.parts.values():
         assert deployment_of(part, path.parent, tmp_path).world is not None
@@ -208,7 +207,7 @@ def test_shipped_scripts_name_what_is_there(path, tmp_path: Path):
         assert all((path.parent / bundle).is_dir() for bundle in bundles)
 
 
-def test_a_part_without_a_script_is_told_with_its_place(tmp_path: Path):
+def test_a_part_without_a_script_is_told_with_its_place(tmp_path):
     path = tmp_path / "scripts.yaml"
     path.write_text("aos: 1\ntitle: T\nparts:\n  one: {deploy: x.yaml, missions: 2}\n")
     with pytest.raises(DeployError) as caught:

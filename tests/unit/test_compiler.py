@@ -58,7 +58,7 @@ async def test_a_cxx_that_does_not_work_is_not_passed_over(tools: Path):
         await find_compiler({"CXX": "/nowhere/c++", "PATH": str(tools)})
 
 
-async def test_the_wheel_is_the_last_resort(tools: Path, monkeypatch: pytest.MonkeyPatch):
+async def test_the_wheel_is_the_last_resort(tools: Path, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: object())
     fake(tools, "python", "clang version 19.1.7")
     monkeypatch.setattr("sys.executable", str(tools / "python"))
@@ -73,7 +73,7 @@ async def test_this_machine_has_one(cache_dir: Path):
     assert "-std=c++20" in found.compilation("a.cpp", "a.o", str(cache_dir))
 
 
-async def test_a_compiler_that_talks_without_end_is_read_to_its_end_and_not_kept(tmp_path: Path):
+async def test_a_compiler_that_talks_without_end_is_read_to_its_end_and_not_kept(tmp_path):
     talking = ["sh", "-c", "head -c 5000000 /dev/zero | tr '\\0' x; exit 3"]
     said, status = await run_compiler(Compiler(("sh",), "gcc", ""), talking, tmp_path, 30.0, "a model")
     assert (len(said), status) == (4 << 20, 3)

@@ -93,7 +93,7 @@ def test_any_code_stays_as_it_is_or_is_refused(lines: list[str]):
         assert any(finding.is_error for finding in findings)
 
 
-def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(bundles: Path, tmp_path: Path):
+def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(bundles: Path, tmp_path):
     from typer import Typer
 
     app = Typer()

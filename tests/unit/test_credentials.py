@@ -43,7 +43,7 @@ def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory):
     assert passes.dictionary.stat().st_mode & 0o777 == 0o600
 
 
-def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path: Path):
+def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path):
     file = tmp_path / "arm.password"
     first, second = (
         Passes(RunDirectory.create(tmp_path, "r", 0), [], [Outsider(ARM, file)]) for _ in range(2)
@@ -56,7 +56,7 @@ def test_an_outsider_keeps_his_password_from_run_to_run(tmp_path: Path):
         Passes(RunDirectory.create(tmp_path, "r", 0), [], [Outsider(ARM, file)])
 
 
-def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path):
+def test_a_program_finds_its_credential_in_its_environment(tmp_path):
     (tmp_path / "password").write_text("secret\n")
     variables = {"AOS_USER": "arm", "AOS_PASSWORD_FILE": str(tmp_path / "password")}
     credential = credential_of_environment(variables)
@@ -67,9 +67,7 @@ def test_a_program_finds_its_credential_in_its_environment(tmp_path: Path):
         credential_of_environment({**variables, "AOS_PASSWORD_FILE": str(tmp_path / "none")})
 
 
-def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(tmp_path, monkeypatch):
     # The folders of tests may have long paths themselves.
     with tempfile.TemporaryDirectory(dir="/tmp") as name:
         short = Path(name)
@@ -85,7 +83,7 @@ def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(
 
 
 @pytest.mark.parametrize("written", ["{command: [python], credential: x}", "{external: '', credential: 3}"])
-def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Path, written):
+def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path, written):
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
         f"aos: 1\nrobot: r\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
@@ -96,9 +94,7 @@ def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path: Pat
     assert "credential" in f"{result.output}{result.exception}"
 
 
-def test_a_unit_starts_a_mission_with_the_machine(
-    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "base_prefix", "/home/robot/.pyenv/versions/3.11")
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
@@ -138,7 +134,7 @@ def short_folder() -> Iterator[Path]:
 
 
 def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
-    short_folder: Path, monkeypatch: pytest.MonkeyPatch
+    short_folder: Path, monkeypatch
 ):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
     names = ("killed", "listened", "locked", "young", "filled")

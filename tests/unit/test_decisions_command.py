@@ -1,16 +1,12 @@
 """`aos decisions` of a run that is over."""
 
-from pathlib import Path
-
 import pytest
 from commands import aos
 from long_run import write_long_run
 
 
 @pytest.mark.parametrize("is_killed", [True, False])
-def test_a_mission_that_was_killed_is_told_apart_from_one_that_has_ended(
-    tmp_path: Path, is_killed, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_mission_that_was_killed_is_told_apart_from_one_that_has_ended(tmp_path, is_killed, monkeypatch):
     monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
     run = tmp_path / "runs" / write_long_run(tmp_path / "runs", 2, has_ended=not is_killed)
     told = aos("decisions", "--run", run)

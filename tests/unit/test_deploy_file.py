@@ -317,7 +317,7 @@ def test_a_folder_with_several_deploy_files_is_refused_with_their_names(folder: 
     assert f"has 2 deploy files. Name one: {folder / 'a.yaml'}, {folder / 'b.yaml'}" in refusal(folder)
 
 
-def test_a_bundle_is_refused_with_the_deploy_file_beside_it(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_bundle_is_refused_with_the_deploy_file_beside_it(folder: Path, monkeypatch):
     monkeypatch.chdir(folder)
     text = refusal(Path("bundle"))
     assert text.endswith("no deploy file. Write one for it: aos new adapter model --in bundle")

@@ -3,14 +3,13 @@
 from pathlib import Path
 
 import msgspec
-import pytest
 from deploy_files import HEAD, read
 
 from aos_deploy.processes.program import programs_of_deployment
 from aos_runtime.adapters import AdapterSettings, Binding
 
 
-def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_services_are_told_what_the_file_says(folder: Path, monkeypatch):
     monkeypatch.setenv("AOS_CACHE_DIR", str(folder / "cache"))
     deployment = read(folder, f"{HEAD}watch: drop\nworld: room.yaml\nbind: {{/drive: pybullet}}\n")
     programs = {program.name: program for program in programs_of_deployment(deployment)}

@@ -1,7 +1,6 @@
 """A skill without an abstraction mapping has one: its path, its fields, and `response` of the result."""
 
 import json
-from pathlib import Path
 
 import pytest
 from mapping_runs import fields, loaded, observed
@@ -165,7 +164,7 @@ def test_what_no_response_can_be_read_from_is_an_error(model, code, place):
     ]
 
 
-def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path):
+def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path):
     project = project_of()
     shown = outline(project)
     assert "activation: skill /look(side=side)" in shown

@@ -37,7 +37,7 @@ def write_run(runs: Path, number: int, *responses: str, model: str = "d") -> Pat
     return run.path
 
 
-def test_an_alarm_comes_of_what_several_runs_have_seen_together(tmp_path: Path):
+def test_an_alarm_comes_of_what_several_runs_have_seen_together(tmp_path):
     runs = [write_run(tmp_path, number, "stuck", "stuck") for number in (1, 2, 3)]
     for run in runs:
         (alone,) = drift_of_runs([run])
@@ -51,9 +51,7 @@ def test_an_alarm_comes_of_what_several_runs_have_seen_together(tmp_path: Path):
     assert together.begun_at["press", "stuck"].startswith(f"{runs[1].name}, step")
 
 
-def test_each_model_has_tests_of_its_own_and_the_newest_decides(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_each_model_has_tests_of_its_own_and_the_newest_decides(tmp_path, monkeypatch):
     worn = [write_run(tmp_path, number, *["stuck"] * 4) for number in (1, 2)]
     mended = write_run(tmp_path, 3, "pressed", "pressed", model="e")
     told = aos("drift", *worn, "--json")

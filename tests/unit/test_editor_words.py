@@ -34,7 +34,7 @@ def test_a_part_is_explained_as_part_of_its_section():
     assert meaning_at("p.ef", text, 4, 7) is None
 
 
-def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, tmp_path: Path):
+def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, tmp_path):
     folder = tmp_path / "armadillo"
     shutil.copytree(bundles / "armadillo-finer", folder)
     (folder / "runs").mkdir()

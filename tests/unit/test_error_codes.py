@@ -43,7 +43,7 @@ def test_a_message_of_another_protocol_is_refused():
     assert caught.value.code == "AOS603"
 
 
-async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path):
+async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path):
     nothing = Ragged(np.zeros(2, np.int64), np.zeros(0, np.int64), np.zeros(0))
     over = ExplicitModel(
         name="over", discount=0.9, states=("end",), actions=("wait",), observations=("none",),
@@ -55,7 +55,7 @@ async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path)
     assert caught.value.code == "AOS302"
 
 
-def test_runs_that_cannot_be_written_are_told(tmp_path: Path):
+def test_runs_that_cannot_be_written_are_told(tmp_path):
     (tmp_path / "runs").write_text("a file where a folder should be")
     with pytest.raises(DeployError, match="no run directory") as caught:
         RunDirectory.create(tmp_path / "runs", "robot", now_ns=0)

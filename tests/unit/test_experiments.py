@@ -1,7 +1,6 @@
 """The report of an experiment on its missions: figures, the optimum beside them, tables and drawings."""
 
 import re
-from pathlib import Path
 
 import pytest
 from msgspec.structs import replace
@@ -80,7 +79,7 @@ def test_missions_that_all_bring_the_same_have_no_range_to_compare_with():
     assert regret_of(optimum, [SERVED]) is None
 
 
-def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_path: Path):
+def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_path):
     results = results_of(part_of("model"), part_of("system", (SERVED,)))
     page, whole = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
     text = page.read_text()
@@ -95,13 +94,13 @@ def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_
     assert "<svg" in whole.read_text()
 
 
-def test_a_part_whose_optimum_cannot_be_worked_out_says_why_beside_the_others(tmp_path: Path):
+def test_a_part_whose_optimum_cannot_be_worked_out_says_why_beside_the_others(tmp_path):
     part = replace(part_of("model"), no_optimum="what is observed are numbers")
     page, _ = write_report(results_of(part), {}, tmp_path)
     assert "| one | 3 |  |  | what is observed are numbers |  |  |" in page.read_text()
 
 
-def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path):
+def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path):
     results = results_of(part_of("system", (SERVED,)))
     page, _ = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
     text = page.read_text()
@@ -109,13 +108,13 @@ def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path):
     assert "| one | system | 2.00 | goal 1 | pick 1 |" in text
 
 
-def test_less_and_greater_in_a_text_are_text_in_the_page(tmp_path: Path):
+def test_less_and_greater_in_a_text_are_text_in_the_page(tmp_path):
     results = replace(results_of(part_of("model")), about="value <b of it> is small")
     _, whole = write_report(results, {}, tmp_path)
     assert "value &lt;b of it&gt; is small" in whole.read_text()
 
 
-def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_path: Path):
+def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_path):
     results = results_of(part_of("model"), part_of("system", (SERVED, GAVE_UP)))
     first, again = (draw_plots(results, tmp_path / name) for name in ("first", "again"))
     assert set(first) == {
@@ -131,7 +130,7 @@ def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_pa
     assert ">one (system, 2)<" in drawn
 
 
-def test_the_picture_is_the_last_one_of_the_first_mission_that_has_some(tmp_path: Path):
+def test_the_picture_is_the_last_one_of_the_first_mission_that_has_some(tmp_path):
     for seed, steps in ((2, 2), (3, 1)):
         pictures = tmp_path / "runs" / f"seed-{seed}" / "a-run" / "pictures"
         pictures.mkdir(parents=True)
@@ -161,7 +160,7 @@ def test_statistics_tell_what_came_back_and_what_each_step_changed():
     assert list(steps_of("script", [])) == []
 
 
-def test_a_dot_stands_at_its_share_between_the_ticks(tmp_path: Path):
+def test_a_dot_stands_at_its_share_between_the_ticks(tmp_path):
     results = results_of(part_of("model", (SERVED, GAVE_UP)))
     drawn = draw_plots(results, tmp_path)["share of missions that reach the goal"].read_text()
     (dot,) = (float(x) for x in re.findall(r'"M([\d.]+) \d+h0"', drawn))

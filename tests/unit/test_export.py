@@ -122,7 +122,7 @@ def messages_of(file: Path) -> list[tuple[str, dict[str, Any], Any, int]]:
         ]
 
 
-def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path: Path):
+def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path):
     target = tmp_path / "out.mcap"
     pytest.importorskip("mcap", reason="set up before mcap was among the dependencies")
     export([run], "mcap", target)
@@ -158,7 +158,7 @@ def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path: Path):
     assert [stamp for topic, _, _, stamp in messages if topic == "/aos/picture"] == [2 * 10**9 + 5]
 
 
-def test_layouts_show_only_what_is_in_the_file(run: Path, tmp_path: Path):
+def test_layouts_show_only_what_is_in_the_file(run: Path, tmp_path):
     pytest.importorskip("mcap", reason="set up before mcap was among the dependencies")
     export([run], "mcap", tmp_path)
     messages = messages_of(tmp_path / "a-run.mcap")
@@ -198,7 +198,7 @@ def test_a_run_without_steps_has_layouts():
     assert plotjuggler_layout(curves).startswith("<?xml")
 
 
-def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path: Path):
+def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path):
     export([run], "csv", tmp_path / "tables")
     tables = {
         path.stem: list(csv.DictReader(path.read_text().splitlines()))
@@ -228,7 +228,7 @@ def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path: 
     ]
 
 
-def test_parquet_has_the_same_tables_with_types(run: Path, tmp_path: Path):
+def test_parquet_has_the_same_tables_with_types(run: Path, tmp_path):
     parquet = pytest.importorskip("pyarrow.parquet", reason="the extra `parquet` is not installed")
     export([run, make_run(tmp_path / "other")], "parquet", tmp_path / "tables")
     steps = parquet.read_table(tmp_path / "tables" / "steps.parquet").to_pylist()
@@ -239,7 +239,7 @@ def test_parquet_has_the_same_tables_with_types(run: Path, tmp_path: Path):
     assert str(values.schema.field("q").type) == "double"
 
 
-def test_a_file_of_a_run_is_opened_like_its_directory_and_lets_nobody_in(run: Path, tmp_path: Path):
+def test_a_file_of_a_run_is_opened_like_its_directory_and_lets_nobody_in(run: Path, tmp_path):
     target = tmp_path / "sent.aosrun"
     export([run], "bundle", target)
     with zipfile.ZipFile(target) as archive:
@@ -256,7 +256,7 @@ def test_a_file_of_a_run_is_opened_like_its_directory_and_lets_nobody_in(run: Pa
     assert [row.payload for row in kept_missions(opened.path)[0].rows()] == before
 
 
-def test_a_file_of_several_runs_names_them(run: Path, tmp_path: Path):
+def test_a_file_of_several_runs_names_them(run: Path, tmp_path):
     other = make_run(tmp_path / "other")
     other = other.rename(other.with_name("b-run"))
     target = tmp_path / "sent.aosrun"
@@ -266,7 +266,7 @@ def test_a_file_of_several_runs_names_them(run: Path, tmp_path: Path):
         chosen_run(target, None)
 
 
-def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path: Path):
+def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path):
     target = tmp_path / "bad.aosrun"
     link = zipfile.ZipInfo("a-run/run.json")
     link.external_attr = 0o120777 << 16
@@ -282,14 +282,14 @@ def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path: Path
     assert refused.value.hint.endswith(f"--runs {tmp_path}")
 
 
-def test_a_run_that_is_named_twice_is_taken_once(tmp_path: Path):
+def test_a_run_that_is_named_twice_is_taken_once(tmp_path):
     runs = [make_run(tmp_path / name) for name in ("a", "b")]
     (tmp_path / "latest").symlink_to(runs[1])
     assert chosen_runs([*runs, tmp_path / "latest"], None) == runs
     assert chosen_runs([tmp_path / "latest", *runs], None) == [tmp_path / "latest", runs[0]]
 
 
-def test_a_folder_of_runs_names_all_of_them(tmp_path: Path):
+def test_a_folder_of_runs_names_all_of_them(tmp_path):
     (tmp_path / "runs").mkdir()
     runs = [make_run(tmp_path / name).rename(tmp_path / "runs" / name) for name in ("b", "a")]
     (tmp_path / "runs" / "latest").symlink_to(runs[0])
@@ -299,7 +299,7 @@ def test_a_folder_of_runs_names_all_of_them(tmp_path: Path):
         chosen_runs([tmp_path / "runs" / "other"], None)
 
 
-def test_a_file_that_was_damaged_on_its_way_is_opened_or_refused(run: Path, tmp_path: Path):
+def test_a_file_that_was_damaged_on_its_way_is_opened_or_refused(run: Path, tmp_path):
     target = tmp_path / "sent.aosrun"
     write_bundle([run], target)
     good = target.read_bytes()
@@ -318,9 +318,7 @@ def test_a_file_that_was_damaged_on_its_way_is_opened_or_refused(run: Path, tmp_
     assert refused > 50
 
 
-def test_a_record_that_is_nested_without_end_is_told_as_unreadable(
-    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
+def test_a_record_that_is_nested_without_end_is_told_as_unreadable(run: Path, tmp_path, monkeypatch, capsys):
     with Journal.open(run / "journal.db") as journal:
         journal.append("decision", Cancel("x"))
     with closing(sqlite3.connect(run / "journal.db")) as connection:

@@ -51,14 +51,14 @@ def appended(folder: Path, armed: str) -> tuple[int, str, int]:
         ("", 0, 3),
     ],
 )
-def test_a_process_fails_where_it_should_and_its_rows_stay(armed, status, rows, tmp_path: Path):
+def test_a_process_fails_where_it_should_and_its_rows_stay(armed, status, rows, tmp_path):
     assert appended(tmp_path, armed)[::2] == (status, rows)
 
 
-def test_a_process_that_is_started_again_goes_on(tmp_path: Path):
+def test_a_process_that_is_started_again_goes_on(tmp_path):
     assert appended(tmp_path, "journal.decision.after:kill")[0] == -signal.SIGKILL
     assert appended(tmp_path, "journal.decision.after:kill") == (0, "went on\n", 4)
 
 
-def test_a_disk_that_is_full_stays_so(tmp_path: Path):
+def test_a_disk_that_is_full_stays_so(tmp_path):
     assert appended(tmp_path, "journal.decision.before:full:2") == (0, "AOS701\nAOS701\nwent on\n", 1)

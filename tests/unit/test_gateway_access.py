@@ -2,7 +2,6 @@
 
 import asyncio
 import socket
-from pathlib import Path
 
 import pytest
 
@@ -86,7 +85,7 @@ def test_the_files_of_the_page_say_nothing_of_a_robot_and_are_open():
     assert refusal(access, "GET", OWN) == "AOS903"
 
 
-def test_the_token_is_kept_and_nobody_else_may_read_it(tmp_path: Path):
+def test_the_token_is_kept_and_nobody_else_may_read_it(tmp_path):
     path = tmp_path / "gateway" / "token"
     token = kept_token(path)
     assert len(token) >= 32

@@ -5,7 +5,6 @@ import sys
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -46,7 +45,7 @@ def test_systems_of_one_robot_at_files_of_one_name_have_names_of_their_own():
     ]
 
 
-def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path):
+def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path):
     shelf = RunShelf([tmp_path])
     record = RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1)
     usual_s = sys.getswitchinterval()
@@ -64,7 +63,7 @@ def test_a_new_run_is_there_while_somebody_makes_a_list(tmp_path: Path):
         sys.setswitchinterval(usual_s)
 
 
-async def test_a_system_that_stays_names_its_first_mission_before_that_begins(tmp_path: Path):
+async def test_a_system_that_stays_names_its_first_mission_before_that_begins(tmp_path):
     run = RunDirectory.create(tmp_path, "r", 0)
     run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1))
     make_folder_of_missions(run.path)

@@ -421,7 +421,7 @@ def test_a_removed_row_is_caught():
     assert found[0].row == 5
 
 
-def test_a_journal_that_cannot_be_read_is_a_violation(tmp_path: Path):
+def test_a_journal_that_cannot_be_read_is_a_violation(tmp_path):
     with Journal.open(tmp_path / "journal.db") as journal:
         for entry in History().journal:
             journal.append(entry.kind, entry.payload)

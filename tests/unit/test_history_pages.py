@@ -48,13 +48,13 @@ def test_a_page_begins_where_it_is_asked_to(journal: Path, since):
     assert sequences(journal, since) == (list(range(max(since, 0), COUNT)), False)
 
 
-def test_a_page_is_no_larger_than_its_size_and_one_record(journal: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_page_is_no_larger_than_its_size_and_one_record(journal: Path, monkeypatch):
     monkeypatch.setattr(history, "PAGE_BYTES", 1)
     assert sequences(journal, 5) == ([5], True)
     assert sequences(journal, COUNT - 1) == ([COUNT - 1], False)
 
 
-def test_a_mission_without_a_decision_has_an_empty_history(tmp_path: Path):
+def test_a_mission_without_a_decision_has_an_empty_history(tmp_path):
     with Journal.open(tmp_path / "journal.db"):
         assert sequences(tmp_path / "journal.db", 0) == ([], False)
 

@@ -50,7 +50,7 @@ def test_raw_strings_that_are_never_closed_are_one_mistake():
     assert not read_cpp('state.name = R"x(a " ( { )y" )x";').faults
 
 
-def test_code_that_takes_the_parser_long_is_a_mistake(monkeypatch: pytest.MonkeyPatch):
+def test_code_that_takes_the_parser_long_is_a_mistake(monkeypatch):
     monkeypatch.setattr(tree, "MAX_CPU_S", 0.05)
     code = "".join(f"foo{number}: 1\n" for number in range(5000))
     (fault,) = read_cpp(code).faults
@@ -71,7 +71,7 @@ def test_an_upload_with_a_name_that_no_file_has_is_refused(name):
     assert caught.value.message.isprintable()
 
 
-def test_projects_whose_names_look_alike_are_kept_apart(tmp_path: Path):
+def test_projects_whose_names_look_alike_are_kept_apart(tmp_path):
     names = ["éé", "öö", "--", "..", "x" * 100, "x" * 101]
     kept = {keep_project(tmp_path, name, {}).deploy_file for name in names}
     assert len(kept) == len(names)
@@ -79,7 +79,7 @@ def test_projects_whose_names_look_alike_are_kept_apart(tmp_path: Path):
     assert keep_project(tmp_path, "errand", {}).project == "errand"
 
 
-def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys: pytest.CaptureFixture[str]):
+def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys):
     found = Diagnostic(
         Severity.ERROR,
         "AOS110",
@@ -99,7 +99,7 @@ def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys: pytest.Captur
     assert "and 100 more" in said
 
 
-async def test_a_watched_folder_that_cannot_be_looked_into_is_told(tmp_path: Path):
+async def test_a_watched_folder_that_cannot_be_looked_into_is_told(tmp_path):
     async def take(_: Path) -> None:
         raise AssertionError
 

@@ -33,18 +33,18 @@ def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     "name", ["../x/run.json", "/x/run.json", "r/../../x/run.json", "r\x1b[2J/run.json", "r\n/run.json"]
 )
-def test_an_entry_that_is_no_file_of_a_run_is_refused(tmp_path: Path, name):
+def test_an_entry_that_is_no_file_of_a_run_is_refused(tmp_path, name):
     with pytest.raises(DeployError, match="is not a plain file within it") as caught:
         opened(tmp_path, name)
     assert caught.value.message.isprintable()
 
 
-def test_a_file_that_is_also_a_folder_is_refused(tmp_path: Path):
+def test_a_file_that_is_also_a_folder_is_refused(tmp_path):
     with pytest.raises(DeployError, match="cannot be opened"):
         opened(tmp_path, "r", "r/run.json")
 
 
-async def test_folders_in_place_of_files_are_told_and_no_log_is_read_elsewhere(tmp_path: Path):
+async def test_folders_in_place_of_files_are_told_and_no_log_is_read_elsewhere(tmp_path):
     runs = opened(tmp_path, "r/run.json", "r/logs/solver.log/x", "r/pictures/step-1.png/x", "r/secret.log")
     gateway: Any = SimpleNamespace(shelf=RunShelf([], [], runs))
     with pytest.raises(StorageError, match="cannot be read"):

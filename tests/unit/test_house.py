@@ -97,7 +97,7 @@ def test_no_function_but_a_command_has_many_parameters(sources: dict[str, list[F
     assert not many
 
 
-def test_a_function_that_breaks_a_limit_is_noticed(tmp_path: Path):
+def test_a_function_that_breaks_a_limit_is_noticed(tmp_path):
     path = tmp_path / "wide.py"
     path.write_text("def wide(a, b, c, d, e, f, g, *, h=1):\n" + "    pass\n" * MOST_LINES)
     (wide,) = functions_of(path)
@@ -111,7 +111,7 @@ def test_the_files_that_git_tracks_are_small_together():
     assert 0 < tracked_bytes(ROOT) < MOST_TRACKED_BYTES
 
 
-def test_a_tracked_file_counts_and_another_one_does_not(tmp_path: Path):
+def test_a_tracked_file_counts_and_another_one_does_not(tmp_path):
     subprocess.run(["git", "init", "-q", tmp_path], check=True)
     (tmp_path / "tracked").write_bytes(b"1234")
     (tmp_path / "other").write_bytes(b"12345678")

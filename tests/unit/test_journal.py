@@ -20,7 +20,7 @@ class StoppedClock:
         return 0.0
 
 
-def test_rows_come_back_as_they_were_appended(tmp_path: Path):
+def test_rows_come_back_as_they_were_appended(tmp_path):
     with Journal.open(tmp_path / "journal.db", clock=StoppedClock()) as journal:
         assert [journal.append("cancel", Cancel(reason)) for reason in ("first", "second")] == [1, 2]
         rows = journal.rows()
@@ -33,7 +33,7 @@ def test_rows_come_back_as_they_were_appended(tmp_path: Path):
 
 
 @pytest.mark.parametrize("payload", ["{", '{"reason": 1}', "[" * 100_000, "[1, 2]"])
-def test_a_row_that_is_something_else_than_is_asked_for_is_told_with_its_place(payload, tmp_path: Path):
+def test_a_row_that_is_something_else_than_is_asked_for_is_told_with_its_place(payload, tmp_path):
     row = JournalRow(7, 0, "steered", payload.encode(), tmp_path / "journal.db")
 
     with pytest.raises(StorageError, match=r"journal\.db: row 7, steered, cannot be read") as error:
@@ -42,7 +42,7 @@ def test_a_row_that_is_something_else_than_is_asked_for_is_told_with_its_place(p
     assert error.value.code == "AOS702"
 
 
-def test_rows_can_be_asked_by_kind_and_from_a_number(tmp_path: Path):
+def test_rows_can_be_asked_by_kind_and_from_a_number(tmp_path):
     with Journal.open(tmp_path / "journal.db") as journal:
         for number in range(6):
             journal.append("even" if number % 2 == 0 else "odd", Cancel(str(number)))
@@ -52,14 +52,14 @@ def test_rows_can_be_asked_by_kind_and_from_a_number(tmp_path: Path):
         assert journal.rows("none") == []
 
 
-def test_a_journal_goes_on_where_it_ended(tmp_path: Path):
+def test_a_journal_goes_on_where_it_ended(tmp_path):
     path = tmp_path / "journal.db"
     for expected in (1, 2, 3):
         with Journal.open(path) as journal:
             assert journal.append("cancel", Cancel()) == expected
 
 
-def test_rows_cannot_be_changed_or_removed(tmp_path: Path):
+def test_rows_cannot_be_changed_or_removed(tmp_path):
     path = tmp_path / "journal.db"
     with Journal.open(path) as journal:
         journal.append("cancel", Cancel("true"))
@@ -71,7 +71,7 @@ def test_rows_cannot_be_changed_or_removed(tmp_path: Path):
     database.close()
 
 
-def test_a_reader_sees_what_the_writer_appended_and_cannot_write(tmp_path: Path):
+def test_a_reader_sees_what_the_writer_appended_and_cannot_write(tmp_path):
     path = tmp_path / "journal.db"
     with Journal.open(path) as writer, Journal.read(path) as reader:
         writer.append("mission", MissionState("m", "waiting", 0, 0.0))
@@ -82,7 +82,7 @@ def test_a_reader_sees_what_the_writer_appended_and_cannot_write(tmp_path: Path)
 
 
 @pytest.mark.parametrize("content", [b"", b"not a database, but long enough to be taken for one" * 50])
-def test_a_file_that_is_no_journal_is_refused(tmp_path: Path, content):
+def test_a_file_that_is_no_journal_is_refused(tmp_path, content):
     path = tmp_path / "journal.db"
     path.write_bytes(content)
     with pytest.raises(StorageError) as caught:
@@ -91,7 +91,7 @@ def test_a_file_that_is_no_journal_is_refused(tmp_path: Path, content):
     assert str(path) in caught.value.message
 
 
-def test_a_journal_of_another_version_is_left_alone(tmp_path: Path):
+def test_a_journal_of_another_version_is_left_alone(tmp_path):
     path = tmp_path / "journal.db"
     database = sqlite3.connect(path)
     database.execute("PRAGMA user_version = 7")
@@ -100,7 +100,7 @@ def test_a_journal_of_another_version_is_left_alone(tmp_path: Path):
         Journal.open(path)
 
 
-def test_a_missing_folder_is_a_clear_error(tmp_path: Path):
+def test_a_missing_folder_is_a_clear_error(tmp_path):
     with pytest.raises(StorageError, match="unable to open") as caught:
         Journal.open(tmp_path / "absent" / "journal.db")
     assert caught.value.code == "AOS701"
@@ -108,7 +108,7 @@ def test_a_missing_folder_is_a_clear_error(tmp_path: Path):
         Journal.read(tmp_path / "absent" / "journal.db")
 
 
-def test_a_full_disk_is_an_error_and_the_rows_before_it_stay(tmp_path: Path):
+def test_a_full_disk_is_an_error_and_the_rows_before_it_stay(tmp_path):
     with Journal.open(tmp_path / "journal.db") as journal:
         journal.append("cancel", Cancel("kept"))
         journal._connection.execute("PRAGMA max_page_count = 8")
@@ -118,7 +118,7 @@ def test_a_full_disk_is_an_error_and_the_rows_before_it_stay(tmp_path: Path):
         assert len(journal.rows()) == 1
 
 
-def test_a_journal_of_before_the_checksums_can_be_read_and_not_be_written(tmp_path: Path):
+def test_a_journal_of_before_the_checksums_can_be_read_and_not_be_written(tmp_path):
     path = tmp_path / "journal.db"
     with Journal.open(path) as journal:
         journal.append("cancel", Cancel("kept"))
@@ -133,7 +133,7 @@ def test_a_journal_of_before_the_checksums_can_be_read_and_not_be_written(tmp_pa
 
 
 @pytest.mark.parametrize("lacking", [1, 3, 5])
-def test_a_row_that_is_lacking_is_an_error(tmp_path: Path, lacking):
+def test_a_row_that_is_lacking_is_an_error(tmp_path, lacking):
     path = tmp_path / "journal.db"
     with Journal.open(path) as journal:
         for number in range(5):
@@ -148,7 +148,7 @@ def test_a_row_that_is_lacking_is_an_error(tmp_path: Path, lacking):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_flipped_bit_is_an_error_or_changes_no_row(tmp_path: Path, seed):
+def test_a_flipped_bit_is_an_error_or_changes_no_row(tmp_path, seed):
     path = tmp_path / "journal.db"
     with Journal.open(path, clock=StoppedClock()) as journal:
         for number in range(40):
@@ -170,7 +170,7 @@ def read_damaged(path: Path, whole: bytes, draw: random.Random) -> list[JournalR
 
 
 @pytest.mark.parametrize("harm", ["cut off", "flipped bit"])
-def test_a_harmed_write_ahead_log_gives_the_first_rows_or_is_an_error(tmp_path: Path, harm):
+def test_a_harmed_write_ahead_log_gives_the_first_rows_or_is_an_error(tmp_path, harm):
     path, log = tmp_path / "journal.db", tmp_path / "journal.db-wal"
     with Journal.open(path, clock=StoppedClock()) as journal:
         for number in range(30):
@@ -211,7 +211,7 @@ def rows_of(path: Path) -> list[JournalRow] | None:
         "CREATE TABLE entries (seq INTEGER PRIMARY KEY, stamp_ns, kind, payload AS (hex(zeroblob(1e8))))",
     ],
 )
-def test_a_journal_that_computes_its_rows_is_refused(entries, tmp_path: Path):
+def test_a_journal_that_computes_its_rows_is_refused(entries, tmp_path):
     path = tmp_path / "journal.db"
     with closing(sqlite3.connect(path)) as connection:
         connection.executescript(f"{entries}; PRAGMA user_version = 1;")
@@ -219,7 +219,7 @@ def test_a_journal_that_computes_its_rows_is_refused(entries, tmp_path: Path):
         Journal.read(path)
 
 
-def test_a_row_that_is_no_text_is_an_error(tmp_path: Path):
+def test_a_row_that_is_no_text_is_an_error(tmp_path):
     path = tmp_path / "journal.db"
     with closing(sqlite3.connect(path)) as connection:
         connection.executescript(

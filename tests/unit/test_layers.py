@@ -22,7 +22,7 @@ def test_each_foreign_library_is_imported_through_its_door_alone(root: Path):
     assert broken(root, root / "pyproject.toml") == []
 
 
-def test_an_import_past_a_door_would_be_noticed(root: Path, tmp_path: Path):
+def test_an_import_past_a_door_would_be_noticed(root: Path, tmp_path):
     text = (root / "pyproject.toml").read_text()
     doors = re.findall(r'^name = "(The door to .+)"$', text, re.MULTILINE)
     assert len(doors) >= 7

@@ -19,9 +19,7 @@ def run_in(folder: Path) -> Path:
     return run.path
 
 
-def test_the_runs_of_a_deploy_file_in_a_folder_are_found_from_above(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_the_runs_of_a_deploy_file_in_a_folder_are_found_from_above(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(BusError, match="there is no run in runs"):
         chosen_run(None, None)
@@ -34,7 +32,7 @@ def test_the_runs_of_a_deploy_file_in_a_folder_are_found_from_above(
     assert chosen_run(None, None).path == here
 
 
-def test_a_run_that_was_killed_and_taken_up_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_run_that_was_killed_and_taken_up_is_one(tmp_path, monkeypatch):
     monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path / "running"))
     run = RunDirectory.create(tmp_path / "runs", "r", 0)
     record = RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=os.getpid())

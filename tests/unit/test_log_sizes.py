@@ -1,12 +1,10 @@
 """Logs of programs that print without end."""
 
-from pathlib import Path
-
 from aos_deploy.processes.log_sizes import shorten
 from aos_deploy.processes.ready import _Printed
 
 
-def test_a_log_that_is_too_long_is_cut_to_its_end_and_its_writer_goes_on(tmp_path: Path):
+def test_a_log_that_is_too_long_is_cut_to_its_end_and_its_writer_goes_on(tmp_path):
     log = tmp_path / "arm.log"
     with log.open("ab", buffering=0) as writer:
         for number in range(1000):
@@ -21,7 +19,7 @@ def test_a_log_that_is_too_long_is_cut_to_its_end_and_its_writer_goes_on(tmp_pat
     assert others == [*(f"line {number}" for number in range(989, 1000)), "the next line"]
 
 
-def test_a_line_that_says_that_a_program_is_ready_is_seen_in_a_log_that_was_cut(tmp_path: Path):
+def test_a_line_that_says_that_a_program_is_ready_is_seen_in_a_log_that_was_cut(tmp_path):
     log = tmp_path / "arm.log"
     log.write_text("noise\n" * 100)
     lines = _Printed(log, 0, "^ready$")

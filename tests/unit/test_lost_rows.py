@@ -54,7 +54,7 @@ def refusal(run: Path) -> AosError:
 
 
 @pytest.mark.parametrize("ledger", ["middleware.db", "adapter-arm.db"])
-def test_a_journal_that_did_not_intend_what_was_asked_for_is_refused(tmp_path: Path, ledger):
+def test_a_journal_that_did_not_intend_what_was_asked_for_is_refused(tmp_path, ledger):
     run = tmp_path / MISSION
     write_run(run, STEPS - 1, ledger)
     error = refusal(run)
@@ -63,16 +63,14 @@ def test_a_journal_that_did_not_intend_what_was_asked_for_is_refused(tmp_path: P
 
 
 @pytest.mark.parametrize("ledger", ["middleware.db", "adapter-arm.db"])
-def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path: Path, ledger):
+def test_a_whole_journal_is_not_refused_for_a_call_by_hand(tmp_path, ledger):
     run = tmp_path / MISSION
     write_run(run, STEPS, ledger)
     assert "gone.yaml" in str(refusal(run)), "the deploy file is looked for after the journal"
 
 
 @pytest.mark.parametrize("is_closed", [True, False], ids=["closed", "killed"])
-def test_a_flipped_bit_of_a_journal_is_refused_or_changes_nothing_but_the_last_rows(
-    tmp_path: Path, is_closed
-):
+def test_a_flipped_bit_of_a_journal_is_refused_or_changes_nothing_but_the_last_rows(tmp_path, is_closed):
     """`python -m tests.chaos.bits` flips a thousand bits of a real run's journal."""
     run = tmp_path / MISSION
     write_run(run, STEPS, "middleware.db")

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import pytest
 from mapping_documents import emitted, project_in
 from mappings import mapping_text
 from scripted_models import text_project
@@ -142,7 +141,7 @@ def test_a_path_may_start_with_a_parameter_or_with_a_state_variable():
     assert assigned_variables(given, request({"to": "gate"})) == {"gate.pose": 1, "shed.pose": 2, "home": 3}
 
 
-def test_what_is_assigned_to_a_computed_parameter_is_dropped_with_a_warning(caplog: pytest.LogCaptureFixture):
+def test_what_is_assigned_to_a_computed_parameter_is_dropped_with_a_warning(caplog):
     assert assigned_variables({"to.pose": 1}, request()) == {}
     assert "to stands for no state variable" in caplog.text
 

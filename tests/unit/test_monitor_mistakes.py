@@ -92,7 +92,7 @@ def test_a_skill_that_says_nothing_of_being_stopped_is_told_where_a_monitor_may_
     assert told == ["warning AOS116 battery.am:7:12 no rule says what is observed where this stops go"]
 
 
-def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path):
+def test_an_editor_knows_the_names_in_both_halves(tmp_path):
     write_texts(BATTERY, tmp_path)
     places: dict[str, list[str]] = {}
     for occurrence in read_bundle(tmp_path, {}).occurrences:

@@ -71,7 +71,7 @@ def test_a_line_to_look_for_that_is_no_expression_is_refused(folder: Path, expre
     assert lines_of(folder, part) == [4]
 
 
-def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path):
+def test_a_file_that_has_no_end_is_not_read_on(tmp_path):
     (tmp_path / "rover.yaml").symlink_to("/dev/zero")
     with pytest.raises(DeployError) as caught:
         read_deploy_file(tmp_path / "rover.yaml")
@@ -79,7 +79,7 @@ def test_a_file_that_has_no_end_is_not_read_on(tmp_path: Path):
 
 
 @pytest.mark.parametrize("name", ["x" * 10_000, "a\0b", "loop"])
-def test_a_deploy_file_that_cannot_be_is_not_there(tmp_path: Path, name):
+def test_a_deploy_file_that_cannot_be_is_not_there(tmp_path, name):
     (tmp_path / "loop").symlink_to("loop")
     with pytest.raises(DeployError) as caught:
         read_deploy_file(tmp_path / name)

@@ -45,7 +45,7 @@ def test_the_page_asks_no_other_server(root: Path):
         assert not {address for address in named if not address.startswith("http://www.w3.org/")}, name
 
 
-def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path: Path, cache_dir: Path):
+def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path, cache_dir: Path):
     libraries = installed_sources(root, cache_dir) / "node_modules"
     sources = tmp_path / "page"
     shutil.copytree(root / SOURCES, sources, ignore=shutil.ignore_patterns("node_modules"))
@@ -72,9 +72,7 @@ def test_a_browser_gets_a_file_as_it_understands_it(name, root: Path):
     assert packed.headers["content-type"] == plain.headers["content-type"]
 
 
-def test_a_page_that_is_made_anew_is_what_a_browser_gets_next(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_page_that_is_made_anew_is_what_a_browser_gets_next(tmp_path, monkeypatch):
     def body() -> bytes:
         return bytes(asyncio.run(route.endpoint(Request({"type": "http", "headers": []}))).body)
 

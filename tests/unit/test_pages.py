@@ -104,9 +104,7 @@ def test_the_laboratory_lists_every_page_of_its_own():
     ]
 
 
-def test_a_measured_table_takes_the_place_of_the_old_one_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_measured_table_takes_the_place_of_the_old_one_alone(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "docs")
     figures = importlib.import_module("figures")
     page = tmp_path / "page.md"
@@ -119,7 +117,7 @@ def test_a_measured_table_takes_the_place_of_the_old_one_alone(
         figures.paste("new", page)
 
 
-def test_every_page_that_can_be_measured_has_a_place_for_it(monkeypatch: pytest.MonkeyPatch):
+def test_every_page_that_can_be_measured_has_a_place_for_it(monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "docs")
     measured = importlib.import_module("figures").FIGURES
     with_figures = [page.stem for page in PAGES if FIGURES.search(page.read_text(encoding="utf-8"))]

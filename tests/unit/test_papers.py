@@ -102,7 +102,7 @@ def test_every_error_code_that_is_used_has_a_meaning(root: Path):
     assert used <= CODES.keys()
 
 
-def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch):
     monkeypatch.syspath_prepend(root / "docs")
     table = importlib.import_module("limits_table")
     assert table.value_at("aos_runtime.bus.config.LEASE_S") == 2.0

@@ -1,7 +1,6 @@
 """Faults of skills that a model plays: which can be asked for, and when they come."""
 
 from collections import Counter
-from pathlib import Path
 
 import pytest
 
@@ -51,7 +50,7 @@ def test_a_mission_has_the_same_faults_whenever_it_is_run():
     assert len(set(first)) == 2
 
 
-def test_a_mission_of_the_model_in_this_process_has_no_faults_and_says_which_has(tmp_path: Path):
+def test_a_mission_of_the_model_in_this_process_has_no_faults_and_says_which_has(tmp_path):
     setting = Setting(deploy="armadillo.yaml", faults={"lost_result": 0.1})
     with pytest.raises(DeployError) as caught:
         deployment_of(setting, shipped("deploy"), tmp_path)

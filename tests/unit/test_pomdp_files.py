@@ -1,7 +1,5 @@
 """Tests `.pomdp` files of other programs: without a model, with a byte order mark, and of MDPs."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -25,7 +23,7 @@ R: stay : c
 
 
 @pytest.mark.parametrize("text", ["", "# nothing\n", "hello world\n"])
-def test_a_file_without_statements_has_mistakes(tmp_path: Path, text):
+def test_a_file_without_statements_has_mistakes(tmp_path, text):
     file = tmp_path / "empty.pomdp"
     file.write_text(text)
     with pytest.raises(DocumentError) as caught:
@@ -33,7 +31,7 @@ def test_a_file_without_statements_has_mistakes(tmp_path: Path, text):
     assert {finding.code for finding in caught.value.diagnostics} <= {"AOS102", "AOS105"}
 
 
-def test_a_rule_that_is_missing_is_told_as_missing(tmp_path: Path):
+def test_a_rule_that_is_missing_is_told_as_missing(tmp_path):
     file = tmp_path / "missing.pomdp"
     file.write_text("discount: 0.5\nstates: a b\nactions: go\nobservations: x\nT: go : a 0 1\nO: * uniform")
     with pytest.raises(DocumentError) as caught:
@@ -41,7 +39,7 @@ def test_a_rule_that_is_missing_is_told_as_missing(tmp_path: Path):
     assert [finding.message for finding in caught.value.diagnostics] == ["there is no `T: go : b`"]
 
 
-def test_names_beyond_ascii_are_read_with_and_without_a_byte_order_mark(tmp_path: Path):
+def test_names_beyond_ascii_are_read_with_and_without_a_byte_order_mark(tmp_path):
     file = tmp_path / "marked.pomdp"
     text = "discount: 0.5\nstates: größe b\nactions: go\nobservations: x\nT: go identity\nO: * uniform\n"
     for encoding in ("utf-8", "utf-8-sig", "latin-1"):
@@ -49,7 +47,7 @@ def test_names_beyond_ascii_are_read_with_and_without_a_byte_order_mark(tmp_path
         assert read_problem(file).states == ("größe", "b"), encoding
 
 
-def test_without_observations_the_state_is_seen(tmp_path: Path):
+def test_without_observations_the_state_is_seen(tmp_path):
     file = tmp_path / "mdp.pomdp"
     file.write_text(MDP)
     model = read_problem(file)
@@ -60,7 +58,7 @@ def test_without_observations_the_state_is_seen(tmp_path: Path):
         assert list(model.likelihoods.row(sensing)[0]) == [state]
 
 
-def test_a_file_with_sensing_needs_observations(tmp_path: Path):
+def test_a_file_with_sensing_needs_observations(tmp_path):
     file = tmp_path / "unnamed.pomdp"
     file.write_text(MDP + "O: * uniform\n")
     with pytest.raises(DocumentError, match=r"has mistakes") as caught:
@@ -68,7 +66,7 @@ def test_a_file_with_sensing_needs_observations(tmp_path: Path):
     assert caught.value.diagnostics[0].message == "there is no `observations:`"
 
 
-def test_a_row_for_all_changes_where_a_later_line_says_so(tmp_path: Path):
+def test_a_row_for_all_changes_where_a_later_line_says_so(tmp_path):
     file = tmp_path / "shared.pomdp"
     lines = ["discount: 0.5", "states: a b", "actions: go stay", "observations: x", "O: * uniform"]
     lines += [
@@ -85,7 +83,7 @@ def test_a_row_for_all_changes_where_a_later_line_says_so(tmp_path: Path):
     np.testing.assert_allclose(np.concatenate([chances for _, chances in rows]), [0.6, 0.4, 1, 0.3, 0.7, 1])
 
 
-def test_the_only_state_may_be_named_as_the_start(tmp_path: Path):
+def test_the_only_state_may_be_named_as_the_start(tmp_path):
     file = tmp_path / "one.pomdp"
     for start in ("here", "1", "uniform"):
         text = f"discount: 0.5\nstates: here\nactions: 1\nobservations: 1\nstart: {start}\n"
@@ -93,14 +91,14 @@ def test_the_only_state_may_be_named_as_the_start(tmp_path: Path):
         assert list(read_problem(file).start_distribution()) == [1.0]
 
 
-def test_a_short_file_of_a_model_that_is_too_large_is_refused(tmp_path: Path):
+def test_a_short_file_of_a_model_that_is_too_large_is_refused(tmp_path):
     file = tmp_path / "dense.pomdp"
     file.write_text("discount: 0.9\nstates: 3000\nactions: 4\nobservations: 1\nT: * uniform\nO: * uniform\n")
     with pytest.raises(IntractableError, match="36,000,000 outcomes"):
         read_problem(file)
 
 
-def test_rewards_for_each_of_many_next_states_are_one_entry_each(tmp_path: Path):
+def test_rewards_for_each_of_many_next_states_are_one_entry_each(tmp_path):
     count = 1500
     lines = [f"discount: 0.5\nstates: {count}\nactions: 20\nobservations: x\nT: * identity\nO: * uniform"]
     lines += [f"R: * : * : {state} : * {state}" for state in range(count)]

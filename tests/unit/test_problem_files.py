@@ -66,7 +66,7 @@ def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path):
     np.testing.assert_allclose(model.rewards[2:4, 2], [-10, 10])
 
 
-def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Path):
+def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path):
     """Also where an edge has named that value, and beside a parent that has the same values."""
     text = (problems / "rover.pomdpx").read_text()
     kept = '<SubDAG type="persistent" var="{}"/>'
@@ -100,7 +100,7 @@ def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("name", ["tiger.pomdp", "costs.pomdp", "rover.pomdpx"])
-def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, name):
+def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path, name):
     model = read_problem(problems / name)
     endings = (".pomdpx",) if len(model.starts) > 1 else (".pomdp", ".pomdpx")
     for ending in endings:
@@ -115,7 +115,7 @@ def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, na
         assert sorted(start.weight for start in again.starts) == [start.weight for start in model.starts]
 
 
-def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tmp_path: Path):
+def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tmp_path):
     model = read_problem(problems / "rover.pomdpx")
     with pytest.raises(PlanningError, match=r"told at the start .* which \.pomdp cannot say") as caught:
         write_problem(model, tmp_path / "rover.pomdp")
@@ -182,7 +182,7 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("rover.pomdpx", replaced("<Instance>- -<", "<Instance>- - -<"), "58:30 AOS106 the Instance has 3"),
     ],
 )
-def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path: Path, name, change, finding):
+def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path, name, change, finding):
     broken = tmp_path / name
     broken.write_text(change((problems / name).read_text()))
     with pytest.raises(DocumentError) as caught:
@@ -192,7 +192,7 @@ def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path: Path, name, ch
     assert text.startswith(finding), text
 
 
-def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(problems: Path, tmp_path: Path):
+def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(problems: Path, tmp_path):
     broken = tmp_path / "rover.pomdpx"
     text = (problems / "rover.pomdpx").read_text()
     broken.write_text(text.replace("<Terminal>0.8</Terminal>", "<Terminal>0.7</Terminal>"))
@@ -200,7 +200,7 @@ def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(pr
         read_problem(broken)
 
 
-def test_too_many_states_are_told(problems: Path, tmp_path: Path):
+def test_too_many_states_are_told(problems: Path, tmp_path):
     (tmp_path / "wide.pomdpx").write_text(
         (problems / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>9999999<")
     )

@@ -24,7 +24,7 @@ def names(runs: Path) -> list[str]:
     return sorted(path.name for path in runs.iterdir() if not path.is_symlink())
 
 
-def test_the_newest_runs_stay_and_the_space_of_the_others_is_told(tmp_path: Path):
+def test_the_newest_runs_stay_and_the_space_of_the_others_is_told(tmp_path):
     runs = [run_of_day(tmp_path, day) for day in (3, 1, 4, 2)]
     again = run_of_day(tmp_path, 4)  # The second of its second.
     (tmp_path / "notes").mkdir()
@@ -37,7 +37,7 @@ def test_the_newest_runs_stay_and_the_space_of_the_others_is_told(tmp_path: Path
     assert RunDirectory.latest(tmp_path).path == again.path
 
 
-def test_the_latest_run_stays_although_the_clock_was_set_back_before_it(tmp_path: Path):
+def test_the_latest_run_stays_although_the_clock_was_set_back_before_it(tmp_path):
     for day in (3, 4):
         run_of_day(tmp_path, day)
     latest = run_of_day(tmp_path, 1)
@@ -45,7 +45,7 @@ def test_the_latest_run_stays_although_the_clock_was_set_back_before_it(tmp_path
     assert names(tmp_path) == [latest.path.name]
 
 
-def test_a_run_that_goes_on_stays_however_old_it_is(tmp_path: Path):
+def test_a_run_that_goes_on_stays_however_old_it_is(tmp_path):
     old = run_of_day(tmp_path, 1, is_over=False)
     over = run_of_day(tmp_path, 2)
     done = pruned(tmp_path, keep=0)
@@ -57,6 +57,6 @@ def test_a_run_that_goes_on_stays_however_old_it_is(tmp_path: Path):
     assert names(tmp_path) == []
 
 
-def test_a_start_that_came_to_nothing_is_removed_with_the_others(tmp_path: Path):
+def test_a_start_that_came_to_nothing_is_removed_with_the_others(tmp_path):
     RunDirectory.create(tmp_path, "tiger", 0).close()
     assert len(pruned(tmp_path, keep=0).removed) == 1

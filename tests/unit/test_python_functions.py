@@ -67,7 +67,7 @@ async def answer(adapter: PythonAdapter, path: str) -> Any:
     return await adapter.call(Call(ActivationId("m", 1), path, path, {}, 5.0))
 
 
-async def test_a_function_that_would_end_the_process_fails_its_call_and_the_next_one_runs(tmp_path: Path):
+async def test_a_function_that_would_end_the_process_fails_its_call_and_the_next_one_runs(tmp_path):
     names = ("leave", "leave_soon", "look_in_vain", "wave")
     adapter = adapter_of(tmp_path, **{name: name for name in names})
     await adapter.start()
@@ -93,7 +93,7 @@ async def test_a_function_that_would_end_the_process_fails_its_call_and_the_next
         ("Lost.reach", "cannot be made: OSError: no arm at /dev/ttyUSB0. It was raised at robot.py:20"),
     ],
 )
-async def test_a_class_that_cannot_be_made_is_the_users_mistake_at_its_line(tmp_path: Path, name, text):
+async def test_a_class_that_cannot_be_made_is_the_users_mistake_at_its_line(tmp_path, name, text):
     adapter = adapter_of(tmp_path, reach=name)
     with pytest.raises(DeployError) as refused:
         await adapter.start()
@@ -101,7 +101,7 @@ async def test_a_class_that_cannot_be_made_is_the_users_mistake_at_its_line(tmp_
     await end(adapter)
 
 
-async def test_a_class_is_made_with_the_host_only_where_it_asks_for_one(tmp_path: Path):
+async def test_a_class_is_made_with_the_host_only_where_it_asks_for_one(tmp_path):
     adapter = adapter_of(tmp_path, near="Near.reach", hosted="Hosted.reach")
     await adapter.start()
     assert await answer(adapter, "/near") == {"port": "/dev/ttyUSB0"}

@@ -227,7 +227,7 @@ WHOLE_FILES = [
 ]  # fmt: skip
 
 
-def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path: Path):
+def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path):
     for name, text in SDL.items():
         (tmp_path / "bundle" / name).parent.mkdir(exist_ok=True)
         (tmp_path / "bundle" / name).write_text(text)

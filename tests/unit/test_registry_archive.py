@@ -41,7 +41,7 @@ def refusal(path: Path) -> str:
 
 @pytest.mark.parametrize("form", ["tar", "gztar", "bztar", "xztar", "zip"])
 @pytest.mark.parametrize("is_folder_packed", [True, False])
-def test_a_packed_bundle_is_the_same_as_its_directory(bundles: Path, tmp_path: Path, form, is_folder_packed):
+def test_a_packed_bundle_is_the_same_as_its_directory(bundles: Path, tmp_path, form, is_folder_packed):
     bundle = bundles / "armadillo-finer"
     base = {"root_dir": bundles, "base_dir": bundle.name} if is_folder_packed else {"root_dir": bundle}
     path = Path(shutil.make_archive(str(tmp_path / "packed"), form, **base))
@@ -50,7 +50,7 @@ def test_a_packed_bundle_is_the_same_as_its_directory(bundles: Path, tmp_path: P
 
 
 @pytest.mark.parametrize("name", ["../out.sd", "/etc/out.sd", "a/../../out.sd", "a\\out.sd"])
-def test_an_entry_that_leads_out_is_refused(tmp_path: Path, name):
+def test_an_entry_that_leads_out_is_refused(tmp_path, name):
     assert refusal(tar_of(tmp_path / "b.tgz", file(name))) == f"the entry {name!r} leads out of the archive"
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         archive.writestr(name, "project: p")
@@ -58,13 +58,13 @@ def test_an_entry_that_leads_out_is_refused(tmp_path: Path, name):
 
 
 @pytest.mark.parametrize("kind", [tarfile.SYMTYPE, tarfile.LNKTYPE])
-def test_a_link_is_refused(tmp_path: Path, kind):
+def test_a_link_is_refused(tmp_path, kind):
     assert (
         refusal(tar_of(tmp_path / "b.tgz", link("a.sd", "/etc/passwd", kind))) == "the entry 'a.sd' is a link"
     )
 
 
-def test_a_link_in_a_zip_file_is_refused(tmp_path: Path):
+def test_a_link_in_a_zip_file_is_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "b.zip", "w") as archive:
         member = zipfile.ZipInfo("a.sd")
         member.external_attr = 0o120777 << 16
@@ -72,21 +72,21 @@ def test_a_link_in_a_zip_file_is_refused(tmp_path: Path):
     assert refusal(tmp_path / "b.zip") == "the entry 'a.sd' is a link"
 
 
-def test_a_device_is_refused(tmp_path: Path):
+def test_a_device_is_refused(tmp_path):
     assert (
         refusal(tar_of(tmp_path / "b.tgz", link("a.sd", "", tarfile.CHRTYPE)))
         == "the entry 'a.sd' is a device"
     )
 
 
-def test_too_large_an_entry_is_refused_before_it_is_unpacked(tmp_path: Path):
+def test_too_large_an_entry_is_refused_before_it_is_unpacked(tmp_path):
     zeros = bytes(MAX_BUNDLE_BYTES + 1)
     path = tar_of(tmp_path / "b.tgz", file("a.sd", zeros))
     assert path.stat().st_size < 20_000
     assert f"has {len(zeros)} bytes" in refusal(path)
 
 
-def test_too_much_in_all_is_refused(tmp_path: Path):
+def test_too_much_in_all_is_refused(tmp_path):
     half = bytes(MAX_BUNDLE_BYTES // 2 + 1)
     with zipfile.ZipFile(tmp_path / "b.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("a.sd", half)
@@ -94,23 +94,23 @@ def test_too_much_in_all_is_refused(tmp_path: Path):
     assert "bytes of documents" in refusal(tmp_path / "b.zip")
 
 
-def test_too_many_entries_are_refused(tmp_path: Path):
+def test_too_many_entries_are_refused(tmp_path):
     assert "entries" in refusal(tar_of(tmp_path / "b.tgz", *(file(f"{n}.sd") for n in range(1001))))
 
 
-def test_two_bundles_in_one_archive_are_refused(tmp_path: Path):
+def test_two_bundles_in_one_archive_are_refused(tmp_path):
     path = tar_of(tmp_path / "b.tgz", file("one/a.sd"), file("two/b.sd"))
     assert refusal(path) == "documents in several folders: one, two"
 
 
 @pytest.mark.parametrize("data", [b"", b"no archive", b"PK\x03\x04 broken", b"\x1f\x8b\x08 broken"])
 @pytest.mark.parametrize("name", ["b.tar", "b.tar.gz", "b.zip", "b.tar.xz"])
-def test_what_is_no_archive_is_said_to_be_none(tmp_path: Path, name, data):
+def test_what_is_no_archive_is_said_to_be_none(tmp_path, name, data):
     (tmp_path / name).write_bytes(data)
     assert refusal(tmp_path / name).startswith("the archive cannot be read: ")
 
 
-def test_other_files_and_hidden_ones_are_left_out(tmp_path: Path):
+def test_other_files_and_hidden_ones_are_left_out(tmp_path):
     files, remarks = read_archive(tar_of(tmp_path / "b.tgz", file("a.sd"), file("README.md"), file(".b.sd")))
     assert list(files) == ["a.sd"]
     assert [remark.span.file for remark in remarks] == ["README.md"]

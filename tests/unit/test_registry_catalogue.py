@@ -70,7 +70,7 @@ def test_the_digest_depends_on_names_and_bytes_and_not_on_the_order():
     assert bundle_digest(files, files) != bundle_digest({"a": b"12", "b": b""}, files)
 
 
-def test_revisions_are_numbered_and_kept(tmp_path: Path, files: dict[str, bytes]):
+def test_revisions_are_numbered_and_kept(tmp_path, files: dict[str, bytes]):
     path = tmp_path / "catalogue.db"
     catalogue = Catalogue.open(path)
     assert catalogue.current("armadillo") is None
@@ -86,7 +86,7 @@ def test_revisions_are_numbered_and_kept(tmp_path: Path, files: dict[str, bytes]
     catalogue.close()
 
 
-def test_a_revision_that_cannot_be_stored_whole_is_not_stored_at_all(tmp_path: Path):
+def test_a_revision_that_cannot_be_stored_whole_is_not_stored_at_all(tmp_path):
     catalogue = Catalogue.open(tmp_path / "catalogue.db")
     catalogue.store("p", "d", {"a": b"1"}, (), 1)
     not_bytes: Any = None
@@ -97,14 +97,14 @@ def test_a_revision_that_cannot_be_stored_whole_is_not_stored_at_all(tmp_path: P
     catalogue.close()
 
 
-def test_a_file_that_is_no_catalogue_is_refused_with_its_name(tmp_path: Path):
+def test_a_file_that_is_no_catalogue_is_refused_with_its_name(tmp_path):
     path = tmp_path / "catalogue.db"
     path.write_bytes(b"not a database, but long enough to be looked at" * 10)
     with pytest.raises(StorageError, match="catalogue"):
         Catalogue.open(path)
 
 
-def test_a_folder_that_is_not_there_is_an_error_and_folders_inside_are_left_out(tmp_path: Path):
+def test_a_folder_that_is_not_there_is_an_error_and_folders_inside_are_left_out(tmp_path):
     loaded = load_bundle(tmp_path / "absent")
     assert [diagnostic.code for diagnostic in loaded.diagnostics] == ["AOS101"]
     (tmp_path / "inner.sd").mkdir()

@@ -25,9 +25,7 @@ def catalogue(tmp_path: Path) -> Catalogue:
     return Catalogue.open(tmp_path / "catalogue.db")
 
 
-async def test_a_push_reads_each_file_once(
-    files: dict[str, bytes], catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_push_reads_each_file_once(files: dict[str, bytes], catalogue: Catalogue, monkeypatch):
     read: Counter[str] = Counter()
     plain = reading._read
 
@@ -52,7 +50,7 @@ async def test_a_push_reads_each_file_once(
 
 
 async def test_a_project_that_is_too_large_is_refused_before_it_is_compiled(
-    files: dict[str, bytes], catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+    files: dict[str, bytes], catalogue: Catalogue, monkeypatch
 ):
     too_large = Diagnostic(Severity.ERROR, "AOS120", "too large", Span("doors"))
     monkeypatch.setattr(intake_module, "_too_large_for_the_bus", lambda _: too_large)

@@ -75,7 +75,7 @@ def test_what_is_no_version_is_a_warning(files: dict[str, bytes]):
     assert (str(warning.span), warning.is_error) == ("pick.sd:2:10", False)
 
 
-def test_the_history_tells_versions(files: dict[str, bytes], tmp_path: Path):
+def test_the_history_tells_versions(files: dict[str, bytes], tmp_path):
     loaded = load_files(files | sdl(files, "1.2"))
     catalogue = Catalogue.open(tmp_path / "catalogue.db")
     catalogue.store("armadillo", loaded.digest, {"pick.sd": b"", "a.ef": b""}, (), 1, loaded.versions)
@@ -84,7 +84,7 @@ def test_the_history_tells_versions(files: dict[str, bytes], tmp_path: Path):
     assert entry.versions == {"pick.sd": "1.2"}
 
 
-def test_a_catalogue_of_the_first_schema_is_taken_over(tmp_path: Path):
+def test_a_catalogue_of_the_first_schema_is_taken_over(tmp_path):
     path = tmp_path / "catalogue.db"
     catalogue = Catalogue.open(path)
     catalogue.store("p", "d", {"a.ef": b"1"}, (), 1)

@@ -2,7 +2,6 @@
 
 import shlex
 import socket
-from pathlib import Path
 
 import pytest
 
@@ -52,9 +51,7 @@ def test_the_reason_is_told_where_ssh_has_its_connection_made():
         ("addressfamily inet6", False),
     ],
 )
-def test_a_way_of_the_users_own_to_a_host_is_left_to_ssh(
-    configuration, is_ours, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_way_of_the_users_own_to_a_host_is_left_to_ssh(configuration, is_ours, tmp_path, monkeypatch):
     ssh = tmp_path / "ssh"
     ssh.write_text(f"#!/bin/sh\ntest \"$1 $2\" = '-G arm' && echo '{configuration}'\n")
     ssh.chmod(0o755)
@@ -62,7 +59,7 @@ def test_a_way_of_the_users_own_to_a_host_is_left_to_ssh(
     assert bool(dialled("arm")) == is_ours
 
 
-def test_a_host_that_refuses_is_tried_until_it_answers(monkeypatch: pytest.MonkeyPatch):
+def test_a_host_that_refuses_is_tried_until_it_answers(monkeypatch):
     with socket.socket() as host:
         host.bind(("127.0.0.1", 0))
         addresses = socket.getaddrinfo(*host.getsockname(), type=socket.SOCK_STREAM)
@@ -110,7 +107,7 @@ def test_nothing_else_is_a_host(host):
     assert not HOST.fullmatch(host)
 
 
-def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Path):
+def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path):
     settings = tmp_path / "arm.json"
     settings.write_text('{"it": "isn\'t $HOME"}')
     variables = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}

@@ -113,14 +113,14 @@ def test_an_unknown_type_names_the_file_to_add(types: RosTypes):
     assert raised.value.code == "AOS806"
 
 
-def test_a_type_that_a_file_uses_and_nobody_defines_is_named_too(tmp_path: Path):
+def test_a_type_that_a_file_uses_and_nobody_defines_is_named_too(tmp_path):
     (tmp_path / "lab" / "msg").mkdir(parents=True)
     (tmp_path / "lab" / "msg" / "Shelf.msg").write_text("Cup[] cups\n")
     with pytest.raises(DeployError, match=r"lab/msg/Cup, which .*Shelf\.msg uses, .*lab/msg/Cup\.msg"):
         RosTypes("jazzy", [tmp_path]).hash("lab/msg/Shelf")
 
 
-def test_a_file_that_is_no_interface_is_an_error_with_its_path(tmp_path: Path):
+def test_a_file_that_is_no_interface_is_an_error_with_its_path(tmp_path):
     (tmp_path / "lab" / "msg").mkdir(parents=True)
     (tmp_path / "lab" / "msg" / "Bad.msg").write_text("(no definition)\n")
     with pytest.raises(DeployError, match=r"Bad\.msg is not an interface file of ROS"):
@@ -132,7 +132,7 @@ def test_an_unknown_distribution_is_an_error_that_lists_the_known():
         RosTypes("noetic")
 
 
-def test_files_are_found_in_packages_and_one_by_one(tmp_path: Path):
+def test_files_are_found_in_packages_and_one_by_one(tmp_path):
     found = {str(name) for name in definitions_in([INTERFACES])}
     assert found >= {"lab_msgs/msg/Cup", "lab_msgs/srv/pick_unknown", "example_interfaces/action/Fibonacci"}
     loose = tmp_path / "lab_msgs" / "Cup.msg"

@@ -103,7 +103,7 @@ def test_gsdl_documents_have_their_own_header_and_kinds(root: Path):
 
 
 @pytest.mark.parametrize("kind", ["Environment", "PLP", "Glue", "EnvironmentGlue"])
-def test_schema_and_reader_know_the_same_keys(kind, monkeypatch: pytest.MonkeyPatch):
+def test_schema_and_reader_know_the_same_keys(kind, monkeypatch):
     known: set[str] = set()
     finish = Record.finish
 

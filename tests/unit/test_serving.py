@@ -25,7 +25,7 @@ def deployment(folder: Path, root: Path, serve: str) -> Deployment:
     return read_deploy_file(path)
 
 
-def test_types_are_written_shortly_or_in_full(root: Path, tmp_path: Path):
+def test_types_are_written_shortly_or_in_full(root: Path, tmp_path):
     program = serving_program(
         deployment(
             tmp_path,
@@ -63,7 +63,7 @@ def test_types_are_written_shortly_or_in_full(root: Path, tmp_path: Path):
         ("serve: {types: {/pick: Trigger}}\n", "ros2", "'Trigger' is not the name of a ROS interface"),
     ],
 )
-def test_mistakes_are_said_with_their_place(root: Path, tmp_path: Path, serve, kind, message):
+def test_mistakes_are_said_with_their_place(root: Path, tmp_path, serve, kind, message):
     with pytest.raises(DeployError, match=message):
         serving_program(deployment(tmp_path, root, serve), kind)
 
@@ -114,9 +114,7 @@ def test_anything_else_is_an_error_that_shows_how_to_write_it(target):
 
 
 @pytest.mark.parametrize("kind", ["ros2", "dds", "ros1"])
-def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
-    kind, root: Path, tmp_path: Path
-):
+def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(kind, root: Path, tmp_path):
     bundle = root / "deploy" / "bundles" / "armadillo-finer"
     command = ["new", "adapter", kind, "--in", str(bundle), "--to", str(tmp_path)]
     made = aos(*command)
@@ -128,7 +126,7 @@ def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
     assert "`/pick`: the type that the robot says" in (tmp_path / "interfaces" / "README.md").read_text()
 
 
-def test_an_example_brings_its_interfaces_along(tmp_path: Path):
+def test_an_example_brings_its_interfaces_along(tmp_path):
     made = aos("new", "example", "armadillo-robot", "--in", tmp_path / "robot")
     assert made.exit_code == 0, made.output
     assert (tmp_path / "robot" / "interfaces" / "armadillo_skills" / "srv" / "Navigate.srv").is_file()

@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +14,7 @@ _LONG_ENOUGH_S = 0.3
 
 
 @pytest.mark.parametrize("is_there", [True, False])
-async def test_a_file_of_an_earlier_run_does_not_count_and_one_that_is_written_does(tmp_path: Path, is_there):
+async def test_a_file_of_an_earlier_run_does_not_count_and_one_that_is_written_does(tmp_path, is_there):
     pid, log, ready = tmp_path / "pid", tmp_path / "log", ReadyPart(file="pid")
     if is_there:
         pid.write_text("1")

@@ -117,7 +117,7 @@ def test_a_function_that_draws_ends_where_its_draws_say(model: ScriptedModel):
     assert played.observations == ["loose"]
 
 
-def test_all_dialects_say_the_same(tmp_path: Path):
+def test_all_dialects_say_the_same(tmp_path):
     assert "  | bool slips() { return slips(1); }" in outline(project_of(files()))
     json_texts, _ = say_the_same(files())
     assert json.loads(json_texts["environment.ef.json"])["SharedCode"] == SHARED.split("\n")

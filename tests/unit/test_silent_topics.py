@@ -2,12 +2,10 @@
 
 import logging
 
-import pytest
-
 from aos_middleware.robot.silent_topics import CALLS, SilentTopics
 
 
-def test_a_topic_on_which_nothing_comes_is_told_once_with_the_nearest_name(caplog: pytest.LogCaptureFixture):
+def test_a_topic_on_which_nothing_comes_is_told_once_with_the_nearest_name(caplog):
     silent = SilentTopics()
     for _ in range(2 * CALLS):
         silent.take_call({"/gripper_stat": False}, ["gripper_state", "level"])
@@ -18,7 +16,7 @@ def test_a_topic_on_which_nothing_comes_is_told_once_with_the_nearest_name(caplo
     assert caplog.records[0].levelno == logging.WARNING
 
 
-def test_a_topic_that_has_spoken_is_not_told(caplog: pytest.LogCaptureFixture):
+def test_a_topic_that_has_spoken_is_not_told(caplog):
     silent = SilentTopics()
     silent.take_call({"/level": True}, ["level"])
     for _ in range(2 * CALLS):

@@ -83,7 +83,7 @@ def spans_of(got: Collected, name: str) -> list[Any]:
     return [span for _, span in got.spans.values() if span.name == name]
 
 
-def test_a_mission_is_one_trace_of_its_decisions_activations_and_updates(tmp_path: Path):
+def test_a_mission_is_one_trace_of_its_decisions_activations_and_updates(tmp_path):
     run = tmp_path / "a-run"
     write(run, decided(1), observed(1), decided(2), observed(2, "failed"), end())
     with collector() as got:
@@ -117,9 +117,7 @@ def test_an_adapter_knows_the_span_of_its_call_without_being_told():
     assert (trace, parent) == (trace_id("a-run"), span_id("a-run", "activation", 2))
 
 
-def test_spans_are_sent_once_a_collector_takes_them_and_not_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_spans_are_sent_once_a_collector_takes_them_and_not_again(tmp_path, monkeypatch):
     monkeypatch.setattr(sending, "_BATCH", 2)
     run = tmp_path / "a-run"
     write(run, decided(1), observed(1))
@@ -137,7 +135,7 @@ def test_spans_are_sent_once_a_collector_takes_them_and_not_again(
     assert root.status.message == "the engine has gone"
 
 
-def test_a_collector_that_is_not_there_is_an_error_that_says_what_to_do(tmp_path: Path):
+def test_a_collector_that_is_not_there_is_an_error_that_says_what_to_do(tmp_path):
     run = tmp_path / "a-run"
     write(run, decided(1))
     with collector() as got:
@@ -147,7 +145,7 @@ def test_a_collector_that_is_not_there_is_an_error_that_says_what_to_do(tmp_path
     assert "OTLP over HTTP" in caught.value.hint
 
 
-def test_a_collector_where_nobody_listens_is_told_at_once(tmp_path: Path):
+def test_a_collector_where_nobody_listens_is_told_at_once(tmp_path):
     run = tmp_path / "a-run"
     write(run, decided(1))
     with socket.socket() as taken:
@@ -170,7 +168,7 @@ def deploy_file(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_missing_package_is_told_with_what_to_type(deploy_file: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_missing_package_is_told_with_what_to_type(deploy_file: Path, monkeypatch):
     monkeypatch.setattr(otlp, "_NEEDS", ("opentelemetry_that_nobody_has.sdk",))
     with pytest.raises(DeployError) as caught:
         check_needed_here(read_deploy_file(deploy_file))

@@ -28,7 +28,7 @@ def forbid_compiling(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Environment, "_parse", refuse)
 
 
-def test_what_was_compiled_is_used_by_the_next_process(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_what_was_compiled_is_used_by_the_next_process(folder: Path, monkeypatch):
     assert greeting(folder) == "Hello robot\n"
     (kept,) = (folder / "__pycache__").iterdir()
     forbid_compiling(monkeypatch)
@@ -57,7 +57,7 @@ def test_where_nothing_can_be_written_templates_are_compiled_each_time(folder: P
     assert greeting(folder) == "Hello robot\n"
 
 
-def test_nothing_is_written_where_python_writes_nothing(folder: Path, monkeypatch: pytest.MonkeyPatch):
+def test_nothing_is_written_where_python_writes_nothing(folder: Path, monkeypatch):
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     assert greeting(folder) == "Hello robot\n"
     assert not (folder / "__pycache__").exists()

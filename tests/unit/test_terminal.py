@@ -7,9 +7,7 @@ import pytest
 from aos_deploy import terminal
 
 
-def test_long_work_tells_a_log_now_and_then_how_far_it_is(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
+def test_long_work_tells_a_log_now_and_then_how_far_it_is(capsys, monkeypatch):
     now_s = 0.0
     monkeypatch.setattr("time.monotonic", lambda: now_s)
     with terminal.waiting("deciding") as tell:

@@ -9,7 +9,7 @@ from unit.test_build import emitted_skill
 from aos_solver.building.thorough_builds import ThoroughBuilds
 
 
-def test_builds_that_are_ended_twice_leave_no_process_behind(tmp_path: Path):
+def test_builds_that_are_ended_twice_leave_no_process_behind(tmp_path):
     for turns in range(0, 120, 3):
         asyncio.run(_ended_twice(tmp_path / str(turns), turns))
     gc.collect()  # Python warns here of processes that nobody has waited for, and the test fails.

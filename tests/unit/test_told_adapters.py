@@ -40,7 +40,7 @@ def settings_of(words: list[str], environment: dict[str, str]) -> AdapterSetting
     return settings
 
 
-def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str], tmp_path: Path):
+def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str], tmp_path):
     settings = settings_of(["my_arm.adapter:Arm", "port=/dev/ttyUSB0", "baud=9600", "slow=true"], written)
     assert (settings.adapter, settings.folder) == ("my_arm.adapter:Arm", str(Path.cwd()))
     assert settings.bind == {"/pick": Binding(target="grasp")}
@@ -54,7 +54,7 @@ def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]):
     assert (settings.adapter, settings.folder) == ("arm:Arm", str(Path.cwd() / "drivers"))
 
 
-def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+def test_started_by_hand_it_serves_what_it_has(monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     settings = settings_of(["arm:Arm"], HERE)
     assert settings.serves_others
@@ -64,18 +64,14 @@ def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, 
     assert Path(settings.run_dir).is_dir()
 
 
-def test_on_another_host_it_keeps_its_ledger_there(
-    written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-):
+def test_on_another_host_it_keeps_its_ledger_there(written: dict[str, str], monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     settings = settings_of(["arm:Arm"], {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"})
     assert settings.run_dir == str(tmp_path / f"aos-{os.getuid()}" / "20260101T000000Z-fetch")
     assert settings.endpoint == "tcp/127.0.0.1:23456"
 
 
-def test_nobody_else_has_the_folder_of_the_ledger(
-    written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-):
+def test_nobody_else_has_the_folder_of_the_ledger(written: dict[str, str], monkeypatch, tmp_path):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     folder, there = tmp_path / f"aos-{os.getuid()}", {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"}
     folder.mkdir(mode=0o777)
@@ -91,9 +87,7 @@ def test_a_settings_file_is_left_to_the_service():
     assert settings_told(["arm.json"], HERE) is None
 
 
-def test_an_adapter_whose_file_is_no_python_is_told_with_its_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_an_adapter_whose_file_is_no_python_is_told_with_its_line(tmp_path, monkeypatch):
     (tmp_path / "unfinished_arm.py").write_text(
         "class Arm:\n    def start(self):\n        await self.serve()\n"
     )
@@ -126,9 +120,7 @@ class Arm:
         ("Leg", "the adapter odd_arms:Leg cannot be loaded: module 'odd_arms' has no attribute 'Leg'"),
     ],
 )
-def test_a_class_that_is_no_adapter_is_told_before_it_serves(
-    name, message, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_class_that_is_no_adapter_is_told_before_it_serves(name, message, tmp_path, monkeypatch):
     (tmp_path / "odd_arms.py").write_text(ODD_ADAPTERS)
     monkeypatch.syspath_prepend(tmp_path)
     host: Any = None

@@ -10,7 +10,7 @@ from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.simulation import SimulatedRun
 
 
-def test_what_a_policy_never_chooses_has_a_dash_for_its_value(capsys: pytest.CaptureFixture[str]):
+def test_what_a_policy_never_chooses_has_a_dash_for_its_value(capsys):
     values = [ActionValue("open", 2.5, 0, 0.0), ActionValue("wait", -math.inf, 0, 0.0)]
     print_values(values, 0, "the policy")
     table = capsys.readouterr().out
@@ -19,7 +19,7 @@ def test_what_a_policy_never_chooses_has_a_dash_for_its_value(capsys: pytest.Cap
     assert "wait" in table
 
 
-def test_what_is_proven_of_values_is_rounded_outwards(capsys: pytest.CaptureFixture[str]):
+def test_what_is_proven_of_values_is_rounded_outwards(capsys):
     values = [
         ActionValue("open", 2.5, 10, 0.1, -1.00004, 3.00004),
         ActionValue("wait", 0.25, 10, 0.1, 0.25 - 1e-12, 0.25 + 1e-12),
@@ -33,9 +33,7 @@ def test_what_is_proven_of_values_is_rounded_outwards(capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("columns", ["30", "40", "60"])
-def test_a_narrow_terminal_cuts_no_value(
-    columns, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
+def test_a_narrow_terminal_cuts_no_value(columns, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
     print_values([ActionValue("take(side=right_side)", -14.798, 1, 0.0)], 30, "")
     table = capsys.readouterr().out
@@ -45,9 +43,7 @@ def test_a_narrow_terminal_cuts_no_value(
 
 
 @pytest.mark.parametrize("columns", ["50", "100"])
-def test_what_missions_did_stands_below_a_narrow_table(
-    columns, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-):
+def test_what_missions_did_stands_below_a_narrow_table(columns, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", columns)
     run = SimulatedRun(7, -1.0, -1.0, Ending.STEP_LIMIT, 1, ("listen",), ("tiger_left",))
     print_runs([run], {"runs": 1, "mean_discounted_return": -1, "mean_steps": 1}, has_goals=False)

@@ -24,7 +24,7 @@ def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path):
         ("kind: armadillo", "", "has no `kind`. Give one of armadillo"),
     ],
 )
-def test_a_mistake_is_named(root: Path, tmp_path: Path, old, new, complaint):
+def test_a_mistake_is_named(root: Path, tmp_path, old, new, complaint):
     text = (root / "deploy/worlds/armadillo.yaml").read_text()
     assert old in text
     path = tmp_path / "world.yaml"
@@ -34,6 +34,6 @@ def test_a_mistake_is_named(root: Path, tmp_path: Path, old, new, complaint):
     assert "world.yaml" in str(error.value)
 
 
-def test_a_missing_world_is_named(tmp_path: Path):
+def test_a_missing_world_is_named(tmp_path):
     with pytest.raises(DeployError, match=r"nowhere\.yaml"):
         load_world_file(tmp_path / "nowhere.yaml")

@@ -22,9 +22,7 @@ pytestmark = pytest.mark.physics
         ("armadillo", "misplaced: 0.09", "misplaced: .nan", "$.tables[...].can.misplaced"),
     ],
 )
-def test_numbers_that_cannot_be_are_told_with_their_place(
-    root: Path, tmp_path: Path, world, before, after, place
-):
+def test_numbers_that_cannot_be_are_told_with_their_place(root: Path, tmp_path, world, before, after, place):
     text = (root / f"deploy/worlds/{world}.yaml").read_text()
     assert before in text
     (tmp_path / "world.yaml").write_text(text.replace(before, after))
