@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from test_reading_rules import REFUSED, WARNED, WHOLE_FILES, Rule, bundle_of, found_by
+from test_reading_rules import REFUSED, WARNED, WHOLE_FILES
 
 from aos_deploy.runs.directory import RunDirectory
 from aos_language.load import load_files
@@ -15,20 +15,6 @@ from aos_protocol.errors import CODES, BusError, DeployError, PlanningError
 from aos_protocol.messages import Envelope
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 from aos_solver.offline.solving import SolvingLimits, solve
-
-MORE_RULES = [
-    Rule("room.ef", "state_variable: «→int §spare\nstate_variable: »Room", "AOS133"),
-    Rule("go glue.json", '§"«FromROSServiceResponse": true→RosParameter": "/ok"»', "AOS124"),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("rule", MORE_RULES, ids=lambda rule: rule.code)
-def test_a_mistake_of_this_kind_is_told_at_its_place(rule):
-    files, place = bundle_of(rule)
-    loaded = load_files(files)
-    assert (rule.code, place) in [(finding.code, finding.span) for finding in loaded.diagnostics], found_by(
-        loaded
-    )
 
 
 def test_a_bundle_beyond_the_limits_is_refused():
@@ -63,7 +49,7 @@ def test_runs_that_cannot_be_written_are_told(tmp_path):
 
 
 def test_no_code_of_the_table_is_left_without_a_provocation(root: Path):
-    provoked = {rule.code for rule in (*WARNED, *REFUSED, *MORE_RULES)}
+    provoked = {rule.code for rule in (*WARNED, *REFUSED)}
     provoked |= {whole.code for whole in WHOLE_FILES} | {"AOS120", "AOS302", "AOS603", "AOS805"}
     this_file = Path(__file__)
     files = ("**/*.py", "data/mistakes.toml", "golden/documents/*.txt")

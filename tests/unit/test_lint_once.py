@@ -4,6 +4,8 @@ import json
 
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
+from marked_change import changed
+from test_reading_rules import JSON
 from texts import encoded
 
 from aos_language.load import load_files
@@ -100,28 +102,14 @@ def test_code_that_uses_a_variable_with_a_refused_name_is_not_wrong_as_well():
 
 
 def test_a_number_that_cannot_be_read_hides_no_other_mistake_and_brings_no_remark():
-    header = {"Project": "hall", "Name": "environment", "Type": "Environment"}
-    special = {"StateConditionCode": "state.second.y == 3", "Reward": "much", "IsGoalState": True}
-    environment = {
-        "PlpMain": header,
-        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
-        "GlobalVariableTypes": [],
-        "GlobalVariablesDeclaration": [{"Name": "second", "Type": "int", "Default": "1"}],
-        "SpecialStates": [special],
-    }
-    skill = {
-        "PlpMain": {**header, "Name": "walk", "Type": "PLP"},
-        "Preconditions": {
-            "GlobalVariablePreconditionAssignments": [
-                {"AssignmentCode": "__meetPrecondition = state.second > 0;"}
-            ],
-            "ViolatingPreconditionPenalty": "a lot",
-        },
-        "DynamicModel": {"NextStateAssignments": [{"AssignmentCode": "state__.second = 3;"}]},
-    }
-    files = {"environment.json": json.dumps(environment), "walk.json": json.dumps(skill)}
-    told = [finding.code for finding in load_files(encoded(files)).diagnostics]
-    assert sorted(told) == ["AOS106", "AOS106", "AOS110"]
+    files = encoded(JSON)
+    for file, change in (
+        ("room.json", '"Reward": «5.0→"much"»'),
+        ("room.json", "state.«at→att» == eLab"),
+        ("go.json", '«-2→"a lot"»\n'),
+    ):
+        files, _ = changed(files, file, change)
+    assert sorted(finding.code for finding in load_files(files).diagnostics) == ["AOS106", "AOS106", "AOS110"]
 
 
 def test_a_second_value_for_a_field_and_a_misspelt_type_of_a_mapping_are_told():

@@ -1,6 +1,5 @@
 """The answers of the checks to words and signs that a newcomer writes."""
 
-import json
 import re
 
 import pytest
@@ -133,21 +132,6 @@ def test_a_skill_that_may_always_be_used_needs_no_penalty():
     assert any("AOS147" in told for told in finding_texts(skill=skill))
     always = re.sub(r"__meetPrecondition = .*", "__meetPrecondition = true;", skill)
     assert not any("AOS147" in told for told in finding_texts(skill=always))
-
-
-def test_a_kind_of_type_in_capitals_is_read_and_no_type_is_unknown():
-    types = [{"TypeName": "Side", "Type": "Enum", "EnumValues": ["Left", "Right"]}]
-    variables = [{"Name": "side", "Type": "Side", "Default": "Right"}]
-    environment = {
-        "PlpMain": {"Project": "hall", "Name": "environment", "Type": "Environment"},
-        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
-        "GlobalVariableTypes": types,
-        "GlobalVariablesDeclaration": variables,
-        "SpecialStates": [],
-    }
-    skill = "project: hall\ndynamic_model:\nstate__.side = Left;\n"
-    files = {"environment.json": json.dumps(environment).encode(), "turn.sd": skill.encode()}
-    assert [f.message for f in load_files(files).diagnostics if f.code != "AOS139"] == ["the kind Enum"]
 
 
 def test_own_variables_may_be_called_like_names_of_the_language_without_underscores():

@@ -97,6 +97,7 @@ WARNED = [
     Rule("room.json", '§«→// what counts\n»"SpecialStates"', "AOS127"),
     Rule("room.json", '§«→/* what\ncounts */»"SpecialStates"', "AOS127"),
     Rule("room.json", '"Default": §«"eHall"→0»},', "AOS127"),
+    Rule("room.json", '"Type": "§«enum→Enum»"', "AOS127", title="a kind of type in capitals"),
     Rule("go.json", '"Type": "tDoor"«→, "§s": 1»}', "AOS102"),
     Rule("go.json",
          '"eBadly"«→, "eNever"»]},\n         "AssignmentCode": "end = AOS.SampleDiscrete(tEnd, §{', "AOS122"),
@@ -106,6 +107,7 @@ WARNED = [
     Rule("go glue.json", '§«""→true»}', "AOS127"),
     Rule("go glue.json", '"ModuleResponse": {§«→"EnumResponse": [], »', "AOS102"),
     Rule("room.ef", "is_open §«→= »true", "AOS127"),
+    Rule("room.ef", "state_variable: «→int §spare\nstate_variable: »Room", "AOS133"),
     Rule("go.sd", "«→int arrived = 1;\n»__moduleResponse = §", "AOS126"),
     Rule("go.sd", "-2§«→;»\n", "AOS127"),
     Rule("go.am", "srv: Go«→\nimports: §from go.srv import Go»", "AOS127"),
@@ -125,6 +127,7 @@ REFUSED = [
     Rule("go.json", "AOS.SampleDiscrete(§«tEnd→tEdn»", "AOS110"),
     Rule("go.sd", "parameter: Door §door«→-2»", "AOS126"),
     Rule("go glue.json", '«"ok"→["ok", "§) or (ok"]»}', "AOS121"),
+    Rule("go glue.json", '§"«FromROSServiceResponse": true→RosParameter": "/ok"»', "AOS124"),
     Rule("room.ef", "is_open« true→[2]»", "AOS104"),
     Rule("go.am", "«→    ok = 1\n  »ok = __input", "AOS121"),
 ]  # fmt: skip
