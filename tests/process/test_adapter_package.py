@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from commands import aos
 from installed import built_wheel, install
 from processes import COMMAND_S
 
@@ -84,8 +85,8 @@ def test_an_adapter_of_it_runs_a_mission(
 ) -> None:
     python = request.getfixturevalue(which)
     monkeypatch.chdir(tmp_path)
-    for words in (["new", "project", "fetch"], ["new", "adapter", "class", "--in", "fetch"]):
-        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=COMMAND_S)
+    aos("new", "project", "fetch")
+    aos("new", "adapter", "class", "--in", "fetch")
     deploy = Path("fetch.yaml")
     command = json.dumps([str(python), "-m", "aos_runtime.adapters", "fetch_robot.py:Robot"])
     text = deploy.read_text()

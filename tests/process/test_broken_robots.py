@@ -1,10 +1,12 @@
 """Whole systems of the tutorial's project whose robots are broken: docs/when-a-skill-fails.md."""
 
+import contextlib
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from commands import aos
 from processes import COMMAND_S
 from walk import steps_of
 
@@ -50,16 +52,12 @@ bind:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """The tutorial's project with its skill `ask`."""
-    run(["aos", "new", "project", "fetch"], tmp_path)
+    with contextlib.chdir(tmp_path):
+        aos("new", "project", "fetch")
     (asks,) = (step.text for step in steps_of() if step.kind == "file: fetch/ask.sd")
     (tmp_path / "fetch" / "ask.sd").write_text(asks)
     (tmp_path / "robot.py").write_text(ROBOT)
     return tmp_path
-
-
-def run(command: list[str], folder: Path) -> int:
-    program = [str(BIN / command[0]), *command[1:]]
-    return subprocess.run(program, cwd=folder, capture_output=True, timeout=COMMAND_S, check=False).returncode
 
 
 def mission(project: Path, text: str = "", **functions: str) -> tuple[int, Summary]:
@@ -68,7 +66,8 @@ def mission(project: Path, text: str = "", **functions: str) -> tuple[int, Summa
         f"  /{skill}: {{python: robot.py:{function}}}\n" for skill, function in functions.items()
     )
     (project / "fetch.yaml").write_text(DEPLOY + binding + text)
-    code = run(["aos-up", "fetch.yaml", "--plain"], project)
+    up = [BIN / "aos-up", "fetch.yaml", "--plain"]
+    code = subprocess.run(up, cwd=project, capture_output=True, timeout=COMMAND_S).returncode
     summary = RunDirectory.latest(project / "runs").read_summary()
     assert summary is not None
     return code, summary

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from commands import aos
 from processes import COMMAND_S
 from ssh_host import refusing_ssh, slow_stand_in, ssh_server, stand_in
 
@@ -20,8 +21,8 @@ FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A new project with an adapter that is a program."""
     monkeypatch.chdir(tmp_path)
-    for command in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
-        subprocess.run([BIN / "aos", *command], check=True, capture_output=True)
+    aos("new", "project", "fetch")
+    aos("new", "adapter", "command", "--in", "fetch")
     # The Python of the other host is the one that has Zenoh.
     monkeypatch.setenv("PATH", f"{BIN}{os.pathsep}{os.environ['PATH']}")
 
@@ -68,13 +69,6 @@ def left_behind(folder: Path) -> list[str]:
     return [command for command in found if "fetch_robot" in command or "sleep 1000" in command]
 
 
-def test_a_program_on_another_host_runs_a_mission_and_nothing_of_it_stays(ssh: str, tmp_path: Path) -> None:
-    status, said = up(ssh, f"[{sys.executable}, fetch_robot.py]", tmp_path)
-    assert status == 0, said
-    assert "mission ended: the goal is reached" in said
-    assert left_behind(tmp_path) == []
-
-
 def test_our_services_may_be_ready_before_it_is_known_how_to_dial_the_other_host(tmp_path: Path) -> None:
     status, said = up(slow_stand_in(tmp_path), f"[{sys.executable}, fetch_robot.py]", tmp_path)
     assert status == 0, said
@@ -101,7 +95,7 @@ def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path) -> None:
     assert "See that it works by hand, without a password: ssh robot@arm true" in said
 
 
-def test_a_program_on_another_host_is_ready_by_what_it_prints_and_ends_with_the_run(
+def test_programs_on_another_host_run_a_mission_are_ready_by_what_they_print_and_end_with_the_run(
     ssh: str, tmp_path: Path
 ) -> None:
     (tmp_path / "fetch_robot_sim.sh").write_text("echo over there is $AOS_ROBOT; sleep 1000 & wait\n")
@@ -112,5 +106,6 @@ def test_a_program_on_another_host_is_ready_by_what_it_prints_and_ends_with_the_
         )
     status, said = up(ssh, f"[{sys.executable}, fetch_robot.py]", tmp_path)
     assert status == 0, said
+    assert "mission ended: the goal is reached" in said
     assert said.index("sim ready") < said.index("robot starting")
     assert left_behind(tmp_path) == []

@@ -1,6 +1,7 @@
 """Programs that are no adapters: ready before the adapters, watched, gone with all that they started."""
 
 import asyncio
+import contextlib
 import json
 import os
 import pty
@@ -16,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import aos
 from processes import COMMAND_S, HANG_S, descendants, kill, until_ended
 from supervised_system import System, command, small
 
@@ -216,8 +218,9 @@ PROGRAMS = """programs:
 def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A robot that is a command, with a simulator that it can only be started after."""
     folder = tmp_path_factory.mktemp("template")
-    for words in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
-        subprocess.run([BIN / "aos", *words], cwd=folder, check=True, capture_output=True, timeout=COMMAND_S)
+    with contextlib.chdir(folder):
+        aos("new", "project", "fetch")
+        aos("new", "adapter", "command", "--in", "fetch")
     (folder / "sim.py").write_text(SIMULATOR)
     robot = folder / "fetch_robot.py"
     robot.write_text(
@@ -319,8 +322,8 @@ def test_a_skill_that_leaves_in_mid_mission_and_comes_again_is_told_once_each(pr
     assert running.returncode == 0, said
     assert (said.count("cannot be run"), said.count("can be run again")) == (1, 1), said
     for words, told in ((["decisions"], f"barred: {away}"), (["why", "2"], f"left to choose: {away}")):
-        done = subprocess.run([BIN / "aos", *words], capture_output=True, text=True, timeout=COMMAND_S)
-        assert told in done.stdout + done.stderr
+        done = aos(*words)
+        assert told in f"{done.output}{done.exception}"
 
 
 def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import aos
 from processes import COMMAND_S, HANG_S
 
 BIN = Path(sys.executable).parent
@@ -65,7 +66,7 @@ class Running:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    subprocess.run([BIN / "aos", "new", "project", "fetch"], check=True, stdout=subprocess.DEVNULL)
+    aos("new", "project", "fetch")
     look = tmp_path / "fetch" / "look.am"
     # A failure that a rule tells is an observation, at which no mission holds.
     look.write_text(look.read_text().replace('__skill_status == "failed"', '__skill_status == "cancelled"'))
