@@ -103,6 +103,10 @@ async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_t
     assert "abstraction mapping" in str(refused)
     assert (await robot.refusal("/navigate", 3, FAR_AWAY, limit_s=0.01)).code == "AOS503"
     assert "gap_m" in (await robot.call("/sense", 4)).fields
+    # A stopped world leaves the animated picture of its mission.
+    assert robot.child is not None
+    await robot.child.stop(HANG_S)
+    assert (robot.folder / "mission.gif").stat().st_size > 0
 
 
 async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> None:
@@ -130,14 +134,6 @@ async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused
     first = await robot.call("/sense", 1, epoch=2)
     assert await robot.call("/sense", 1, epoch=2) == first
     assert (await robot.refusal("/sense", 2, epoch=1)).code == "AOS506"
-
-
-async def test_a_stopped_world_leaves_the_animated_picture_of_its_mission(robot: Robot) -> None:
-    await robot.start()
-    await robot.call("/sense")
-    assert robot.child is not None
-    await robot.child.stop(HANG_S)
-    assert (robot.folder / "mission.gif").stat().st_size > 0
 
 
 async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(robot: Robot) -> None:

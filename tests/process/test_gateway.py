@@ -200,7 +200,9 @@ def test_what_cannot_be_answered_is_a_problem(
     assert answer.json["type"] == f"urn:aos:{code}"
 
 
-def test_a_misspelt_field_of_a_body_starts_nothing(past: tuple[Gateway, str]) -> None:
+def test_misspelt_fields_other_methods_and_large_bodies_are_told_and_start_nothing(
+    past: tuple[Gateway, str],
+) -> None:
     served, name = past
     for path, body in (
         ("/v1/runs", {"project": "errand", "modell": True}),
@@ -209,17 +211,9 @@ def test_a_misspelt_field_of_a_body_starts_nothing(past: tuple[Gateway, str]) ->
         refused = served.post(path, body)
         assert (refused.status, refused.json["code"]) == (400, "AOS901")
         assert "unknown field" in refused.json["detail"]
-
-
-def test_a_method_that_there_is_not_is_told_with_those_that_there_are(past: tuple[Gateway, str]) -> None:
-    served, _ = past
     answer = served.ask("/v1/runs", method="PUT")
     assert (answer.status, answer.headers["allow"]) == (405, "GET, HEAD, POST")
     assert answer.json["hint"] == "It has GET, HEAD, POST"
-
-
-def test_a_body_that_is_too_large_is_told_as_such(past: tuple[Gateway, str]) -> None:
-    served, _ = past
     answer = served.ask("/v1/checks?name=a.zip", method="POST", body=bytes(2**24 + 1))
     assert (answer.status, answer.json["code"]) == (413, "AOS901")
 

@@ -91,26 +91,17 @@ def _place(span: dict[str, Any]) -> str:
     return f"{span['file']}:{span['line']}"
 
 
-FAULTS = [
-    ("int* nothing = nullptr;\n*nothing = 1;", "AOS210", "signal 11"),
-    ("int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;", "AOS210", "divided by zero"),
-]
-"""Each is wrong in its second line; for others see test_fault_statements.
-
-A compiler that does not check divisions derives that `left` is 1.
-"""
-
-
-@pytest.mark.parametrize(("code", "error_code", "text"), FAULTS, ids=["segfault", "division"])
 def test_a_fault_of_model_code_names_its_document_line(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, code: str, error_code: str, text: str
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """A compiler that does not check divisions derives that `left` is 1; others: test_fault_statements."""
+    code = "int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;"
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     result = aos("plan", hall(code), "--time", "0.1")
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
-    assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 5)
-    assert text in diagnostic.message
+    assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == ("AOS210", "walk.sd", 5)
+    assert "divided by zero" in diagnostic.message
 
 
 STEP = "state__.place = state.place + 1;\n"
