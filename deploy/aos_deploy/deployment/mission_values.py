@@ -59,9 +59,7 @@ def _text(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def with_values(
-    project: Project, values: Sequence[MissionValue], sources: Iterable[str | Path] = ()
-) -> Project:
+def with_values(project: Project, values: Sequence[MissionValue], sources: Iterable[str | Path]) -> Project:
     """The project with the values; DeployError AOS801 with a diagnostic for each that it cannot have.
 
     `sources` are the files in which they stand.

@@ -9,15 +9,13 @@ import msgspec
 
 from aos_deploy.printing import from_here
 from aos_deploy.runs.end import beginning_of
-from aos_lab.trials.trial import Trial
+from aos_lab.trials.trial import Trial, truth_lines
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
 from aos_protocol.mission_rows import DECISION
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import JOURNAL
-
-_TRUTHS = ("world.jsonl", "model.jsonl")
 
 
 class RecordedStep(msgspec.Struct, frozen=True):
@@ -111,8 +109,7 @@ def _of_run(run: Path) -> RecordedMission:
             recorded.append(
                 (record.action, record.outcome.response if is_seen else "", record.outcome.numbers)
             )
-    lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
-    mission = _mission(name, recorded, lines)
+    mission = _mission(name, recorded, truth_lines(run))
     if begun is None:
         return mission
     return msgspec.structs.replace(mission, mission_parameters=begun.mission_parameters)

@@ -108,9 +108,7 @@ class _Code:
         return tuple(",".join(values) for values in zip(*parts, strict=True))
 
 
-def flatten(
-    model: FactoredModel, *, max_states: int = MAX_STATES, on_progress: Progress = lambda states: None
-) -> ExplicitModel:
+def flatten(model: FactoredModel, *, max_states: int, on_progress: Progress) -> ExplicitModel:
     """The model over the states that can be reached; `on_progress` is told how many are known.
 
     DocumentError AOS122 for probabilities that do not sum to 1 where it matters, IntractableError where

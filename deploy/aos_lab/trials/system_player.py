@@ -11,14 +11,12 @@ from aos_deploy.missions.mission_run import MissionRun
 from aos_deploy.processes.needed_here import check_needed_here
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import Summary
-from aos_lab.trials.trial import Trial
+from aos_lab.trials.trial import Trial, truth_lines
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
 
 MISSION_S = 1800.0
 """A mission that takes longer is ended, and counts as broken."""
-
-_TRUTHS = ("world.jsonl", "model.jsonl")
 
 
 class SystemPlayer:
@@ -50,14 +48,13 @@ class SystemPlayer:
 
 
 def _trial(seed: int, summary: Summary, run: Path) -> Trial:
-    lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
     return Trial(
         seed=seed,
         ending=summary.ending,
         goal=summary.ending == "goal",
         actions=summary.actions,
         responses=summary.responses,
-        states=tuple(line.strip() for line in lines),
+        states=tuple(truth_lines(run)),
         seconds=summary.duration_s,
         fault=summary.remark if summary.ending in ("fault", "not_started", "cancelled") else "",
         mission_parameters=summary.mission_parameters,

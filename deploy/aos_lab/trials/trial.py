@@ -1,6 +1,7 @@
 """One mission that was run for its record: what was done, what came back, how it ended."""
 
 import json
+from pathlib import Path
 
 import msgspec
 
@@ -55,3 +56,13 @@ def _step_of(state: str, number: int) -> int:
         return number
     step: int = json.loads(state).get("step", number)
     return step
+
+
+def truth_lines(run: Path) -> list[str]:
+    """The lines in which a run's simulated world, or the model that played it, tells its truth."""
+    lines: list[str] = []
+    for name in ("world.jsonl", "model.jsonl"):
+        if (run / name).is_file():
+            with (run / name).open() as file:
+                lines += map(str.strip, file)
+    return lines

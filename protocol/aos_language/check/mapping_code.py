@@ -35,12 +35,7 @@ _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 
 
 def check_mapping(
-    mapping: AbstractionMapping,
-    model: SkillModel | None,
-    scope: Scope,
-    findings: Findings,
-    *,
-    is_whole: bool = True,
+    mapping: AbstractionMapping, model: SkillModel | None, scope: Scope, findings: Findings, *, is_whole: bool
 ) -> None:
     """Rules, local variables and the request of one mapping.
 

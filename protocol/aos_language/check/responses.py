@@ -19,7 +19,7 @@ _KNOWN_TO_CPP = frozenset({"AOS", "AOSUtils", "false", "nullptr", "NULL", "this"
 
 
 def check_responses(
-    model: SkillModel, mapping: AbstractionMapping, scope: Scope, findings: Findings, *, is_whole: bool = True
+    model: SkillModel, mapping: AbstractionMapping, scope: Scope, findings: Findings, *, is_whole: bool
 ) -> None:
     """Both directions: a response that no rule gives, and a rule whose response no code produces.
 

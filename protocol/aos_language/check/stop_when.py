@@ -19,12 +19,7 @@ _OF_NUMBERS = ast.Add | ast.Sub | ast.Mult | ast.Div | ast.FloorDiv | ast.Mod | 
 
 
 def check_stop_when(
-    mapping: AbstractionMapping,
-    model: SkillModel | None,
-    scope: Scope,
-    findings: Findings,
-    *,
-    is_whole: bool = True,
+    mapping: AbstractionMapping, model: SkillModel | None, scope: Scope, findings: Findings, *, is_whole: bool
 ) -> None:
     """Reports AOS110 for names that are not there while the skill runs, AOS106 for what is neither True nor
     False, and warns with AOS118 of an expression that no message can make true."""

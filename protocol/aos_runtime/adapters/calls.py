@@ -246,9 +246,9 @@ class Calls:
         self._fail(SkillError(text, code="AOS504", hint=hint))
         return SkillError(text, code="AOS504", hint=f"The adapter {self._settings.service} is ended")
 
-    async def stop_all(self, reason: str) -> bool:
+    async def stop_all(self) -> bool:
         """Cancels what runs; False if it goes on all the same."""
-        return self._running is None or await self._stop(self._running, reason)
+        return self._running is None or await self._stop(self._running, "the adapter ends")
 
     def close(self) -> None:
         """Closes the ledger."""

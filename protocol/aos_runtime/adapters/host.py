@@ -223,7 +223,7 @@ class Host:
         # Whoever stops the process cancels what `run` waits for, which is no failure.
         is_stuck = self._failed.done() and not self._failed.cancelled()
         if not is_stuck:
-            is_stuck = not await self._calls.stop_all("the adapter ends")
+            is_stuck = not await self._calls.stop_all()
             if self._adapter is not None:
                 await self._adapter.close()
         if is_stuck:

@@ -65,7 +65,7 @@ class EmittedMapping(msgspec.Struct, frozen=True):
 
 
 def emit_monitor(
-    mapping: AbstractionMapping, low_level: LowLevelDocument | None = None, shared: Snippet | None = None
+    mapping: AbstractionMapping, low_level: LowLevelDocument | None, shared: Snippet | None
 ) -> EmittedMapping:
     """The Python module of a monitor's mapping, as of a skill that calls nothing."""
     return emit_mapping(

@@ -119,7 +119,7 @@ class Ros1Node(RosNode):
         number, answer = self._process.begin("run", name=action, type=found, fields=request.fields)
         self._feedback[number] = request.on_feedback or _ignore
         cancelling = asyncio.create_task(_set(request.cancelled or asyncio.Event()))
-        leaving = asyncio.create_task(self._gone("actions", action))
+        leaving = asyncio.create_task(self._gone(action))
         try:
             await asyncio.wait(
                 [answer, cancelling, leaving],
@@ -133,7 +133,7 @@ class Ros1Node(RosNode):
                 self._process.tell("cancel", of=number)
                 await asyncio.wait([answer], timeout=CANCEL_S)
                 if not answer.done():
-                    self.unended.add(action, answer, self._gone("actions", action))
+                    self.unended.add(action, answer, self._gone(action))
                     raise not_cancelled(action)
         finally:
             cancelling.cancel()
@@ -206,8 +206,8 @@ class Ros1Node(RosNode):
 
     # --- names ---
 
-    async def _gone(self, kind: str, name: str) -> None:
-        while name in self._names[kind]:
+    async def _gone(self, action: str) -> None:
+        while action in self._names["actions"]:
             await self.changed()
 
     async def _wait_for(self, kind: str, name: str, timeout_s: float) -> str:

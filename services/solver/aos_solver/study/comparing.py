@@ -28,7 +28,7 @@ class Comparison(msgspec.Struct, frozen=True):
     without: str = ""
 
 
-def compared(remade: Remade, build_digest: str, budget_s: float | None = None) -> Comparison | None:
+def compared(remade: Remade, build_digest: str, budget_s: float | None) -> Comparison | None:
     """A decision or an outcome compared; None for other rows.
 
     `build_digest` is that of the replaying engine, and `budget_s` the mission's budget in time.

@@ -31,7 +31,7 @@ class _Without(msgspec.Struct, frozen=True):
     skills: list[str]
     actions: list[int]
 
-    def restriction(self, barred: list[int], *, cautious: bool = False) -> Restriction:
+    def restriction(self, barred: list[int], *, cautious: bool) -> Restriction:
         return Restriction(
             barred=barred, without=self.skills, without_actions=self.actions, cautious=cautious
         )
