@@ -82,7 +82,6 @@ MISTAKES = {
     "mission_parameter: int log []": ("AOS106", "nobody could set a value for the mission parameter log"),
     "mission_parameter: vector<int> log": ("AOS106", "nobody could set a value"),
     "mission_parameter: anyValue pose": ("AOS106", "nobody could set a value"),
-    "mission_parameter: Persn other": ("AOS110", "unknown type `Persn`"),
     "mission_parameter: int holder": ("AOS126", "`holder` is already the name of a variable"),
     "mission_parameter: bool lucky\ndefault_value: AOS.Bernoulli(0.5)": ("AOS124", "is drawn at random"),
     "mission_parameter: Person other\ndefault_value: state.holder": ("AOS124", "depends on `state.holder`"),

@@ -135,16 +135,17 @@ def test_a_name_that_nothing_gives_is_an_error_at_its_place(texts, place, rest):
     assert found.startswith(f"{place}: error: no local variable gives {rest}")
 
 
-def test_an_operator_of_cpp_in_a_rule_is_told_with_pythons_word():
-    (found,) = finding_texts(rule="answer && heard")
-    assert found.startswith("sell.am:3:24: error: this is not Python")
-    assert found.endswith("Python writes `and`, `or`, `not`")
-
-
-def test_an_assignment_in_a_rule_is_told_with_the_comparison():
-    (found,) = finding_texts(rule="answer = heard")
-    assert found.startswith("sell.am:3:23: error: this is not Python")
-    assert found.endswith("To compare, write `==`")
+@pytest.mark.parametrize(
+    ("rule", "column", "hint"),
+    [
+        ("answer && heard", 24, "Python writes `and`, `or`, `not`"),
+        ("answer = heard", 23, "To compare, write `==`"),
+    ],
+)
+def test_an_operator_that_no_rule_has_is_told_with_the_right_one(rule, column, hint):
+    (found,) = finding_texts(rule=rule)
+    assert found.startswith(f"sell.am:3:{column}: error: this is not Python")
+    assert found.endswith(hint)
 
 
 def test_a_rule_that_is_never_tried_fails_in_no_run():

@@ -118,6 +118,7 @@ REFUSED = [
     Rule("room.json", '"Discount": §«0.9→1.1»', "AOS106"),
     Rule("room.json", '"Type": "«anyValue→int»"', "AOS106"),
     Rule("go.json", '"«Type→Kind»": "PLP"', "AOS105"),
+    Rule("go.json", '"Type": "«tDoor→float»"}', "AOS119"),
     Rule("go.json", "§{«0.9, 0.1→0, 0»}", "AOS122"),
     Rule("go.json", '"eWell", "«eBadly→eDone»"]', "AOS126", title="a hidden response"),
     Rule("go.json", "__meetPrecondition =§«→\u00a0»", "AOS108", title="blank"),
