@@ -87,7 +87,6 @@ CODES: dict[str, str] = {
     "AOS220": "exact evaluation is not tractable",
     "AOS302": "every state of the belief is terminal",
     "AOS303": "every action risks more than the mission's constraints allow",
-    "AOS310": "an observation that the model holds impossible",
     "AOS320": "a model that cannot be solved before the mission",
     "AOS321": "a policy that cannot be read",
     "AOS322": "a policy for another model",

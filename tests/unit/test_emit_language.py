@@ -88,7 +88,7 @@ SKILLS = {
                 {"IterateNextStateVars": loops(over="tBox", item="each", where="each.colour != colour",
                                                do="each.colour = colour; break;")},
                 {"AssignmentCode": "if (is_wet) return; state__.sum = ending - enumEnding;"},
-                {"AssignmentCode": "__reward = 0;\r\n__reward = 1"},
+                {"AssignmentCode": "__reward = 1"},
             ],
             GlobalVariableModuleParameters=[
                 {"Name": "colour", "Type": "tColour"}, {"Name": "box", "Type": "tBox"}

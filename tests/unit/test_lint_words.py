@@ -134,13 +134,6 @@ def test_a_skill_that_may_always_be_used_needs_no_penalty():
     assert not any("AOS147" in told for told in finding_texts(skill=always))
 
 
-def test_an_assignment_in_a_condition_is_told_what_to_write():
-    special = "special_state:\nstate_condition: state.second.x = 3\nreward: 10\nis_goal_state: true\n"
-    environment = ENVIRONMENT[: ENVIRONMENT.index("reward_code:")] + special
-    (only,) = (finding for finding in found(environment=environment) if finding.is_error)
-    assert only.hint == "It may only be read. To compare, write `==`"
-
-
 def test_own_variables_may_be_called_like_names_of_the_language_without_underscores():
     skill = SKILL.replace("__moduleResponse", "int reward = 0;\nreward += 1;\n__moduleResponse")
     assert finding_texts(skill=skill) == []
