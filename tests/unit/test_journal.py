@@ -2,6 +2,7 @@
 
 import random
 import sqlite3
+import zlib
 from contextlib import closing
 from pathlib import Path
 
@@ -118,20 +119,6 @@ def test_a_full_disk_is_an_error_and_the_rows_before_it_stay(tmp_path):
         assert len(journal.rows()) == 1
 
 
-def test_a_journal_of_before_the_checksums_can_be_read_and_not_be_written(tmp_path):
-    path = tmp_path / "journal.db"
-    with Journal.open(path) as journal:
-        journal.append("cancel", Cancel("kept"))
-    database = sqlite3.connect(path)
-    database.execute("ALTER TABLE entries DROP COLUMN checksum")
-    database.execute("PRAGMA user_version = 1")
-    database.close()
-    with Journal.read(path) as journal:
-        assert len(journal.rows()) == 1
-    with pytest.raises(StorageError, match="not a journal of this version"):
-        Journal.open(path)
-
-
 @pytest.mark.parametrize("lacking", [1, 3, 5])
 def test_a_row_that_is_lacking_is_an_error(tmp_path, lacking):
     path = tmp_path / "journal.db"
@@ -214,17 +201,17 @@ def rows_of(path: Path) -> list[JournalRow] | None:
 def test_a_journal_that_computes_its_rows_is_refused(entries, tmp_path):
     path = tmp_path / "journal.db"
     with closing(sqlite3.connect(path)) as connection:
-        connection.executescript(f"{entries}; PRAGMA user_version = 1;")
+        connection.executescript(f"{entries}; PRAGMA user_version = 2;")
     with pytest.raises(StorageError, match="entries is no plain table"):
         Journal.read(path)
 
 
 def test_a_row_that_is_no_text_is_an_error(tmp_path):
-    path = tmp_path / "journal.db"
+    path, checksum = tmp_path / "journal.db", zlib.crc32(f"1 x {bytes(1)!r}".encode())
     with closing(sqlite3.connect(path)) as connection:
         connection.executescript(
-            "CREATE TABLE entries (seq INTEGER PRIMARY KEY AUTOINCREMENT, stamp_ns, kind, payload);"
-            "INSERT INTO entries VALUES (1, 1, 'x', x'00'); PRAGMA user_version = 1;"
+            "CREATE TABLE entries (seq INTEGER PRIMARY KEY AUTOINCREMENT, stamp_ns, kind, payload, checksum);"
+            f"INSERT INTO entries VALUES (1, 1, 'x', x'00', {checksum}); PRAGMA user_version = 2;"
         )
     with Journal.read(path) as journal, pytest.raises(StorageError, match="row 1 has no text"):
         journal.rows()

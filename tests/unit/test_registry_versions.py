@@ -1,6 +1,5 @@
 """Versions that documents declare, and what a push over a declared one needs."""
 
-import sqlite3
 from pathlib import Path
 
 import pytest
@@ -82,17 +81,3 @@ def test_the_history_tells_versions(files: dict[str, bytes], tmp_path):
     (entry,) = catalogue.history("armadillo")
     catalogue.close()
     assert entry.versions == {"pick.sd": "1.2"}
-
-
-def test_a_catalogue_of_the_first_schema_is_taken_over(tmp_path):
-    path = tmp_path / "catalogue.db"
-    catalogue = Catalogue.open(path)
-    catalogue.store("p", "d", {"a.ef": b"1"}, (), 1)
-    catalogue.close()
-    with sqlite3.connect(path) as db:
-        db.execute("ALTER TABLE file DROP COLUMN version")
-        db.execute("PRAGMA user_version = 1")
-    catalogue = Catalogue.open(path)
-    assert catalogue.store("p", "d2", {"a.ef": b"2"}, (), 2, {"a.ef": "3"}) == 2
-    assert [entry.versions for entry in catalogue.history("p")] == [{}, {"a.ef": "3"}]
-    catalogue.close()

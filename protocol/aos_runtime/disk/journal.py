@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _SCHEMA_VERSION = 2
-_WITHOUT_CHECKSUMS = 1
-"""The version before, which is still read."""
 
 _SCHEMA = f"""
 CREATE TABLE IF NOT EXISTS entries (
@@ -86,13 +84,10 @@ class JournalRow(NamedTuple):
 class Journal:
     """Rows in the order in which they were appended."""
 
-    def __init__(
-        self, connection: sqlite3.Connection, path: Path, clock: Clock, version: int = _SCHEMA_VERSION
-    ) -> None:
+    def __init__(self, connection: sqlite3.Connection, path: Path, clock: Clock) -> None:
         self._connection = connection
         self._path = path
         self._clock = clock
-        self._has_checksums = version != _WITHOUT_CHECKSUMS
 
     @classmethod
     def open(cls, path: str | Path, *, clock: Clock | None = None, survives_power_loss: bool = True) -> Self:
@@ -130,14 +125,14 @@ class Journal:
         connection = sqlite3.connect(path, isolation_level=None)
         try:
             connection.execute("PRAGMA query_only = ON")
-            version = _check_version(connection, path, is_to_write=False)
+            _check_version(connection, path, is_to_write=False)
         except _REFUSALS as error:
             connection.close()
             raise _fault("AOS702", path, error) from error
         except StorageError:
             connection.close()
             raise
-        return cls(connection, path, SystemClock(), version)
+        return cls(connection, path, SystemClock())
 
     def __enter__(self) -> Self:
         return self
@@ -183,16 +178,15 @@ class Journal:
 
         StorageError AOS702 at a row that is damaged, and where rows of no one kind are lacking.
         """
-        checksum = "checksum" if self._has_checksums else "NULL"
         number = since - 1 if since > 0 else 0
         try:
             last = self._last_written() if kind is None else 0
             for seq, stamp_ns, of_kind, text, check in self._connection.execute(
-                f"SELECT seq, stamp_ns, kind, payload, {checksum} FROM entries"
+                "SELECT seq, stamp_ns, kind, payload, checksum FROM entries"
                 " WHERE seq >= :since AND (:kind IS NULL OR kind = :kind) ORDER BY seq",
                 {"since": since, "kind": kind},
             ):
-                if self._has_checksums and check != _checksum(stamp_ns, of_kind, text):
+                if check != _checksum(stamp_ns, of_kind, text):
                     raise self._damaged(f"row {seq} is damaged")
                 if not isinstance(text, str):
                     raise self._damaged(f"row {seq} has no text")
@@ -224,19 +218,17 @@ def _checksum(stamp_ns: int, kind: str, payload: str) -> int:
     return zlib.crc32(f"{stamp_ns} {kind} {payload}".encode())
 
 
-def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: bool) -> int:
-    """Returns the version of the schema; StorageError AOS702 for one that this program does not know."""
+def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: bool) -> None:
+    """Raises StorageError AOS702 for a schema that this program does not know."""
     require_plain_tables(connection)
     version = int(connection.execute("PRAGMA user_version").fetchone()[0])
-    is_new = version == 0 and not connection.execute("SELECT 1 FROM sqlite_schema").fetchone()
-    is_known = is_new if is_to_write else version == _WITHOUT_CHECKSUMS
-    if version != _SCHEMA_VERSION and not is_known:
+    is_empty = version == 0 and not connection.execute("SELECT 1 FROM sqlite_schema").fetchone()
+    if version != _SCHEMA_VERSION and not (is_to_write and is_empty):
         raise StorageError(
             f"{path} is not a journal of this version",
             code="AOS702",
             hint=f"Its schema is {version}, this program reads {_SCHEMA_VERSION}",
         )
-    return version
 
 
 def _fault(code: str, path: Path, error: Exception) -> StorageError:

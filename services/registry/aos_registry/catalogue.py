@@ -39,7 +39,6 @@ CREATE TABLE file (
     PRIMARY KEY (project, number, name)
 ) STRICT;
 """
-_FROM_SCHEMA_1 = "ALTER TABLE file ADD COLUMN version TEXT NOT NULL DEFAULT '';"
 
 
 class Revision(msgspec.Struct, frozen=True):
@@ -67,12 +66,11 @@ class Catalogue:
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute("PRAGMA synchronous = FULL")
             version = connection.execute("PRAGMA user_version").fetchone()[0]
-            if version in (0, 1):
-                change = _SCHEMA if version == 0 else _FROM_SCHEMA_1
-                connection.executescript(f"BEGIN; {change} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
+            if version == 0:
+                connection.executescript(f"BEGIN; {_SCHEMA} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
         except (OSError, sqlite3.Error) as error:
             raise StorageError(f"the catalogue {path} cannot be opened: {error}", code="AOS702") from error
-        if version not in (0, 1, _SCHEMA_VERSION):
+        if version not in (0, _SCHEMA_VERSION):
             connection.close()
             raise StorageError(
                 f"the catalogue {path} has schema {version}, this program knows {_SCHEMA_VERSION}",
