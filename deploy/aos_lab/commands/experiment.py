@@ -8,13 +8,12 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import msgspec
 import typer
 from rich.progress import Progress
 
 from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
 from aos_deploy.places import shipped
-from aos_deploy.printing import from_here, print_json
+from aos_deploy.printing import from_here, json_text, print_json
 from aos_deploy.terminal import progress
 from aos_lab.commands.interrupted import interruption_among_missions
 from aos_protocol.errors import DeployError
@@ -114,7 +113,7 @@ def _report(whole: Results, folder: Path, as_json: bool) -> None:
     from aos_lab.experiments.plots import draw_plots
     from aos_lab.experiments.report import write_report
 
-    (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(whole), indent=2))
+    (folder / "report.json").write_text(json_text(whole), encoding="utf-8")
     pages = write_report(whole, draw_plots(whole, folder / "plots"), folder)
     if as_json:
         print_json(whole)
@@ -168,7 +167,7 @@ def statistics(
             first_seed=first_seed,
             begin=partial(_begin, bar),
         )
-    (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(found), indent=2))
+    (folder / "report.json").write_text(json_text(found), encoding="utf-8")
     (folder / "report.md").write_text(markdown_statistics(found))
     (folder / "report.html").write_text(page(found.title, markdown_statistics(found)))
     if as_json:

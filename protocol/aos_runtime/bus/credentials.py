@@ -38,7 +38,7 @@ def credential_of_environment(environment: Mapping[str, str] = os.environ) -> Cr
 
 
 def credential_of_run(run: Path, user: str) -> Credential | None:
-    """The credential of a party of a run; None where the run has none, as runs of earlier versions."""
+    """The credential of a party of a run; None where the run has none."""
     path = run / FOLDER / user
     return Credential.read(user, path) if path.exists() else None
 

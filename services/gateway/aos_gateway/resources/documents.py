@@ -17,8 +17,6 @@ from aos_protocol.messages import Catalogue, CatalogueEntry
 from aos_registry.catalogue import Catalogue as KeptCatalogue
 from aos_runtime.disk.plain_tables import require_plain_tables
 
-_ANSWER_S = 5.0
-
 
 class DocumentFile(msgspec.Struct, frozen=True):
     """One file of a project."""
