@@ -40,7 +40,10 @@ inline constexpr std::size_t max_passage_bytes = std::size_t{64} << 20;  // of a
 inline constexpr std::size_t max_moving_steps = 600'000;  // of one call with an effort of 1
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
-inline constexpr std::size_t telling_share = 10;         // if no proposal is accepted in a tenth of the steps, moves end
+inline constexpr std::size_t max_moving_strata = 16 * max_kept_strata;  // of all steps
+inline constexpr int proposals_in_a_row = 4;
+inline constexpr std::size_t telling_share = 10;         // after a tenth of the steps moves end, if they promise
+inline constexpr double few_moves = 0.15;                // less than so many for each copy
 
 template <class Model>
 class Moves {
@@ -61,15 +64,19 @@ class Moves {
     are_kept_ = copies_.size() * (1 + history_.steps().size()) * bytes <= passage_bytes_;
     passages_.resize(are_kept_ ? copies_.size() : 1);
     std::size_t accepted = 0;
-    while (work_ < max_steps) {
-      for (std::size_t i = 0; i < copies_.size(); ++i) {
+    while (work_ < max_steps && !is_hopeless(accepted, max_steps)) {
+      for (std::size_t i = 0; i < copies_.size() && work_ < max_steps && !is_hopeless(accepted, max_steps); ++i) {
         Copy& copy = copies_[i];
         Passage<Model>& passage = passages_[are_kept_ ? i : 0];
         if (!are_kept_ || passage.empty()) passage.begin(copy.trace);
-        if (i + 2 < passages_.size()) passages_[i + 2].prefetch();
-        accepted += (random_.flag(free_draws_.share()) ? refresh(copy, passage) : move(copy, passage)) ? 1 : 0;
-        if (accepted == 0 && work_ >= max_steps / telling_share) return cloud;
-        if (work_ >= max_steps) break;
+        if (i + 1 < passages_.size()) passages_[i + 1].prefetch();
+        // Several in a row, while all that the copy has passed is in the processor's cache.
+        for (int proposal = 0; proposal < proposals_in_a_row && work_ < max_steps; ++proposal) {
+          if (!(random_.flag(free_draws_.share()) ? refresh(copy, passage) : move(copy, passage))) continue;
+          ++accepted;
+          copy.is_moved = true;
+        }
+        if (!are_kept_ && copy.is_moved) copy.trace = passage.trace(copy.trace);
       }
     }
     return accepted > 0 ? gathered(cloud, copies_.size()) : cloud;
@@ -86,6 +93,11 @@ class Moves {
     TraceLink trace;
     bool is_moved;
   };
+
+  bool is_hopeless(std::size_t accepted, std::size_t max_steps) const {
+    const double share = static_cast<double>(work_) / static_cast<double>(max_steps);
+    return share * telling_share >= 1 && static_cast<double>(accepted) < few_moves * share * static_cast<double>(copies_.size());
+  }
 
   // Makes copies in proportion to the weights. Each particle has at least one unless there are too many particles.
   void copy(const Cloud<Model>& cloud, std::size_t copies) {
@@ -106,6 +118,9 @@ class Moves {
 
   // Merges the copies. Those that were not moved are worth as many samples as their particle was.
   Cloud<Model> gathered(const Cloud<Model>& cloud, std::size_t max_particles) {
+    for (std::size_t i = 0; i < copies_.size(); ++i) {
+      if (are_kept_ && copies_[i].is_moved) copies_[i].trace = passages_[i].trace(copies_[i].trace);
+    }
     std::vector<double> unmoved(cloud.particles.size(), 0);
     for (const Copy& copy : copies_) unmoved[copy.particle] += copy.is_moved ? 0 : copy.weight;
     GatheredCloud<Model> gathered;
@@ -131,11 +146,10 @@ class Moves {
     work_ += place;
     State state{};
     if (place > 0) state = passed(passage, place - 1);
-    std::vector<Block> proposed;
-    proposed.reserve(count - place);
+    proposed_.clear();
     states_.clear();
-    double ratio = is_guided(place) ? guided(place, passage.block(place), state, proposed)
-                                    : changed(place, first, passage.block(place), state, proposed);
+    double ratio = is_guided(place) ? guided(place, passage.block(place), state)
+                                    : changed(place, first, passage.block(place), state);
     if (ratio <= 0) return false;
     work_ += 1;
     if (state == passed(passage, place)) return false;
@@ -143,25 +157,24 @@ class Moves {
     for (std::size_t i = place + 1; i < count; ++i) {
       const Block& block = passage.block(i);
       if (is_guided(i)) {
-        ratio *= guided(i, block, state, proposed);
+        ratio *= guided(i, block, state);
       } else {
         work_ += 1;
         const double likelihood = repeat(i, block, state);
-        proposed.push_back({{}, block.seed, likelihood, static_cast<std::uint32_t>(replay_.draws())});
+        proposed_.push_back({{}, block.seed, likelihood, static_cast<std::uint32_t>(replay_.draws())});
         ratio *= likelihood / block.likelihood;
       }
       if (ratio <= 0) return false;
       states_.push_back(state);
     }
-    ratio *= way_back(passage, proposed, place);
+    ratio *= way_back(passage, place);
     if (ratio < 1 && !random_.flag(ratio)) return false;
     copy.state = state;
+    if (!is_guided(place)) proposed_.front().values = used_;
     for (std::size_t i = place + 1; i < count; ++i) {
-      if (!is_guided(i)) proposed[i - place].values = passage.block(i).values;
+      if (!is_guided(i)) proposed_[i - place].values = passage.block(i).values;
     }
-    copy.trace = replaced(copy.trace, count - place, proposed);
-    copy.is_moved = true;
-    passage.replace(place, copy.trace, states_);
+    passage.replace(place, proposed_, states_);
     return true;
   }
 
@@ -174,10 +187,9 @@ class Moves {
     for (const std::size_t draw : anew) {
       if (draw < values_.size()) values_[draw] = random_.uniform();
     }
-    std::vector<double> used;
-    used.reserve(values_.size());
+    used_.clear();
     State after{};
-    run(0, values_, random_, after, &used);
+    run(0, values_, random_, after, &used_);
     work_ += 2;
     if (after == passed(passage, 0)) return false;
     states_.assign(1, after);
@@ -185,14 +197,8 @@ class Moves {
     const bool is_accepted = still_brings(passage, after);
     free_draws_.note(is_accepted);
     if (!is_accepted) return false;
-    std::vector<Block> proposed;
-    const auto draws = static_cast<std::uint32_t>(used.size());
-    proposed.push_back({std::move(used), 0, 1, draws});
-    for (std::size_t i = 1; i < passage.size(); ++i) proposed.push_back(passage.block(i));
     copy.state = after;
-    copy.trace = replaced(copy.trace, passage.size(), proposed);
-    copy.is_moved = true;
-    passage.refresh(copy.trace, states_, likelihoods_);
+    passage.refresh({used_, 0, 1, static_cast<std::uint32_t>(used_.size())}, states_, likelihoods_);
     return true;
   }
 
@@ -252,11 +258,11 @@ class Moves {
   }
   // How much likelier the same place is to be chosen from the proposed trace than from this one. The place is
   // the same draw, or any draw of a guided block.
-  double way_back(const Passage<Model>& passage, const std::vector<Block>& proposed, std::size_t place) const {
+  double way_back(const Passage<Model>& passage, std::size_t place) const {
     const auto before = static_cast<double>(passage.draws());
     double after = 0;
-    for (std::size_t i = 0; i < passage.size(); ++i) after += i < place ? passage.draws_of(i) : proposed[i - place].draws;
-    const double shares = is_guided(place) ? static_cast<double>(proposed[0].draws) / passage.draws_of(place) : 1;
+    for (std::size_t i = 0; i < passage.size(); ++i) after += i < place ? passage.draws_of(i) : proposed_[i - place].draws;
+    const double shares = is_guided(place) ? static_cast<double>(proposed_.front().draws) / passage.draws_of(place) : 1;
     return after > 0 ? shares * before / after : 0;
   }
 
@@ -284,15 +290,13 @@ class Moves {
 
   // Proposes a block with some draws changed from `first` on. Returns the factor of the acceptance ratio, which is 0 if the
   // proposal does not give what was observed.
-  double changed(std::size_t place, std::size_t first, const Block& block, State& state, std::vector<Block>& proposed) {
+  double changed(std::size_t place, std::size_t first, const Block& block, State& state) {
     work_ += 2;
     list_values(block, values_);
     perturb(values_, first);
-    std::vector<double> used;
-    used.reserve(values_.size());
-    const double likelihood = run(place, values_, random_, state, &used);
-    const auto draws = static_cast<std::uint32_t>(used.size());
-    proposed.push_back({std::move(used), 0, likelihood, draws});
+    used_.clear();
+    const double likelihood = run(place, values_, random_, state, &used_);
+    proposed_.push_back({{}, 0, likelihood, static_cast<std::uint32_t>(used_.size())});
     return likelihood / block.likelihood;
   }
 
@@ -313,7 +317,7 @@ class Moves {
   }
 
   // Proposes a step that is guided anew. Returns the factor of the acceptance ratio.
-  double guided(std::size_t place, const Block& block, State& state, std::vector<Block>& proposed) {
+  double guided(std::size_t place, const Block& block, State& state) {
     const HistoryStep& step = history_.steps()[place - 1];
     NumbersOf numbers{step, replay_};
     GuidedStep<Model>& steps = guided_step(place);
@@ -332,7 +336,7 @@ class Moves {
     steps_ += steps.runs() - runs_before;
     chosen.likelihood = sum;
     chosen.draws = static_cast<std::uint32_t>(chosen.values.size());
-    proposed.push_back(std::move(chosen));
+    proposed_.push_back(std::move(chosen));
     return sum / block.likelihood;
   }
 
@@ -344,17 +348,9 @@ class Moves {
       const HistoryStep& step = history_.steps()[place - 1];
       guided = std::make_unique<GuidedStep<Model>>(step.action, step.observation, nullptr, random_);
       guided->leave_to_chance(step.by_chance);
+      guided->keep_strata(std::min(max_kept_strata, max_moving_strata / history_.steps().size()));
     }
     return *guided;
-  }
-
-  // A trace with its last `count` blocks replaced.
-  static TraceLink replaced(TraceLink trace, std::size_t count, std::vector<Block>& blocks) {
-    for (std::size_t i = 0; i < count; ++i) trace = trace->before;
-    for (Block& block : blocks) {
-      trace = trace == nullptr ? begun_trace(std::move(block)) : longer(std::move(trace), std::move(block));
-    }
-    return trace;
   }
 
   // A digest of the weights that a step draws from, to compare two steps.
@@ -385,6 +381,8 @@ class Moves {
   std::vector<State> states_;  // after the blocks of a proposal
   std::vector<double> likelihoods_;
   std::vector<double> values_;
+  std::vector<double> used_;     // by the block that is changed
+  std::vector<Block> proposed_;  // from that block on
   std::size_t work_ = 0;
   std::size_t steps_ = 0;
 };

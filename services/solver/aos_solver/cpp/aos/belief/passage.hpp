@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,7 @@ class Passage {
     std::uint32_t draws = 0;  // those of the block, beside its address so that it is looked at only where it is run
     bool is_repeated = false;
     Repeated repeated = {};
+    std::unique_ptr<const Block> own = nullptr;  // the block, where it is not of the trace at the beginning
   };
 
   bool empty() const { return places_.empty(); }
@@ -34,9 +36,14 @@ class Passage {
     states_.clear();
     draws_ = 0;
     std::size_t count = 0;
-    for (const Trace* block = trace.get(); block != nullptr; block = block->before.get()) ++count;
+    for (const Trace* next = trace.get(); next != nullptr; next = next->before.get()) ++count;
     places_.resize(count);
-    take(trace, 0);
+    for (const Trace* next = trace.get(); next != nullptr; next = next->before.get()) {
+      Place& place = places_[--count];
+      place.block = &next->block;
+      place.draws = next->block.draws;
+      draws_ += place.draws;
+    }
   }
 
   std::size_t size() const { return places_.size(); }
@@ -62,32 +69,43 @@ class Passage {
     places_[place].repeated = repeated;
   }
 
-  // Another trace, which differs from `place` on; the states after its blocks from there on. A refreshed one has other states
-  // and was repeated with these likelihoods, and its later blocks draw from the same weights as before.
-  void replace(std::size_t place, const TraceLink& trace, const std::vector<State>& states) {
-    take(trace, place);
+  // Other blocks from `place` on, and the states after them.
+  void replace(std::size_t place, std::vector<Block>& blocks, const std::vector<State>& states) {
+    for (std::size_t i = 0; i < blocks.size(); ++i) set(place + i, std::move(blocks[i]));
     states_.resize(place);
     states_.insert(states_.end(), states.begin(), states.end());
   }
-  void refresh(const TraceLink& trace, const std::vector<State>& states, const std::vector<double>& likelihoods) {
-    replace(0, trace, states);
+  // Another origin, and the states after it. The later blocks were repeated with these likelihoods, and draw from the same
+  // weights as before.
+  void refresh(Block origin, const std::vector<State>& states, const std::vector<double>& likelihoods) {
+    set(0, std::move(origin));
+    states_ = states;
     for (std::size_t place = 1; place < places_.size(); ++place) {
       places_[place].is_repeated = true;
       places_[place].repeated.likelihood = likelihoods[place - 1];
     }
   }
 
- private:
-  // Takes the blocks of a trace from a place on.
-  void take(const TraceLink& trace, std::size_t from) {
-    const Trace* next = trace.get();
-    for (std::size_t place = places_.size(); place-- > from; next = next->before.get()) {
-      draws_ += next->block.draws;
-      draws_ -= places_[place].draws;
-      places_[place].block = &next->block;
-      places_[place].draws = next->block.draws;
-      places_[place].is_repeated = false;
+  // The trace of these blocks; `trace` is that of the beginning.
+  TraceLink trace(TraceLink trace) const {
+    std::size_t same = 0;
+    while (same < places_.size() && places_[same].own == nullptr) ++same;
+    for (std::size_t i = same; i < places_.size(); ++i) trace = trace->before;
+    for (std::size_t i = same; i < places_.size(); ++i) {
+      trace = i == 0 ? begun_trace(*places_[i].block) : longer(std::move(trace), *places_[i].block);
     }
+    return trace;
+  }
+
+ private:
+  void set(std::size_t place, Block block) {
+    Place& changed = places_[place];
+    draws_ += block.draws;
+    draws_ -= changed.draws;
+    changed.draws = block.draws;
+    changed.own = std::make_unique<const Block>(std::move(block));
+    changed.block = changed.own.get();
+    changed.is_repeated = false;
   }
 
   std::vector<Place> places_;
