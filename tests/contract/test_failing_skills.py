@@ -93,11 +93,23 @@ async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -
 
 
 async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_called(system: System) -> None:
-    waiting, is_still = await system.beside_a_motion("sense")
+    waiting, is_still = await system.beside_a_motion("sense", deadline_s=1.0)
     system.adapter.withdraw("/sense")
     await system.state_when(lambda state: "sense" in state.unavailable)
     is_still.set()
     assert_refused(await waiting, "AOS505", "no adapter answers calls of /sense")
+
+
+async def test_an_adapter_that_ends_since_it_cannot_stop_is_called_when_it_is_started_again(
+    system: System,
+) -> None:
+    waiting, is_still = await system.beside_a_motion("sense")
+    system.adapter.withdraw("/sense")
+    await system.state_when(lambda state: "sense" in state.unavailable)
+    is_still.set()
+    await system.logged("/sense of m-1 has stopped")
+    await system.adapter.announce("/sense")
+    assert (await waiting).status == "observed"
 
 
 async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system: System) -> None:

@@ -204,6 +204,30 @@ async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can
     assert state.ending == "goal"
 
 
+async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_is_chosen(
+    field: BuiltModel,
+) -> None:
+    def robot(request: Activate) -> Outcome:
+        if len(waits) == 0 and request.skill == "drive":
+            around.unavailable = {"flood": "its adapter has left"}
+        return done(request)
+
+    def come_back() -> None:
+        waits.append(len(around.decisions))
+        if len(waits) == 3:
+            around.unavailable = {}
+
+    waits: list[int] = []
+    around = Surroundings(robot)
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around.on_hold = come_back
+    await run_mission(field, robot, limits=MissionLimits(step_limit=2), around=around)
+    assert [record.skill for record in around.decisions] == ["drive", "flood"]
+    assert waits == [1, 1, 1]
+    # The search that found it worth waiting for is told, so that the decision can be replayed.
+    assert [made.is_dropped for made in around.decisions[1].searches] == [True, False]
+
+
 async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_no_step_is_spent(
     field: BuiltModel,
 ) -> None:

@@ -152,6 +152,15 @@ def test_an_adapter_that_ends_in_or_after_each_call_is_no_new_one(outcome):
     assert not mission.set_aside
 
 
+def test_a_call_that_is_refused_while_the_adapter_is_ended_makes_no_new_one_of_it():
+    mission = Mission()
+    for start, status in ((1, "timed_out"), (1, "refused"), (2, "timed_out")):
+        mission.announced = {"take": start}
+        mission.take("take", status)
+    mission.announced = {"take": 3}
+    assert mission.set_aside == {"take"}
+
+
 def test_somebody_who_starts_an_adapter_again_after_a_row_of_timeouts_ends_the_pause():
     mission = Mission()
     mission.announced = {"take": 1}

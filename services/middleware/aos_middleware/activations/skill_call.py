@@ -23,6 +23,7 @@ _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25
 """An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
 _TOLD_BEFORE_S = 0.1
+_RETURN_S = 5.0
 _TIME_HINT = (
     "Its time is the mapping's `max_duration`, or `timeout_s` or `activation_timeout_s` of the deploy file"
 )
@@ -61,8 +62,13 @@ class Call:
             # After the router, its clients are back within a moment.
             await self._around.served.is_back(path, GONE_S)
         with self._around.gate.passing(path):
+            was_served = bool(self._around.served.servers(path))
             await self._around.gate.confirm()
-            # Last, since an adapter that cannot stop ends its process.
+            # An adapter that cannot stop ends its process, and is started again.
+            if was_served and not self._around.served.servers(path):
+                left_s = self._ends_at_s - self._clock.monotonic_s()
+                if await self._around.served.is_back(path, min(left_s, _RETURN_S)):
+                    self.begin()
             if fault := self._around.served.fault(path):
                 raise fault
             if self._clock.monotonic_s() >= self._ends_at_s:

@@ -1,10 +1,10 @@
 """The choice of a mission's next step: an action, an ending, or to hold, for what can be carried out now."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 
 import msgspec
 
-from aos_protocol.messages import BeliefSummary, ChosenBy, SearchMade
+from aos_protocol.messages import ActionValue, BeliefSummary, ChosenBy, SearchMade
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.control.steering import Asked
@@ -170,14 +170,17 @@ class Chooser:
             ended = await self._ending(engine, plan, belief, without)
             if ended is not None and ended.ending in _GIVES_UP and await self._is_searched_anew():
                 continue
-            told = await self._endless.newly_found(engine)
             kept_back = _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
+            away = {actions[n].skill for n in barred if actions[n].name in kept_back} & unavailable.keys()
+            left = {skill for skill in away if self._around.announced.get(skill)}
+            if ended is None and await self._come_back(self._passed_over.not_awaited(left)):
+                continue
+            told = await self._endless.newly_found(engine)
             told += [f"{name} cannot be chosen now: {why}" for name, why in kept_back.items()]
             plan = _explained(plan, without.reasons, is_cautious, told)
             if ended is not None:
                 return ended
-            away = {actions[number].skill for number in barred if actions[number].name in kept_back}
-            self._passed_over.count(away & unavailable.keys())
+            self._passed_over.count(away)
             chosen_by, searches = self.search.chosen_by, self._searches.told()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
 
@@ -189,12 +192,17 @@ class Chooser:
         away = self._passed_over.reasons(self._around.unavailable).keys()
         if not away:
             return False
-        for _ in range(_LOOKS):
+        await self._come_back(away)
+        self._passed_over.forget()
+        return True
+
+    async def _come_back(self, away: Set[str]) -> bool:
+        """Waits for skills that are away, if any; returns whether one of them has come back in time."""
+        for _ in range(_LOOKS if away else 0):
             if not away <= self._around.unavailable.keys():
                 break
             await self._around.until_changed(_RETURN_S / _LOOKS)
-        self._passed_over.forget()
-        return True
+        return not away <= self._around.unavailable.keys()
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
@@ -307,11 +315,17 @@ def _nothing_left(reasons: Mapping[str, str]) -> str:
 
 def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
     """The actions that are worth more than the choice and cannot be carried out now, with the reasons."""
-    known = [value for value in plan.actions if value.is_known(plan.simulations)]
+    best = plan.best
+
+    def is_worth_more(value: ActionValue) -> bool:
+        # The search keeps the estimates of all others at the choice's; bounds tell where it is proven.
+        is_proven = None not in (value.at_least, best.at_most) and value.at_least > best.at_most
+        return is_proven or (value.is_known(plan.simulations) and value.q > best.q)
+
     return {
         value.action: barred[value.action]
-        for value in known
-        if value.q > plan.best.q and value.action in barred
+        for value in plan.actions
+        if value.action in barred and is_worth_more(value)
     }
 
 

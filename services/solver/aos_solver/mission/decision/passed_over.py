@@ -12,13 +12,21 @@ class PassedOver:
 
     def __init__(self) -> None:
         self._decisions: Counter[str] = Counter()
+        self._awaited: set[str] = set()
 
     def count(self, skills: Iterable[str]) -> None:
         """One more decision has passed over these."""
         self._decisions.update(set(skills))
 
+    def not_awaited(self, skills: Iterable[str]) -> set[str]:
+        """Returns those that are to be waited for first: they have been away since the last decision."""
+        new = set(skills) - self._awaited
+        self._awaited |= new
+        return new
+
     def reasons(self, unavailable: Mapping[str, str]) -> dict[str, str]:
         """Returns the skills to do without, each with the reason; what is available again begins anew."""
+        self._awaited &= unavailable.keys()
         for skill in self._decisions.keys() - unavailable.keys():
             del self._decisions[skill]
         return {

@@ -61,7 +61,10 @@ class SettingAside:
         if row is None or (row.announced != announced and row.last not in _NOBODY_KNOWS):
             row = self._rows[skill] = _Row(announced)
         row.restarts += row.announced != announced
-        row.announced, row.last = announced, status
+        row.announced = announced
+        # What is refused has begun nothing: it tells nothing of how the adapter ended.
+        if status != "refused" or not row.last:
+            row.last = status
         row.failures += 1
         row.weight += weight
 
