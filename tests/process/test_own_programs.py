@@ -11,6 +11,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from contextlib import ExitStack
 from itertools import pairwise
 from pathlib import Path
@@ -402,6 +403,22 @@ def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) ->
     summary = json.loads(Path("runs/latest/summary.json").read_text())
     assert (summary["ending"], summary["exit_code"]) == ("fault", 7)
     assert [(end["name"], end["how"]) for end in summary["process_ends"]] == [("sim", "exit status 5")]
+
+
+def test_an_interface_that_the_robot_defines_otherwise_ends_the_start_at_once(project: Path) -> None:
+    robot = project / "fetch_robot.py"
+    lack = 'token = f"aos/{ROBOT}/lack/{ADAPTER}/AOS509%3A it is no Trigger/{short}"'
+    declare = "declared.append(session.liveliness().declare_token(token))"
+    old = f"        {declare}"
+    text = robot.read_text()
+    assert old in text
+    robot.write_text(text.replace(old, f'        if path == "/take":\n            {lack}\n{old}'))
+    started_s = time.monotonic()
+    done = up()
+    assert done.returncode == 3, done.stdout
+    why = "take: no adapter answers calls of /take: robot says: AOS509: it is no Trigger"
+    assert f"AOS807: not every skill can be run, and to wait mends nothing: {why}" in done.stderr
+    assert time.monotonic() - started_s < 30, "the time that a program may take to serve its paths"
 
 
 def test_two_processes_that_serve_one_path_are_told_at_the_start_each_with_its_process(project: Path) -> None:

@@ -4,7 +4,6 @@ import asyncio
 import json
 import os
 import subprocess
-import time
 from pathlib import Path
 from typing import Any
 
@@ -242,21 +241,6 @@ async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp
     with pytest.raises(ModelError):
         await BuildCache(tmp_path).fill("entry", fail)
     assert entries(tmp_path) == []
-
-
-async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path):
-    async def make(staging: Path) -> None:
-        (staging / "part").write_text("whole")
-
-    long_ago_s = time.time() - 40 * 86400
-    names = ("model-forgotten", "model-used", "model-killed.building")
-    for name in names:
-        await BuildCache(tmp_path).fill(name, make)
-    for name in names:
-        os.utime(tmp_path / name, (long_ago_s, long_ago_s))
-    assert BuildCache(tmp_path).find("model-used") is not None
-    await BuildCache(tmp_path).fill("model-new", make)
-    assert sorted(path.name for path in entries(tmp_path)) == ["model-new", "model-used"]
 
 
 async def test_what_models_include_is_compiled_once_and_changes_nothing(

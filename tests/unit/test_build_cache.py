@@ -13,6 +13,7 @@ import pytest
 from processes import HANG_S
 
 from aos_protocol.errors import StorageError
+from aos_solver.building import build_cache
 from aos_solver.building.build_cache import BuildCache
 from aos_solver.building.compiler_run import internal_error
 
@@ -120,17 +121,20 @@ async def test_a_cache_that_cannot_be_written_is_told_with_the_way_to_another(tm
         await BuildCache(tmp_path / "file" / "cache").fill("model-1", make)
 
 
-async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path):
+async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path, monkeypatch):
+    monkeypatch.setattr(build_cache, "_MOST_USED", 0)  # The process that has made them has ended.
+
     async def make_large(staging: Path) -> None:
         (staging / "headers").mkdir()
         (staging / "headers" / "part").write_bytes(bytes(100_000))
 
     cache = BuildCache(tmp_path, size_bytes=250_000)
+    # The clock was set back after the first two were asked for.
     for age_s, name in (
-        (10_000, "model-old"),
+        (-10_000, "model-old"),
+        (-30_000, "model-new"),
         (30_000, "model-oldest"),
         (20_000, "model-older"),
-        (60, "model-new"),
     ):
         entry = await cache.fill(name, make_large)
         os.utime(entry, (time.time() - age_s,) * 2)
@@ -139,10 +143,18 @@ async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longes
     assert sorted(names(tmp_path)) == ["model-new", "model-newest", "model-older"]
 
 
-async def test_what_may_be_running_stays_though_the_cache_is_too_large(tmp_path):
-    for name in ("model-a", "model-b", "model-c"):
+async def test_what_may_be_running_or_is_being_made_stays_whatever_the_clock_says(tmp_path):
+    async def make_beside_others(staging: Path) -> None:
+        for name in names(tmp_path):
+            os.utime(tmp_path / name, (0, 0))
+        await BuildCache(tmp_path, size_bytes=1).fill("model-d", make)
+        await make(staging)
+
+    (tmp_path / "model-killed.building").mkdir()
+    for name in ("model-a", "model-b"):
         await BuildCache(tmp_path, size_bytes=1).fill(name, make)
-    assert len(names(tmp_path)) == 3
+    await BuildCache(tmp_path, size_bytes=1).fill("model-c", make_beside_others)
+    assert sorted(names(tmp_path)) == ["model-a", "model-b", "model-c", "model-d"]
 
 
 def test_a_disk_that_is_full_is_no_mistake_in_documents_or_engine():

@@ -7,7 +7,9 @@ import socket as sockets
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -137,7 +139,7 @@ def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
     short_folder: Path, monkeypatch
 ):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
-    names = ("killed", "listened", "locked", "young", "filled")
+    names = ("killed", "listened", "locked", "filled")
     folders = {name: short_folder / f"aos-bus-{name}" for name in names}
     living = []
     for name, folder in folders.items():
@@ -150,9 +152,7 @@ def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
         else:
             bound.close()  # What is left of it is the file.
     (folders["filled"] / "else").touch()
-    for name in names:
-        if name != "young":
-            os.utime(folders[name], (0, 0))
+    os.utime(folders["locked"], (0, 0))  # No clock counts.
     lock = os.open(folders["locked"], os.O_RDONLY)
     fcntl.flock(lock, fcntl.LOCK_EX)
     remove_left_sockets()
@@ -160,3 +160,26 @@ def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
     living[0].close()
     assert {name for name, folder in folders.items() if folder.exists()} == set(names) - {"killed"}
     assert (folders["filled"] / "else").exists()
+
+
+def test_a_folder_that_is_being_made_is_not_taken_for_one_that_was_left(
+    short_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
+    run = short_folder / ("long" * 30)
+    stopping = threading.Event()
+
+    def remove() -> None:
+        while not stopping.is_set():
+            remove_left_sockets()
+
+    with ThreadPoolExecutor() as threads:
+        removing = threads.submit(remove)
+        try:
+            for _ in range(300):
+                socket = place_of_socket(run)
+                assert socket.parent.is_dir()
+                remove_socket(socket)
+        finally:
+            stopping.set()
+        removing.result()

@@ -16,6 +16,7 @@ from aos_deploy.runs.living import chosen_run
 from aos_deploy.views.lines import lines_of, on_one_line
 from aos_protocol.access import WATCHER
 from aos_protocol.messages import DecisionRecord, MissionState
+from aos_protocol.unavailable import told_together
 from aos_runtime.disk.mission_folders import JOURNAL, mission_folder, mission_folders
 
 if TYPE_CHECKING:
@@ -98,7 +99,8 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
     if not event.planner:
         return []  # The line of the decision says who has asked for it.
     barred = [why for made in event.searches if not made.is_dropped for why in made.barred.values()]
-    told = [event.why, *(f"barred: {why}" for why in dict.fromkeys(barred) if why not in event.why)]
+    others = told_together(why for why in barred if why not in event.why)
+    told = [event.why, f"barred: {others}"] if others else [event.why]
     return [on_one_line(f"         {event.planner}: {'; '.join(told)}")]
 
 

@@ -9,6 +9,7 @@ from aos_deploy.processes.supervisor import Supervisor
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
 from aos_protocol.spelling import nearest
+from aos_protocol.unavailable import by_reason
 from aos_runtime.bus.subscription import merged
 from aos_runtime.parties.reported_state import state_when
 from aos_runtime.parties.served import lacks, served
@@ -26,7 +27,8 @@ async def until_skills_can_run(
     """Returns when all skills of the newest revision can be run, with `misspelt_paths` of these.
 
     A path that two serve, and what adapters lack for another, is reported soon. DeployError AOS807 names the
-    paths that nobody serves, or two adapters serve, after the time that adapters may take to start.
+    paths that nobody serves, or two adapters serve, after the time that adapters may take to start; at once
+    where the robot defines one otherwise.
     """
     bus, keys = supervisor.bus, supervisor.keys
     project = await bus.ask(keys.project, ProjectQuery(deployment.project), ProjectRevision, timeout_s=_ASK_S)
@@ -37,8 +39,8 @@ async def until_skills_can_run(
         newest = state
         return max(state.refused, state.revision) >= project.revision
 
-    def is_complete(state: MappingState) -> bool:
-        return has_revision(state) and (state.refused >= project.revision or not state.unavailable)
+    def is_decided(state: MappingState) -> bool:
+        return has_revision(state) and (not _missing(state, project) or _is_certain(state))
 
     # How long mappings take to be generated says nothing of adapters.
     await state_when(
@@ -46,27 +48,44 @@ async def until_skills_can_run(
     )
     longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_NOBODY_S)
 
-    async def complete_within(timeout_s: float) -> None:
+    async def decided_within(timeout_s: float) -> None:
         await state_when(
-            bus, keys.mapping_state, MappingQuery(), MappingState, is_complete, timeout_s=timeout_s
+            bus, keys.mapping_state, MappingQuery(), MappingState, is_decided, timeout_s=timeout_s
         )
 
+    def not_all(state: MappingState, why: str) -> DeployError:
+        return DeployError(
+            f"not every skill can be run{why}: {_reasons(state, state.unavailable)}",
+            code="AOS807",
+            hint=_hint(supervisor, deployment),
+        )
+
+    settled_s = min(longest_s, _SETTLED_S)
     try:
         try:
-            await complete_within(min(longest_s, _SETTLED_S))
+            await decided_within(settled_s)
         except BusError:
             for text in (*await _served_by_several(supervisor), *await _lacking(supervisor)):
                 report(Told(text))
-            await complete_within(max(longest_s - _SETTLED_S, _NOBODY_S))
+            if settled_s == longest_s:
+                raise
+            await decided_within(longest_s - settled_s)
     except BusError as error:
         if newest is None or not newest.unavailable:
             raise
-        raise DeployError(
-            f"not every skill can be run within {longest_s:g} s: {_reasons(newest, newest.unavailable)}",
-            code="AOS807",
-            hint=_hint(supervisor, deployment),
-        ) from error
+        raise not_all(newest, f" within {longest_s:g} s") from error
+    if newest is not None and _missing(newest, project):
+        raise not_all(newest, ", and to wait mends nothing")
     return misspelt_paths(deployment, {skill.mapping.activation.path for skill in project.project.skills})
+
+
+def _missing(state: MappingState, project: ProjectRevision) -> bool:
+    return state.refused < project.revision and bool(state.unavailable)
+
+
+def _is_certain(state: MappingState) -> bool:
+    """Says whether a skill is missing for good: the robot defines its interface otherwise."""
+    return any("says: AOS509" in reason for reason in state.unavailable.values())
 
 
 async def _served_by_several(supervisor: Supervisor) -> list[str]:
@@ -125,7 +144,8 @@ def _runnable(state: MappingState | bool) -> set[str]:
 
 
 def _reasons(state: MappingState, skills: Collection[str]) -> str:
-    return "; ".join(f"{skill}: {state.unavailable[skill]}" for skill in sorted(skills))
+    told = by_reason({skill: state.unavailable[skill] for skill in sorted(skills)})
+    return "; ".join(f"{', '.join(away)}: {reason}" for reason, away in told.items())
 
 
 def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str, ...]:

@@ -5,7 +5,6 @@ import os
 import re
 import socket as sockets
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -18,8 +17,6 @@ _LONGEST_BYTES = 107
 _PLAIN = re.compile(r"/[A-Za-z0-9_./@+,=~-]+")
 """Zenoh reads other characters of an endpoint as the beginning of options."""
 _PREFIX = "aos-bus-"
-_LEFT_S = 60.0
-"""A folder that is younger may be one that is being made."""
 _KEPT: dict[Path, int] = {}
 """Locks of the folders that this process has made, which end with it, also by SIGKILL."""
 
@@ -36,12 +33,20 @@ def place_of_socket(run: Path) -> Path:
     for folder in _folders():
         name = folder / f"{_PREFIX}12345678" / SOCKET
         if _can_be(name) and os.access(folder, os.W_OK | os.X_OK):
-            made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
-            lock = _locked(made)
-            if lock is not None:
-                _KEPT[made] = lock
-            return made / SOCKET
+            return _made_in(folder) / SOCKET
     raise OSError(36, f"no folder has a path that is short enough for the socket of {run}")
+
+
+def _made_in(folder: Path) -> Path:
+    """A new folder whose lock this process holds, where there are locks."""
+    while True:
+        made = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+        lock = _locked(made, waits=True)
+        if lock is not None:
+            _KEPT[made] = lock
+        if made.exists():  # Before it was locked, another process may have removed it as left.
+            return made
+        remove_socket(made / SOCKET)
 
 
 def remove_socket(socket: Path) -> None:
@@ -65,8 +70,7 @@ def remove_left_sockets() -> None:
 
 
 def _remove_if_left(folder: Path) -> None:
-    status = folder.lstat()
-    if status.st_uid != os.getuid() or time.time() - status.st_mtime < _LEFT_S:
+    if folder.lstat().st_uid != os.getuid():
         return
     lock = _locked(folder)
     if lock is None:
@@ -84,14 +88,17 @@ def _folders() -> Iterator[Path]:
     yield from dict.fromkeys(Path(name) for name in named if name)
 
 
-def _locked(folder: Path) -> int | None:
-    """A descriptor that holds the folder's lock; None where somebody else does, or it is no folder."""
+def _locked(folder: Path, *, waits: bool = False) -> int | None:
+    """A descriptor that holds the folder's lock; None where somebody else does, or it is no folder.
+
+    Whoever looks whether a folder was left holds it for a second at most, and can be waited for.
+    """
     try:
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
     except OSError:
         return None
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if waits else fcntl.LOCK_NB))
     except OSError:
         os.close(descriptor)
         return None

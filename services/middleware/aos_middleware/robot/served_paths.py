@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys, Lack, Serving
+from aos_protocol.unavailable import NO_ADAPTER
 from aos_runtime.bus.bus import Bus
 from aos_runtime.bus.subscription import merged
 
@@ -122,11 +123,9 @@ class ServedPaths:
 def no_adapter(path: str, lacks: str = "") -> SkillError:
     """Nothing was begun. Adapters that are there may have told what they lack."""
     if lacks:
-        return SkillError(
-            f"no adapter answers calls of {path}: {lacks}", code="AOS505", hint="See the adapter's log"
-        )
+        return SkillError(f"{NO_ADAPTER}{path}: {lacks}", code="AOS505", hint="See the adapter's log")
     return SkillError(
-        f"no adapter answers calls of {path}",
+        f"{NO_ADAPTER}{path}",
         code="AOS505",
         hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
     )

@@ -1,13 +1,15 @@
 """A cache of build results that several processes may share.
 
 An entry is a directory that appears at once, by a rename, when everything in it is complete. Its name is the
-digest of all that decides about the result. Before a new entry is made, those go that nobody has asked for in
-a month, and beyond the cache's size those that were not asked for the longest.
+digest of all that decides about the result. Before a new entry is made, those beyond the cache's size go that
+were not asked for the longest. No age counts, since clocks are set: whoever uses a folder holds its lock, and
+what is asked for gets a later stamp than all others have.
 
 Who makes an entry holds its lock (`build_lock`), and others wait for the entry instead of making it as well.
 """
 
 import contextlib
+import fcntl
 import hashlib
 import os
 import shutil
@@ -18,12 +20,13 @@ from pathlib import Path
 from aos_protocol.errors import StorageError
 from aos_solver.building.build_lock import build_lock
 
-_ABANDONED_AFTER_S = 3600.0
-_UNUSED_AFTER_S = 30 * 86400.0
+_BUILDING = ".building"
 _SIZE_BYTES = 2 * 2**30
 """A dozen engines with headers compiled in advance, of some 100 MB each, and hundreds of models of 1 MB."""
-_IN_USE_S = 3600.0
-"""An entry that somebody has asked for within this time may be in use, and stays whatever the size of all."""
+_USED: dict[tuple[int, int], int] = {}
+"""What this process has asked for last, each folder with the open file that holds its lock."""
+_MOST_USED = 64
+"""A process may have few files: beyond so many it lets go of the first."""
 
 
 def digest_of(parts: Iterable[str]) -> str:
@@ -44,10 +47,18 @@ class BuildCache:
     def find(self, name: str) -> Path | None:
         """The entry of that name, if it is complete."""
         entry = self.directory / name
-        if not entry.is_dir():
+        handle = _held(entry)
+        if handle is None:
             return None
+        status = os.fstat(handle)
+        if (older := _USED.pop((status.st_dev, status.st_ino), None)) is not None:
+            os.close(older)
+        _USED[status.st_dev, status.st_ino] = handle
+        while len(_USED) > _MOST_USED:
+            os.close(_USED.pop(next(iter(_USED))))
         with contextlib.suppress(OSError):
-            os.utime(entry)
+            newest_ns = max(path.lstat().st_mtime_ns for path in self.directory.glob("*-*"))
+            os.utime(entry, ns=(max(time.time_ns(), newest_ns + 1),) * 2)
         return entry
 
     async def fill(
@@ -81,14 +92,18 @@ class BuildCache:
 
     async def _made(self, name: str, make: Callable[[Path], Awaitable[None]]) -> Path:
         entry = self.directory / name
-        staging = self.directory / f"{name}.{os.getpid()}.{time.monotonic_ns()}.building"
-        staging.mkdir(parents=True)
+        staging = self.directory / f"{name}.{os.getpid()}.{time.monotonic_ns()}{_BUILDING}"
+        handle = None
+        while handle is None:  # Another process may remove it before it is held.
+            staging.mkdir(parents=True, exist_ok=True)
+            handle = _held(staging)
         try:
             await make(staging)
             self._move_into_place(staging, entry)
         finally:
             shutil.rmtree(staging, ignore_errors=True)
-        return entry
+            os.close(handle)
+        return self.find(name) or entry
 
     def _move_into_place(self, staging: Path, entry: Path) -> None:
         try:
@@ -99,25 +114,60 @@ class BuildCache:
                 raise
 
     def _remove_old(self) -> None:
-        """Removes unused entries, what killed builds have left, and what is beyond the size of the cache."""
-        now_s = time.time()
-        kept: list[tuple[float, Path]] = []
+        """Removes what killed builds have left, and what is beyond the size of the cache."""
+        kept: list[tuple[int, Path]] = []
         for path in self.directory.glob("*-*"):
-            limit_s = _ABANDONED_AFTER_S if path.suffix == ".building" else _UNUSED_AFTER_S
             with contextlib.suppress(OSError):
                 if path.is_symlink() or not path.is_dir():
                     continue
-                asked_s = path.stat().st_mtime
-                if now_s - asked_s > limit_s:
-                    shutil.rmtree(path, ignore_errors=True)
+                if path.suffix == _BUILDING:
+                    _remove(path)
                 else:
-                    kept.append((asked_s, path))
+                    kept.append((path.stat().st_mtime_ns, path))
         excess_bytes = sum(_size_bytes(path) for _, path in kept) - self._size_bytes
-        for asked_s, path in sorted(kept):
-            if excess_bytes <= 0 or now_s - asked_s < _IN_USE_S:
+        for _, path in sorted(kept):
+            if excess_bytes <= 0:
                 return
-            excess_bytes -= _size_bytes(path)
-            shutil.rmtree(path, ignore_errors=True)
+            size_bytes = _size_bytes(path)
+            if _remove(path):
+                excess_bytes -= size_bytes
+
+
+def _held(folder: Path) -> int | None:
+    """An open file that holds a folder's lock beside others; None where it is not there, or being removed."""
+    try:
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        if os.path.samestat(os.fstat(handle), folder.stat()):
+            return handle
+    except (BlockingIOError, FileNotFoundError):
+        pass
+    except OSError:
+        return handle  # Where there are no locks, nobody removes anything.
+    os.close(handle)
+    return None
+
+
+def _remove(folder: Path) -> bool:
+    """Removes a folder that nobody holds; returns whether it has gone."""
+    try:
+        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if folder.suffix != _BUILDING:
+            # It goes at once, as it came.
+            folder = folder.rename(f"{folder}.{os.getpid()}.{time.monotonic_ns()}{_BUILDING}")
+        shutil.rmtree(folder, ignore_errors=True)
+    except OSError:
+        return False
+    finally:
+        os.close(handle)
+    return True
 
 
 def _size_bytes(folder: Path) -> int:

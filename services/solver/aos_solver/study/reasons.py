@@ -5,6 +5,7 @@ import time
 
 from aos_protocol.errors import AosError, IntractableError, SkillError, StudyError
 from aos_protocol.messages import Consequence, DecisionRecord, Flip, ValueTerm, Why
+from aos_protocol.unavailable import told_together
 from aos_solver.child.answers.models import RewardTerms
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.past import updated
@@ -94,7 +95,7 @@ class Reasons:
     def _other(self, instead: str, values: dict[str, Value]) -> str:
         made = deciding_search(self._decision)
         barred = made.barred if made else {}
-        reasons = "; ".join(dict.fromkeys(barred.values()))
+        reasons = told_together(barred.values())
         if instead:
             if instead not in values:
                 names = ", ".join(name for name in values if name != self._decision.action)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Set
 import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary, ChosenBy, SearchMade
+from aos_protocol.unavailable import told_together
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.control.steering import Asked
@@ -155,7 +156,7 @@ class Chooser:
                 if actions[n].skill in unavailable or n in forbidden
             }
             if len(barred) == len(possible):
-                why = "; ".join(sorted({*unavailable.values(), *without.reasons.values()}))
+                why = told_together(sorted({*unavailable.values(), *without.reasons.values()}))
                 risky = ", and all others are too risky" if forbidden else ""
                 return Held(f"the mission holds, for no skill can be run: {why}{risky}")
             again = await self._repeated(model, set(possible) - barred.keys())
@@ -318,9 +319,10 @@ def _kept_back(plan: Plan, barred: Mapping[str, str]) -> dict[str, str]:
     best = plan.best
 
     def is_worth_more(value: ActionValue) -> bool:
-        # The search keeps the estimates of all others at the choice's; bounds tell where it is proven.
-        is_proven = None not in (value.at_least, best.at_most) and value.at_least > best.at_most
-        return is_proven or (value.is_known(plan.simulations) and value.q > best.q)
+        # Estimates are kept at that of the choice, and bounds may prove more.
+        if value.at_least is not None and best.at_most is not None and value.at_least > best.at_most:
+            return True
+        return value.is_known(plan.simulations) and value.q > best.q
 
     return {
         value.action: barred[value.action]
