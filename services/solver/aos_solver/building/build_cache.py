@@ -24,7 +24,7 @@ _BUILDING = ".building"
 _SIZE_BYTES = 2 * 2**30
 """A dozen engines with headers compiled in advance, of some 100 MB each, and hundreds of models of 1 MB."""
 _USED: dict[tuple[int, int], int] = {}
-"""What this process has asked for last, each folder with the open file that holds its lock."""
+"""The folders that this process has asked for last, each with the open file that holds its lock."""
 _MOST_USED = 64
 """A process may have few files: beyond so many it lets go of the first."""
 
