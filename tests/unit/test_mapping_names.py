@@ -135,6 +135,13 @@ def test_a_name_that_nothing_gives_is_an_error_at_its_place(texts, place, rest):
     assert found.startswith(f"{place}: error: no local variable gives {rest}")
 
 
+def test_a_message_that_is_made_by_position_is_told_before_the_run():
+    imports = "from: geometry_msgs.msg import: Point"
+    assert finding_texts(imports=imports, rule="Point(x=answer) == heard") == []
+    (found,) = finding_texts(imports=imports, rule="Point(answer) == heard")
+    assert found.startswith("sell.am:3:16: warning: Point is given fields by position")
+
+
 @pytest.mark.parametrize(
     ("rule", "column", "hint"),
     [

@@ -65,6 +65,10 @@ def decisions(
         directory = chosen_run(system.run, system.runs)
         newest = max(mission_folders(directory.path), default=0)
         if not directory.is_running or mission not in (None, newest):
+            if mission is not None and mission not in mission_folders(directory.path):
+                from aos_deploy.runs.studied import no_such_mission
+
+                raise no_such_mission(directory.path, mission)
             number = mission or newest
             has_ended = False
             for event in _journaled(directory, number):

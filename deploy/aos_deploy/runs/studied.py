@@ -25,6 +25,13 @@ from aos_solver.study.study import Study
 T = TypeVar("T")
 
 
+def no_such_mission(run: Path, number: int) -> StudyError:
+    """The error where a run has no mission of that number."""
+    missions = len(mission_folders(run))
+    hint = f"It has {missions} missions" if missions else "It has one mission: leave --mission out"
+    return StudyError(f"{run.resolve().name} has no mission {number}", hint=hint)
+
+
 class StudiedRun:
     """One mission of a run directory, which may still run: what its journal has now counts."""
 
@@ -44,8 +51,7 @@ class StudiedRun:
         if folders and number is None:
             number = max(folders)
         if number is not None and number not in folders:
-            hint = f"It has {len(folders)} missions" if folders else "It has one mission: leave --mission out"
-            raise StudyError(f"{run.name} has no mission {number}", hint=hint)
+            raise no_such_mission(run, number)
         return cls.of_journal(run, str((mission_folder(run, number or 0) / JOURNAL).relative_to(run)))
 
     @classmethod

@@ -30,6 +30,7 @@ from aos_protocol.spelling import nearest, quoted
 
 _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """The names by which rules read how a skill has failed."""
+_OF_MESSAGES = (".msg", ".srv", ".action")
 _INPUT, _PARAMETERS = "__input", "parameters"
 _BUILT_IN_NAMES = frozenset(dir(builtins))
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -41,7 +42,7 @@ class PythonNames(msgspec.Struct, frozen=True):
 
     `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
     those of the skill. `is_open` where an `import *` brings names that nobody knows here. `of_end` are those
-    that say how the skill has ended.
+    that say how the skill has ended, `messages` the classes that are imported from modules of messages.
     """
 
     known: frozenset[str]
@@ -49,6 +50,7 @@ class PythonNames(msgspec.Struct, frozen=True):
     parameters: tuple[str, ...] = ()
     is_open: bool = False
     of_end: frozenset[str] = frozenset()
+    messages: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, mapping: AbstractionMapping, model: SkillModel | None, scope: Scope) -> PythonNames:
@@ -62,7 +64,15 @@ class PythonNames(msgspec.Struct, frozen=True):
         known |= _names_of_shared(scope.shared_mapping_code)
         parameters = tuple(parameter.name for parameter in model.parameters) if model is not None else ()
         of_end = frozenset() if mapping.monitor else _OF_SKILL
-        return cls(known, local_names, parameters, is_open=imported is None, of_end=of_end)
+        messages = _imported_names(item for item in imports if item.module.endswith(_OF_MESSAGES)) or ()
+        return cls(
+            known,
+            local_names,
+            parameters,
+            is_open=imported is None,
+            of_end=of_end,
+            messages=frozenset(messages),
+        )
 
     @classmethod
     def of_constants(cls, mappings: Iterable[AbstractionMapping], scope: Scope) -> PythonNames:
@@ -132,7 +142,14 @@ def check_names(
     findings: Findings,
     severity: Severity = Severity.ERROR,
 ) -> None:
-    """Reports AOS110 for each name of the snippet that nothing gives."""
+    """Reports AOS110 for each name of the snippet that nothing gives, and warns (AOS121) of messages that are
+    made by position."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(func=ast.Name(id=name), args=[_, *_]) if name in names.messages:
+                span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+                message = f"{name} is given fields by position, which fails where it cannot be imported"
+                findings.warning("AOS121", message, span, f"Give them by name: `{name}(field=...)`")
     if names.is_open or any(alias.name == "*" for alias in ast.walk(tree) if isinstance(alias, ast.alias)):
         return
     known = names.known | _bound_names(tree)
