@@ -22,14 +22,14 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
 ) -> None:
     """Over 60 steps rests return -82 on average, and a round trip by hand -17."""
     built = await built_text(greenhouse(5), cache_dir)
-    async with engine_of(built) as engine, engine_of(built) as other:
+    async with engine_of(built) as engine, engine_of(built) as other, engine_of(built) as third:
         plan = await engine.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto")
         assert plan.planner == "savings"
         same = await other.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto")
         assert same.actions == plan.actions
         # An action that is barred saves nothing.
         within = Restriction(barred=[plan.index])
-        barred = await other.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto", within=within)
+        barred = await third.plan(simulations=_FEW_SIMULATIONS, seed=1, planner="auto", within=within)
         assert (barred.planner, barred.index == plan.index) == ("savings", False)
         limits = MissionLimits(goal_probability=1, step_limit=60)
         searches = (Search(simulations=_FEW_SIMULATIONS, seed=seed) for seed in range(1, 1 + _MISSIONS))
