@@ -28,6 +28,7 @@ from .photo import Photo, photo, photo_rule
 from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
+from .seek import SEEK, SEEK_RULES, SEEK_SIZES, SEEK_WORLDS
 from .sorting import Sorting, sorting, sorting_rule
 from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
 from .towers import Towers, towers, towers_rule
@@ -43,13 +44,14 @@ _SINGLE = {
     "sorting": sorting,
     "gauges": gauges,
 }
-_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
+_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | SEEK | _SINGLE
 _SIZES = (
     SIZES
     | APART_SIZES
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
+    | SEEK_SIZES
     | {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "sorting": 10, "gauges": 8}
 )
 _RULES = (
@@ -58,6 +60,7 @@ _RULES = (
     | UPKEEP_RULES
     | TOGETHER_RULES
     | LEAVING_RULES
+    | SEEK_RULES
     | {
         "rescue": rescue_rule,
         "lock": lock_rule,
@@ -70,6 +73,7 @@ _RULES = (
 _WORLDS = (
     TOGETHER_WORLDS
     | LEAVING_WORLDS
+    | SEEK_WORLDS
     | {"rescue": Rescue, "lock": Lock, "towers": Towers, "photo": Photo, "sorting": Sorting, "gauges": Gauges}
 )
 

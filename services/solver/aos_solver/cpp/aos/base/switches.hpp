@@ -10,7 +10,7 @@
 #endif
 
 // Which planner decides:
-//   lists (of states), estimated_draws, exact, near_states, belief_tree, options, savings
+//   lists (of states), estimated_draws, exact, near_states, belief_tree, options, savings, seek
 // Options:
 //   enough_ways, tests_first, goal_conditions, plain_plans, whole_lists, retries, kept_ways, detours
 // What saves most:
@@ -23,7 +23,7 @@
 //   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
-  of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings)                                  \
+  of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek)                                  \
   of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours)                                                       \
   of(saving_lookahead)                                                                                         \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \

@@ -27,6 +27,7 @@
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
 #include "aos/planning/savings/savings_planner.hpp"
+#include "aos/planning/seek/seek_planner.hpp"
 #include "aos/planning/values/group_missions.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 
@@ -137,11 +138,12 @@ class Planners {
   BeliefTree<Model> belief_tree_{space_, values_, missions_};
   OptionsPlanner<Model> options_{space_, pomcp_};
   SavingsPlanner<Model> savings_{space_, options_, missions_};
+  SeekPlanner<Model> seek_{space_, pomcp_};
   Despot<Model> despot_{space_, values_, missions_};
-  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &pomcp_, &despot_};
+  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_, &despot_};
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const List order_[std::size(planner_names)] = {
-      {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};
+      {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};
   // What is left of a budget in time after so much of it.
   static Budget left_of(Budget budget, std::chrono::nanoseconds spent) {
     if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - std::chrono::duration<double>(spent).count(), 1e-6);

@@ -1,0 +1,85 @@
+// Seeking as a planner: where no way to a reward tells what to do, POMCP is asked, and decides unless to seek returns more (seek_policy.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/base/switches.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/backoff.hpp"
+#include "aos/planning/planner.hpp"
+#include "aos/planning/pomcp/pomcp.hpp"
+#include "aos/planning/seek/seek_policy.hpp"
+#include "aos/planning/step_cost.hpp"
+
+namespace aos {
+
+template <class Model>
+class SeekPlanner final : public Planner<Model> {
+ public:
+  using typename Planner<Model>::Estimates;
+
+  SeekPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
+
+  const char* name() const override { return "seek"; }
+
+  bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
+    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
+    if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
+    if (belief.probability_of(Ending::running) < 1 || pomcp_.has_wide_values(belief, horizon) || !looks_.is_due()) return false;
+    const SearchTime time{choosing};
+    const auto start = PlanningClock::now();
+    const ForgottenTexts forgotten;
+    Sampler own{Sampler{random}.bits()};
+    const double affordable = share * affordable_.of(budget, horizon);
+    sought_ = policy_.find(belief, horizon, barred, affordable, own);
+    affordable_.note(affordable, PlanningClock::now() - start);
+    if (sought_.action >= 0) looks_.succeed();
+    else looks_.fail();
+    const double least = sought_.returned - (has_decided_ ? 0 : sought_.error);
+    has_decided_ = sought_.action >= 0 && least > policy_.given_up();
+    return has_decided_;
+  }
+
+  std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
+    Choosing choosing;
+    pomcp_.prepare(question, random, choosing);
+    const std::uint64_t simulations = pomcp_.search(question, random, why);
+    estimates_ = pomcp_.estimates(question.belief);
+    const auto chosen = static_cast<std::size_t>(pomcp_.choice(estimates_, question.horizon, question.barred));
+    has_decided_ = sought_.returned > estimates_[chosen].q;
+    if (!has_decided_) {
+      why += "; to seek returns less";
+      return simulations;
+    }
+    why += "; to seek what is somewhere returns more, and decides";
+    estimates_.assign(estimates_.size(), {});
+    estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, 64, sought_.error};
+    return simulations;
+  }
+
+  Estimates estimates(const Belief<Model>& /*belief*/) const override { return estimates_; }
+  Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
+  void start_over() override {
+    policy_.start_over();
+    has_decided_ = false;
+    looks_ = Backoff{};
+  }
+
+ private:
+  static constexpr double share = 0.5;  // of a decision's steps
+
+  Pomcp<Model>& pomcp_;
+  SeekPolicy<Model> policy_;
+  AffordableSteps<Model> affordable_;
+  Sought sought_;
+  Estimates estimates_;
+  Backoff looks_;
+  bool has_decided_ = false;
+};
+
+}  // namespace aos
