@@ -60,7 +60,7 @@ ACCEPTED = [
     Rule("go glue.json",
          '«→"ImportCode": [{"From": "robot.msg", "Import": ["Point , Pose", "Turn as T"]}], '
          '»"ServiceParameters": [{"ServiceFieldName": "goal", "AssignServiceFieldCode": '
-         '"«→T(Pose(Point(»goal«→)))»', title="two imports in one text"),
+         '"«→T(a=Pose(a=Point(a=»goal«→)))»', title="two imports in one text"),
     # The paper's words.
     Rule("room.json", '"«PlpMain→GsdlMain»"'),
     Rule("go.json", '"«PlpMain→GsdlMain»": {"Project": "two rooms", "Name": "go", "Type": "«PLP→GSDL»"'),
