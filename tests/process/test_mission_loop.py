@@ -228,6 +228,42 @@ async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_
     assert [made.is_dropped for made in around.decisions[1].searches] == [True, False]
 
 
+async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for_any_more(
+    field: BuiltModel,
+) -> None:
+    def robot(request: Activate) -> Outcome:
+        around.unavailable = {"flood": "its adapter has left"}
+        return done(request)
+
+    around = Surroundings(robot)
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around.on_hold = lambda: waits.append(len(around.decisions))
+    waits: list[int] = []
+    state, _ = await run_mission(field, robot, limits=MissionLimits(step_limit=20), around=around)
+    assert [record.skill for record in around.decisions] == ["drive", "drive", "water"]
+    assert waits == [1] * 10
+    why = "flood is left out, as it was waited for and has not come back: its adapter has left"
+    assert why in around.decisions[1].why
+    assert state.ending == "goal"
+
+
+async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over(cache_dir: Path) -> None:
+    spray = "state__.is_sprayed = true;"
+    skills = {"inspect": "__reward = 0;", "spray": spray}
+    environment = FIELD.replace("field", "row").replace("is_watered", "is_sprayed")
+    files = {"row.ef": environment.replace("0.95", "1.0")}
+    for skill, code in skills.items():
+        files[f"{skill}.sd"] = f"project: row\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
+    row = await built_text(files, cache_dir)
+    around = Surroundings(done)
+    around.announced = dict.fromkeys(skills, 1)
+    around.unavailable = {"spray": "its adapter has left"}
+    state, _ = await run_mission(row, done, limits=MissionLimits(step_limit=20), around=around)
+    assert [record.skill for record in around.decisions] == ["inspect"] * 3
+    assert state.ending == "skills_failed"
+    assert "spray is left out, as it was waited for and has not come back" in state.remark
+
+
 async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_no_step_is_spent(
     field: BuiltModel,
 ) -> None:

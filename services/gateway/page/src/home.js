@@ -40,7 +40,7 @@ function Run({ run }) {
 }
 
 export function Start() {
-  const [projects, setProjects] = useState([]);
+  const [projects, setProjects] = useState(null);
   const [project, setProject] = useState("");
   const [options, setOptions] = useState({ model: true, stay: false, seed: "" });
   const [failed, setFailed] = useState(null);
@@ -92,8 +92,8 @@ export function Start() {
     <form onSubmit=${start}>
       <label class="field">Project
         <select value=${project} onChange=${(event) => setProject(event.target.value)}>
-          ${projects.map((each) => html`<option value=${each.deploy_file}>${each.project}${each.is_uploaded ? " (uploaded)" : ""}</option>`)}
-          ${!projects.length && html`<option value="">No deploy file in this folder</option>`}
+          ${projects?.map((each) => html`<option value=${each.deploy_file}>${each.project}${each.is_uploaded ? " (uploaded)" : ""}</option>`)}
+          ${!projects?.length && html`<option value="">${projects ? "No deploy file in this folder" : "Loading…"}</option>`}
         </select></label>
       <label class="field">Seed <input inputmode="numeric" pattern="[0-9]*" placeholder="that of the file" value=${options.seed} onInput=${(event) => change("seed", event.target.value)} /></label>
       <label class="check"><input type="checkbox" checked=${options.model} onChange=${(event) => change("model", event.target.checked)} /> Skills are played by their documents; no robot moves</label>

@@ -173,15 +173,14 @@ class Chooser:
                 continue
             kept_back = _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
             away = {actions[n].skill for n in barred if actions[n].name in kept_back} & unavailable.keys()
-            left = {skill for skill in away if self._around.announced.get(skill)}
-            if ended is None and await self._come_back(self._passed_over.not_awaited(left)):
+            if ended is None and await self._is_waited_for(self._left(away)):
                 continue
             told = await self._endless.newly_found(engine)
             told += [f"{name} cannot be chosen now: {why}" for name, why in kept_back.items()]
             plan = _explained(plan, without.reasons, is_cautious, told)
             if ended is not None:
                 return ended
-            self._passed_over.count(away)
+            self._passed_over.count(away | self._left({actions[n].skill for n in barred}))
             chosen_by, searches = self.search.chosen_by, self._searches.told()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
 
@@ -190,20 +189,32 @@ class Chooser:
 
         That is waited for: decisions for want of them would use the mission's steps up in a moment.
         """
-        away = self._passed_over.reasons(self._around.unavailable).keys()
+        away = self._passed_over.to_await(self._around.unavailable)
         if not away:
             return False
         await self._come_back(away)
+        self._passed_over.lose(self._left(away))
         self._passed_over.forget()
         return True
 
-    async def _come_back(self, away: Set[str]) -> bool:
-        """Waits for skills that are away, if any; returns whether one of them has come back in time."""
+    def _left(self, skills: Set[str]) -> set[str]:
+        """Those of the skills that are away and were there before."""
+        away = skills & self._around.unavailable.keys()
+        return {skill for skill in away if self._around.announced.get(skill)}
+
+    async def _is_waited_for(self, left: set[str]) -> bool:
+        """Waits once per absence; returns whether a search is due, with those back or without those lost."""
+        awaited = self._passed_over.not_awaited(left)
+        await self._come_back(awaited)
+        self._passed_over.lose(self._left(awaited))
+        return bool(awaited)
+
+    async def _come_back(self, away: Set[str]) -> None:
+        """Waits for skills that are away, if any, until one of them has come back or the time is over."""
         for _ in range(_LOOKS if away else 0):
             if not away <= self._around.unavailable.keys():
                 break
             await self._around.until_changed(_RETURN_S / _LOOKS)
-        return not away <= self._around.unavailable.keys()
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
