@@ -32,6 +32,7 @@
 #include "progress.cpp"
 #include "rollout.cpp"
 #include "search_tree.cpp"
+#include "seek.cpp"
 #include "split_draws.cpp"
 #include "state_space.cpp"
 #include "text_order.cpp"

@@ -1,0 +1,103 @@
+// What is somewhere is sought: seek_planner.hpp, seek_policy.hpp.
+#include "aos/planning/seek/seek_planner.hpp"
+
+#include "aos/planning/listed/state_space.hpp"
+#include "aos/planning/pomcp/pomcp.hpp"
+#include "aos/planning/values/group_missions.hpp"
+#include "aos/planning/values/mdp_values.hpp"
+#include "check.hpp"
+#include "worlds.hpp"
+
+namespace seek_tests {
+
+using units::Problem;
+using units::TableModel;
+
+constexpr std::uint32_t cells = 14;
+constexpr int go = 0, back = 1, look = 2, take = 3, leave = 4;
+constexpr int horizon = 60;
+
+// A thing is in one of the far cells of a corridor. To look tells whether it is near, often, and to leave pays for it in the first cell only.
+Problem corridor_with_a_thing(double found) {
+  const std::uint32_t things = cells + 1;  // the last number: the robot has it
+  const std::uint32_t states = cells * things;
+  Problem problem = units::world(states + 2, 5, 0.98);
+  problem.endings[states] = 1;
+  problem.endings[states + 1] = 2;
+  problem.horizon = horizon;
+  problem.sensings.push_back({{0, 0.85}, {1, 0.15}});
+  problem.sensings.push_back({{0, 0.05}, {1, 0.95}});
+  problem.sensings.push_back({{0, 1.0}});
+  problem.sensings.push_back({{1, 1.0}});
+  problem.starts.clear();
+  for (std::uint32_t thing = 4; thing < cells; ++thing) problem.starts.push_back({thing, 1.0 / (cells - 4)});
+  for (std::uint32_t state = 0; state < states; ++state) {
+    const std::uint32_t cell = state / things, thing = state % things;
+    problem.values[2 * state] = static_cast<int>(cell);
+    problem.values[2 * state + 1] = static_cast<int>(thing);
+    const bool is_near = thing != cells && cell + 1 >= thing && cell <= thing + 1;
+    const std::uint32_t next = cell + 1 < cells ? cell + 1 : cell, last = cell > 0 ? cell - 1 : cell;
+    units::row(problem, state, go) = {{1.0, next * things + thing, 0, -0.2}};
+    units::row(problem, state, back) = {{1.0, last * things + thing, 0, -0.2}};
+    units::row(problem, state, look) = {{1.0, state, is_near ? 1u : 2u, -0.2}};
+    units::row(problem, state, take) = {{1.0, thing == cell ? cell * things + cells : state, thing == cell ? 3u : 4u, thing == cell ? -0.2 : -3.0}};
+    const bool is_paid = thing == cells;
+    units::row(problem, state, leave) = {{1.0, cell == 0 ? states : states + 1, 0, cell > 0 ? -60 : is_paid ? found : 0}};
+  }
+  return problem;
+}
+
+// Steps draw a number, as a battery does, so that states cannot be listed.
+struct Drained : TableModel {
+  template <class Random>
+  static aos::Step step(State& state, int action, Random& random) {
+    random.uniform();
+    return TableModel::step(state, action, random);
+  }
+  static double rollout(const State& state, int& left, aos::Sampler& random) { return aos::rollout<Drained>(state, left, random); }
+  static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
+    aos::rollout_odds<Drained>(state, odds, action_count(), random);
+  }
+};
+
+// What seek finds at the first cell, and whether it is ready to decide there.
+struct Found {
+  aos::Sought sought;
+  double given_up;
+  bool is_ready;
+
+  explicit Found(const Problem& problem) {
+    Drained::take(problem);
+    aos::Sampler random{1};
+    const auto belief = aos::Belief<Drained>::drawn(random);
+    const aos::BarredActions none;
+    aos::SeekPolicy<Drained> policy;
+    sought = policy.find(belief, horizon, none, 100'000, random);
+    given_up = policy.given_up();
+    aos::StateSpace<Drained> space;
+    aos::MdpValues<Drained> values{space};
+    aos::GroupMissions<Drained> missions;
+    aos::Pomcp<Drained> pomcp{space, values, missions};
+    aos::Choosing choosing;
+    is_ready = aos::SeekPlanner<Drained>{space, pomcp}.prepare({belief, {.simulations = 500}, horizon, none}, random, choosing);
+  }
+};
+
+TEST("Who seeks a thing that is somewhere goes towards where it may be, and that returns more than to leave at once") {
+  const Problem problem = corridor_with_a_thing(60);
+  const Found found{problem};
+  EXPECT_EQUAL(found.sought.action, go);
+  EXPECT_EQUAL(found.given_up, 0);
+  EXPECT(found.sought.returned > 20);
+  EXPECT(found.sought.error < 3);
+  EXPECT(found.is_ready);
+}
+
+TEST("A thing that pays less than the way to it is not sought") {
+  const Problem problem = corridor_with_a_thing(1);
+  const Found found{problem};
+  EXPECT_EQUAL(found.sought.action, -1);
+  EXPECT(!found.is_ready);
+}
+
+}  // namespace seek_tests
