@@ -180,7 +180,10 @@ vector<int>& row = state__.grid[0];
 vector<int> gates = {6, 7, 8};
 row.insert(row.begin() + 1, gates.begin(), gates.end());
 row.erase(remove_if(row.begin(), row.end(), [](int n) { return n == 7; }), row.end());
-vector<int>::iterator first = state__.grid[0].begin(); *first = 4;
+vector<int>::iterator first = state__.grid[0].begin(); *first = 3;
+auto& same = row; vector<int>::iterator named = same.begin(); *named += 1;
+const auto& seen_only = state__.grid[0]; std::vector<int>::const_iterator read = seen_only.begin();
+for (auto& grid_row : state__.grid) { std::vector<int>::const_iterator at = grid_row.begin(); (void)*at; }
 std::swap(row[1], row[2]);
 std::vector<int> turned = row; std::reverse(turned.begin(), turned.end()); state__.grid[1] = turned;
 std::set<int> seen(row.begin(), row.end());

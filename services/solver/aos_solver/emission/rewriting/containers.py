@@ -27,12 +27,13 @@ _WEIGHTS = re.compile(r"\s*(?:std\s*::\s*)?vector\s*<\s*double\s*>\s*(?=\{)")
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_LOOPS_OVER = re.compile(r"\s*:(?!:)\s*")
 
 
 def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int, str]]:
     """Replacements (start, end, text) by offsets; `values` are the names of constants.
 
-    - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`
+    - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`, also from `auto& row = state__.row`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
     - `vector<int>* row = &state__.row;` becomes `auto* row`
     - `std::function<void(vector<int>&)> grow = [](...) {...}` becomes `auto grow`
@@ -55,7 +56,7 @@ def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int
             yield call.extent.start + len(call.name[0]), call.arguments[0].start, ", "
     for declaration in cpp.declarations:
         before = cpp.code[: declaration.extent.start]
-        if declaration.type.endswith("iterator") and _mentions_state(cpp, declaration):
+        if declaration.type.endswith("iterator") and _leads_to_state(cpp, declaration):
             if (iterator := _ITERATOR.search(before)) is not None:
                 yield iterator.start(1), iterator.end(1), "auto"
         elif declaration.type.endswith("&") and not declaration.type.startswith("const"):
@@ -94,8 +95,29 @@ def _is_plain_lambda(cpp: Cpp, declaration: Declaration) -> bool:
 
 def _mentions_state(cpp: Cpp, declaration: Declaration) -> bool:
     """Returns whether the state stands anywhere in what a variable starts with."""
+    return _holds(declaration, _places_of_state(cpp))
+
+
+def _holds(declaration: Declaration, places: set[int]) -> bool:
     initial = declaration.initial
-    return initial is not None and any(initial.start <= at < initial.end for at in _places_of_state(cpp))
+    return initial is not None and any(initial.start <= at < initial.end for at in places)
+
+
+def _leads_to_state(cpp: Cpp, declaration: Declaration) -> bool:
+    """Returns whether a variable starts with the state, or with a reference or a pointer into it."""
+    places = _places_of_state(cpp)
+    for earlier in cpp.declarations:
+        if earlier is declaration:
+            break
+        loops_over = _LOOPS_OVER.match(cpp.code, earlier.extent.end)
+        is_inside = _holds(earlier, places) or (loops_over is not None and loops_over.end() in places)
+        if earlier.type.endswith(("&", "*")) and is_inside:
+            places |= {
+                mention.extent.start
+                for mention in cpp.mentions
+                if mention.path[0] == earlier.name and mention.extent.start > earlier.extent.start
+            }
+    return _holds(declaration, places)
 
 
 def _places_of_state(cpp: Cpp) -> set[int]:
