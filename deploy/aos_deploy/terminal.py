@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn
 
 LINE_EVERY_S = 20.0
+TICK_S = 1.0
 _PIPED_COLUMNS = 1000
 
 
@@ -70,14 +72,16 @@ def interruption_told(text: Callable[[], str]) -> Iterator[None]:
 
 
 @contextmanager
-def waiting(what: str) -> Iterator[Callable[[str], None]]:
+def waiting(what: str, *, first_s: float | None = None) -> Iterator[Callable[[str], None]]:
     """Shows what is waited for, and for how long, where the work has no steps to count.
 
-    What is yielded takes how far the work is, as text. Where standard error is no terminal, it is written
-    there as a line, every LINE_EVERY_S at most.
+    What is yielded takes how far the work is, as text. Where standard error is no terminal, lines there tell
+    it: the first after `first_s`, which is LINE_EVERY_S by default, then every LINE_EVERY_S.
     """
     if sys.stderr is None or not sys.stderr.isatty():
-        yield TimedLines(what).tell
+        lines = TimedLines(what, first_s)
+        with lines.ticking():
+            yield lines.tell
         return
     from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
 
@@ -87,16 +91,42 @@ def waiting(what: str) -> Iterator[Callable[[str], None]]:
 
 
 class TimedLines:
-    """Tells how far work is in lines, for logs: the first after LINE_EVERY_S."""
+    """Tells how far work is in lines, for logs: the first after `first_s`, then one every LINE_EVERY_S.
 
-    def __init__(self, what: str) -> None:
+    While it is `ticking`, they come also where the work itself tells nothing.
+    """
+
+    def __init__(self, what: str, first_s: float | None = None) -> None:
         self._what = what
+        self._text = ""
+        self._pause_s = LINE_EVERY_S if first_s is None else first_s
         self._began_s = self._told_s = time.monotonic()
+        self._lock = threading.Lock()
 
     def tell(self, text: str) -> None:
-        now_s = time.monotonic()
-        if now_s - self._told_s < LINE_EVERY_S:
-            return
-        self._told_s = now_s
-        sys.stderr.write(f"aos: {self._what} for {now_s - self._began_s:.0f} s: {text}\n")
-        sys.stderr.flush()
+        with self._lock:
+            self._text = text
+            now_s = time.monotonic()
+            if now_s - self._told_s < self._pause_s:
+                return
+            self._told_s, self._pause_s = now_s, LINE_EVERY_S
+            if sys.stderr is not None:
+                how_far = f": {text}" if text else ""
+                sys.stderr.write(f"aos: {self._what} for {now_s - self._began_s:.0f} s{how_far}\n")
+                sys.stderr.flush()
+
+    @contextmanager
+    def ticking(self) -> Iterator[None]:
+        """Tells the last text again, when a line is due, until the block ends."""
+        has_ended = threading.Event()
+        clock = threading.Thread(target=self._tick, args=(has_ended,), daemon=True)
+        clock.start()
+        try:
+            yield
+        finally:
+            has_ended.set()
+            clock.join(TICK_S)
+
+    def _tick(self, has_ended: threading.Event) -> None:
+        while not has_ended.wait(TICK_S):
+            self.tell(self._text)

@@ -202,3 +202,16 @@ def test_a_traceback_tells_every_mistake_of_what_was_set(bundles: Path) -> None:
     shown = "".join(traceback.format_exception(told.value))
     assert "AOS801: what is set for the mission has errors" in shown
     assert "drnik" in shown
+
+
+def test_what_the_option_sets_wrongly_is_told_at_the_option(bundles: Path) -> None:
+    command = [
+        Path(sys.executable).parent / "aos",
+        "gym",
+        str(bundles / "bench" / "tiger"),
+        "--set",
+        "drnik=1",
+    ]
+    told = subprocess.run(command, check=False, capture_output=True, text=True, timeout=COMMAND_S).stderr
+    assert told.startswith("--set:")
+    assert "drnik" in told

@@ -51,6 +51,8 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(root: Path, 
         assert code == 0, error
         assert "3 of 3 decisions identical in action, values and counts; 6 beliefs identical" in out
         assert json.loads(system.aos("replay", "--until", "2", "--json")[1])["decisions"] == 2
+        beyond = system.aos("replay", "--until", "99")[2]
+        assert "--until 99 is after the last decision, of step 3" in beyond
         assert system.aos("diff", str(run), str(run))[0] == 0
         kept = json.loads((run / "deploy.json").read_text())
         assert Path(kept["bundles"][0]).is_absolute()

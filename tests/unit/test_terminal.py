@@ -1,6 +1,7 @@
 """Progress of long work where standard error is no terminal."""
 
 import io
+import time
 
 import pytest
 
@@ -24,9 +25,21 @@ def test_counted_work_tells_a_log_now_and_then_how_much_is_done(capsys, monkeypa
         task = bar.add_task("hard-table", total=10)
         bar.advance(task)
         bar.update(task, description="easy-table", completed=4)
-    first, second = capsys.readouterr().err.splitlines()
+    begun, first, second = capsys.readouterr().err.splitlines()
+    assert begun == "aos: working for 0 s: hard-table: 0 of 10"
     assert first == "aos: working for 0 s: hard-table: 1 of 10"
     assert second == "aos: working for 0 s: easy-table: 4 of 10"
+
+
+def test_work_that_tells_nothing_is_told_of_all_the_same(capsys, monkeypatch):
+    monkeypatch.setattr(terminal, "TICK_S", 0.01)
+    said = ""
+    with terminal.waiting("looking", first_s=0.02):
+        until_s = time.monotonic() + 30
+        while not said and time.monotonic() < until_s:
+            time.sleep(0.01)
+            said = capsys.readouterr().err
+    assert said == "aos: looking for 0 s\n"
 
 
 @pytest.mark.parametrize(

@@ -60,8 +60,12 @@ def replay(
     in time is compared by its belief alone. No mission is touched.
     """
     directory = chosen_run(run, runs).path
+    studied = StudiedRun.open(directory, mission)
+    made = studied.mission.decisions
+    if until is not None and made and until > made[-1].step:
+        typer.echo(f"aos: --until {until} is after the last decision, of step {made[-1].step}", err=True)
     with waiting("replaying") as told:
-        found = asyncio.run(replayed_run(StudiedRun.open(directory, mission), told, until))
+        found = asyncio.run(replayed_run(studied, told, until))
     if as_json:
         print_json(found)
     else:

@@ -113,7 +113,7 @@ def _found(
     look: Callable[[StudiedRun], Awaitable[T]],
 ) -> T:
     """The answer of the system that runs, or else from the directory of the run."""
-    with waiting("looking into the decision"):
+    with waiting("looking into the decision", first_s=5.0):
         if not system.is_at_endpoint:
             directory = chosen_run(system.run, system.runs)
             if not directory.is_running:

@@ -13,8 +13,8 @@ from rich.progress import Progress
 
 from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
 from aos_deploy.places import shipped
-from aos_deploy.printing import from_here, json_text, print_json
-from aos_deploy.terminal import progress
+from aos_deploy.printing import count, from_here, json_text, print_json
+from aos_deploy.terminal import LINE_EVERY_S, progress
 from aos_lab.commands.interrupted import interruption_among_missions
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import pip_install
@@ -180,7 +180,12 @@ def statistics(
 
 
 def _begin(bar: Progress, text: str, total: int) -> Callable[[], None]:
-    """Shows a new bar; the function moves it on by a mission."""
+    """Shows a new bar, or tells a log how many missions begin; the function moves it on by a mission."""
+    if bar.disable:
+        begin = f"{count(total, 'mission')} to play from start to end"
+        typer.echo(
+            f"aos: {text}: {begin}; a line every {LINE_EVERY_S:.0f} s tells how many are done", err=True
+        )
     return partial(bar.advance, bar.add_task(text, total=total))
 
 

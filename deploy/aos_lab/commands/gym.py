@@ -71,8 +71,8 @@ def gym(
         raise DeployError("gymnasium is not installed", code="AOS805", hint=f"Run {pip_install('gym')}")
     from aos_lab.gym import AosVectorEnv
 
-    values = {value.name: value.text for value in values_of_options(set_values)}
-    environment = AosVectorEnv(bundle, worlds, mission_values=values)
+    given = values_of_options(set_values)
+    environment = AosVectorEnv(bundle, worlds, mission_values=given)
     try:
         rate = _rate(environment, steps, seed) if steps else None
         spaces = Spaces(
@@ -89,7 +89,7 @@ def gym(
     if as_json:
         print_json(spaces)
     else:
-        _print(spaces, bundle, values)
+        _print(spaces, bundle, {value.name: value.text for value in given})
 
 
 def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:

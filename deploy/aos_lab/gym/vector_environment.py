@@ -1,6 +1,5 @@
 """Many worlds as a `gymnasium.vector.VectorEnv`: one call steps them all, in one process beside."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from aos_lab.gym.environment import MAX_SEED
 from aos_lab.gym.spaces import observation_space, observations
-from aos_lab.gym.worlds import HiddenWorlds, check_at_least_one
+from aos_lab.gym.worlds import HiddenWorlds, ValuesToSet, check_at_least_one
 
 Numbers = NDArray[Any]
 
@@ -32,7 +31,7 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
         *,
         max_episode_steps: int | None = None,
         array_room: int = 16,
-        mission_values: Mapping[str, Any] | None = None,
+        mission_values: ValuesToSet = None,
     ) -> None:
         check_at_least_one("num_envs", num_envs)
         check_at_least_one("max_episode_steps", max_episode_steps)

@@ -14,6 +14,7 @@ from aos_deploy.deployment.mission_values import values_of_mapping, with_values
 from aos_deploy.places import cache_dir
 from aos_lab.gym.number_columns import NumberColumns, Numbers
 from aos_protocol.diagnostics import Span
+from aos_protocol.documents import MissionValue
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 
@@ -22,6 +23,10 @@ ENDINGS = ("", "goal", "failure", "over")
 
 TEXT_BYTES = 62
 """A text observation has room for this many bytes; shorter ones end in zeros."""
+
+ValuesToSet = Mapping[str, Any] | Sequence[MissionValue] | None
+"""The values of mission parameters: a mapping from a program, or the values of options, which know where
+they stand."""
 
 T = TypeVar("T")
 
@@ -49,12 +54,10 @@ class HiddenWorlds:
     `number_names` are those of the numbers that are reported beside responses, of an array `array_room`.
     """
 
-    def __init__(
-        self, bundle: Path, array_room: int, mission_values: Mapping[str, Any] | None = None
-    ) -> None:
+    def __init__(self, bundle: Path, array_room: int, mission_values: ValuesToSet = None) -> None:
         self._loop = asyncio.new_event_loop()
         try:
-            self._engine = self._run(_start(bundle, mission_values or {}))
+            self._engine = self._run(_start(bundle, mission_values))
             reset = self._run(self._engine.reset_worlds([0]))
         except BaseException:
             self._loop.close()
@@ -122,9 +125,11 @@ class HiddenWorlds:
         return self._loop.run_until_complete(work)
 
 
-async def _start(bundle: Path, mission_values: Mapping[str, Any]) -> Engine:
+async def _start(bundle: Path, mission_values: ValuesToSet) -> Engine:
     planned, project, _ = project_at(bundle, hint=f"See aos lint {bundle}")
-    values = (*planned.values, *values_of_mapping(mission_values, Span("mission_values")))
+    if isinstance(mission_values, Mapping):
+        mission_values = values_of_mapping(mission_values, Span("mission_values"))
+    values = (*planned.values, *(mission_values or ()))
     project = with_values(project, values, planned.sources)
     built = await build_project(project, cache_dir())
     return await Engine.start(built, seed=1)
