@@ -218,10 +218,11 @@ class System:
         await asyncio.wait_for(self.adapter.is_cancelled.wait(), HANG_S)
         return waiting, is_still
 
-    async def logged(self, text: str) -> None:
-        """Returns once the service has logged a text."""
+    async def logged(self, text: str) -> str:
+        """Returns what the service has logged once a text is in it."""
         async with asyncio.timeout(HANG_S), self._has_logged:
             await self._has_logged.wait_for(lambda: text in self._log)
+            return self._log
 
     async def _read_log(self, child: Child) -> None:
         while line := await child.stderr.readline():

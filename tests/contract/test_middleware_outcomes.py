@@ -1,6 +1,7 @@
 """The outcomes that the middleware makes of a call and its result: a defined one, whatever goes wrong."""
 
 import asyncio
+import math
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,20 @@ async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System) -> No
     await system.adapter.serve("/sense", publish_elsewhere)
     assert [(await system.activate("sense", step)).response for step in (1, 2, 3)] == ["quiet"] * 3
     await system.logged("no message has come on /level in 3 calls of skills. Did you mean `/levels`?")
+
+
+async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: System) -> None:
+    async def look(call: SkillCall) -> dict[str, Any]:
+        last = {"last": math.nan} if call.id.step == 3 else {}
+        return {"lux": math.nan, "pose": {"x": math.inf, "y": 1.0}, "ranges": [math.inf], **last}
+
+    await system.adapter.serve("/sense", look)
+    for step in (1, 2, 3):
+        await system.activate("sense", step)
+    said = await system.logged("sense: last of its result is nan, no finite number. NaN compares as false")
+    assert said.count("sense: lux of its result is nan, no finite number") == 1
+    assert said.count("sense: pose.x of its result is inf, no finite number") == 1
+    assert said.count("no finite number") == 3
 
 
 async def test_holding_is_decided_from_the_published_gap_and_forces(system: System) -> None:

@@ -1,5 +1,6 @@
 """The mission loop with a real engine, and a robot that the test scripts."""
 
+import asyncio
 from pathlib import Path
 
 import pytest
@@ -245,6 +246,27 @@ async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for
     why = "flood is left out, as it was waited for and has not come back: its adapter has left"
     assert why in around.decisions[1].why
     assert state.ending == "goal"
+
+
+async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(
+    field: BuiltModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def robot(request: Activate) -> Outcome:
+        around.unavailable = {"flood": "its adapter has left"}
+        return done(request)
+
+    async def until_changed(timeout_s: float) -> None:
+        around.mission.steer(Steer("stop", by="ana"))
+        is_waited_out.append(False)
+        await asyncio.sleep(timeout_s)
+        is_waited_out[-1] = True
+
+    is_waited_out: list[bool] = []
+    around = Surroundings(robot)
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    monkeypatch.setattr(around, "until_changed", until_changed)
+    state, _ = await run_mission(field, robot, limits=MissionLimits(step_limit=20), around=around)
+    assert (state.ending, is_waited_out) == ("cancelled", [False])
 
 
 async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over(cache_dir: Path) -> None:

@@ -18,6 +18,7 @@ from aos_middleware.mappings.low_level import LowLevelValues
 from aos_middleware.mappings.monitors import Monitors
 from aos_middleware.mappings.revisions import Mappings
 from aos_middleware.robot.motion_gate import MotionGate
+from aos_middleware.robot.odd_numbers import OddNumbers
 from aos_middleware.robot.served_paths import ServedPaths
 from aos_middleware.robot.silent_topics import SilentTopics
 from aos_middleware.settings import Settings
@@ -78,6 +79,7 @@ class _Middleware:
             is_played=settings.is_played,
             monitors=self._monitors,
             silent=SilentTopics(),
+            odd=OddNumbers(),
         )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}

@@ -131,6 +131,7 @@ class _Activation:
             if not self._evaluator.emitted.handles_failures:
                 raise
             return await self._observed_failure(error)
+        self._around.odd.take_result(self._request.skill, {**result.fields, **result.numbers})
         self.played_monitors = result.monitors
         if result.response:
             return _Observation(result.response, numbers=result.numbers)
