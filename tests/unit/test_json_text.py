@@ -105,12 +105,12 @@ def test_the_first_of_two_equal_keys_counts_and_the_second_is_an_error():
 
 
 def test_each_character_of_a_string_has_its_place():
-    text = '["a\\"b\\u00e9c\\ud83d\\ude00d"]'
+    text = '["a\\"b\\u00e9c\\ud83d\\ude00d\\r"]'
     result, _ = parsed(text)
     assert isinstance(result, JsonArray)
     (value,) = result.items
     assert isinstance(value, JsonString)
-    assert value.text == 'a"béc😀d'
+    assert value.text == 'a"béc😀d\r'
     assert [text[value.offset_of(index)] for index in range(7)] == ["a", "\\", "b", "\\", "c", "\\", "d"]
 
 
