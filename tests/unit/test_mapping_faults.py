@@ -45,6 +45,18 @@ return __input.data
     assert answer.local_variables == {"level": "null"}
 
 
+def test_a_type_error_in_a_rule_names_the_variables_of_its_expression():
+    mapping = running("""\
+response: high
+response_rule: weight < 3
+local_variable: weight
+from_ros_service_response: true
+code:
+weight = "heavy"
+""")
+    assert raised(mapping, Finish({})).error.endswith("""'str' and 'int'; weight is "heavy\"""")
+
+
 def test_a_result_without_a_value_is_told_and_not_the_silent_topic_beside_it():
     mapping = running("""\
 response: high

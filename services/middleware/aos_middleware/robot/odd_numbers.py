@@ -11,15 +11,14 @@ _log = logging.getLogger("aos.middleware")
 class OddNumbers:
     """Tells once of each field of a skill's results that was NaN or infinite, in the log.
 
-    A rule goes on with such a number: nothing else tells of it. Lists are left out, since ranges of a
-    scanner are infinite where nothing is in reach.
+    Lists are left out: ranges of a scanner are infinite where nothing is in reach.
     """
 
     def __init__(self) -> None:
         self._told: set[tuple[str, str]] = set()
 
     def take_result(self, skill: str, fields: Mapping[str, Any]) -> None:
-        """A skill has ended with these fields."""
+        """A skill has ended with these."""
         for field, number in _not_finite(fields):
             if (skill, field) not in self._told:
                 self._told.add((skill, field))

@@ -4,6 +4,7 @@ import re
 from types import CodeType, TracebackType
 
 from aos_middleware.workers.frames import Raised
+from aos_protocol.spelling import shortened
 
 _MAX_ERROR_CHARACTERS = 2000
 _NAME = re.compile(r"[^\W\d]\w*")
@@ -27,7 +28,8 @@ def raised(
     """Returns what an exception says, and where in the module it was: at the innermost of the module's
     frames.
 
-    Of the `unset` variables those are told that stand in the expression that raised, else all.
+    A TypeError has the values of the variables in its expression. Of the `unset` variables those are told
+    that stand in it, else all.
     """
     failed = ""
     if isinstance(error, NoTruthValue):
@@ -37,6 +39,9 @@ def raised(
         line, column, failed = _place(error.__traceback__, file_name, lines)
     text = text[:_MAX_ERROR_CHARACTERS].rstrip(": ")
     named = set(_NAME.findall(failed))
+    if isinstance(error, TypeError) and "NoneType" not in text:
+        values = (local_variables or {}).items()
+        text += "".join(f"; {name} is {shortened(value, 60)}" for name, value in values if name in named)
     told = tuple(name for name in unset if name in named) or unset
     return Raised(text, line, column, told, local_variables or {})
 
