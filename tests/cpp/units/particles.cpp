@@ -22,7 +22,6 @@ struct Beams {
     int distances[8];
     bool operator==(const State&) const = default;
   };
-  static std::uint64_t hash(const State& state) { return static_cast<std::uint64_t>(state.distances[0]); }
   template <class Random>
   static Step step(State& state, int, Random& random) {
     EffectWithText effect;
@@ -85,23 +84,6 @@ TEST("Texts of eight continuous draws are weighed without bias") {
     EXPECT_THAT(std::abs(mean / exact - 1) < 0.03, "the weight of " + std::string{observation_text(seen)});
     EXPECT_THAT(deviation < 0.3, "the deviation of the weight of " + std::string{observation_text(seen)});
   }
-}
-
-TEST("What is explored of a state's draws serves later steps from it") {
-  Sampler random{3};
-  const Beams::State state{{3, 4, 5, 6, 3, 4, 5, 6}};
-  Beams::State copy = state;
-  GuidedStep<Beams> guided{0, Beams::step(copy, 0, random).observation, nullptr, random};
-  const auto runs = [&] {
-    const std::size_t before = guided.runs();
-    for (int trial = 0; trial < 50; ++trial) guided.from(state, [](const auto&, double, const auto&) {});
-    return guided.runs() - before;
-  };
-  guided.keep_strata(0);
-  const std::size_t anew = runs();
-  guided.keep_strata(max_kept_strata);
-  runs();
-  EXPECT_THAT(2 * runs() < anew, "explored again");
 }
 
 TEST("A text that is assigned anew is weighed without bias") {

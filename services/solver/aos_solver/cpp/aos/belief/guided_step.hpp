@@ -18,9 +18,7 @@
 //
 // The strata of a continuous draw are found before the trials, at eleven points and by bisection between those that
 // agree and those that do not. They are long where all points give the same result, and short between different
-// results. The trial in each stratum is at another point, at random, and so without bias, too. What a number tells is mostly a
-// matter of the state: strata are kept for the next step that comes to the same state and is as far, until a trial tells that
-// they do not fit.
+// results. The trial in each stratum is at another point, at random, and so without bias, too.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +29,6 @@
 #include <vector>
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/mixed.hpp"
-#include "aos/base/number_index.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
 #include "aos/base/text_order.hpp"
@@ -45,7 +41,6 @@ inline constexpr int max_branches = 16;
 inline constexpr int explored_points = 9;                // of a continuous draw
 inline constexpr double explored_tail = 1e-4;
 inline constexpr int bisections = 5;
-inline constexpr std::size_t max_kept_strata = 4096;     // states and draws whose strata are kept
 inline constexpr int max_alternatives = 64;              // of a discrete draw; one with more is taken as continuous
 inline constexpr std::size_t max_guided_draws = 64;      // of one step; chance makes the others
 inline constexpr double doubtful = 0.25;
@@ -74,9 +69,6 @@ class GuidedStep {
 
   // Leaves the first draws of each step to chance.
   void leave_to_chance(std::size_t draws) { by_chance_ = draws; }
-
-  // Keeps the strata of so many states and draws; they take memory.
-  void keep_strata(std::size_t most) { most_kept_ = most; }
 
   // Whether the last call left nothing to chance, apart from what has no promise.
   bool was_exhaustive() const { return is_exhaustive_; }
@@ -123,10 +115,7 @@ class GuidedStep {
       given_ = given;
       alternatives_ = alternatives;
       order_ = Order::unknown;
-      written_ = 0;
     }
-    // How much text was written before that draw.
-    std::size_t written() const { return written_; }
     Order order() const { return order_; }
     Order order_of(std::string_view text) const {
       const double order = order_of_texts(text, observed_);
@@ -134,10 +123,7 @@ class GuidedStep {
     }
     void before_draw(std::size_t number, const double* weights, int count, double total) override {
       if (number != given_) return;
-      if (is_text_begun()) {
-        order_ = order_of(*response_text);
-        written_ = 1 + response_text->size();
-      }
+      if (is_text_begun()) order_ = order_of(*response_text);
       if (alternatives_ == nullptr) return;
       alternatives_->clear();
       const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
@@ -157,7 +143,6 @@ class GuidedStep {
     std::size_t given_ = 0;
     std::vector<Alternative>* alternatives_ = nullptr;
     Order order_ = Order::unknown;
-    std::size_t written_ = 0;
   };
 
   struct Trial {
@@ -201,58 +186,8 @@ class GuidedStep {
     bool agrees() const { return kind == 0 || kind == 4; }
   };
 
-  // A part of a continuous draw, up to `end`, and the kind of all points in it that were explored.
-  struct Stratum {
-    static constexpr int mixed = -1;
-    double end;
-    int kind;
-  };
-  // The strata of a draw with this number, after so much text, in a step that comes to this state.
-  struct KeptStrata {
-    State state;
-    std::size_t draw;
-    std::size_t written;
-    std::vector<Stratum> strata;
-    bool do_fit;  // else the state does not tell them, and they are found anew each time
-  };
-
-  // The trials of one draw. Their memory serves many steps.
-  struct Trials {
-    std::vector<Alternative> alternatives;
-    std::vector<double> promises;
-    std::vector<State> ends;     // of those that ended with the observation, where they are kept
-    std::vector<int> end_of;     // the place of each alternative's end, -1 for none
-    std::vector<double> weights;  // of the ends
-    std::vector<Stratum> strata;  // of a continuous draw
-    std::uint32_t kept;           // the number of these strata
-  };
-
-  // Takes the strata of a continuous draw, each with a random point. `next_` is where chance has led after this draw.
-  void stratify(Trials& trials) {
-    const std::size_t draw = values_.size();
-    const std::size_t written = watch_.written();
-    const auto is_it = [&](std::uint32_t number) {
-      const KeptStrata& kept = kept_[number];
-      return kept.draw == draw && kept.written == written && kept.state == next_;
-    };
-    const auto added = kept_.size() < most_kept_ ? static_cast<std::uint32_t>(kept_.size()) : NumberIndex::none;
-    const std::uint64_t hash = mixed(mixed(Model::hash(next_), draw), written);
-    trials.kept = added == NumberIndex::none ? kept_index_.find(hash, is_it) : kept_index_.find_or_add(hash, added, is_it);
-    if (trials.kept != NumberIndex::none && trials.kept != added && kept_[trials.kept].do_fit) {
-      trials.strata = kept_[trials.kept].strata;
-    } else {
-      if (trials.kept == added && added != NumberIndex::none) kept_.push_back({next_, draw, written, {}, true});
-      trials.strata.clear();
-      explore(trials.strata);
-      if (trials.kept != NumberIndex::none && kept_[trials.kept].do_fit) kept_[trials.kept].strata = trials.strata;
-    }
-    double from = 0;
-    for (const Stratum& stratum : trials.strata) {
-      trials.alternatives.push_back({from + random_.uniform() * (stratum.end - from), stratum.end - from});
-      from = stratum.end;
-    }
-  }
-  void explore(std::vector<Stratum>& strata) {
+  // Finds the strata of a continuous draw, each with a random point.
+  void explore(std::vector<Alternative>& strata) {
     std::vector<Point> points;
     add_point(points, explored_tail);
     for (int i = 0; i < explored_points; ++i) add_point(points, (i + 0.5) / explored_points);
@@ -260,16 +195,16 @@ class GuidedStep {
     for (int i = 0; i <= explored_points; ++i) bisect(points, points[i], points[i + 1], bisections);
     std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.value < b.value; });
     double from = 0;
-    const auto end_stratum = [&](double to, int kind) {
-      if (to > from) strata.push_back({to, kind});
+    const auto end_stratum = [&](double to) {
+      if (to > from) strata.push_back({from + random_.uniform() * (to - from), to - from});
       from = to;
     };
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
       if (points[i].kind == points[i + 1].kind) continue;
-      end_stratum(points[i].value, points[i].kind);
-      end_stratum(points[i + 1].value, Stratum::mixed);
+      end_stratum(points[i].value);
+      end_stratum(points[i + 1].value);
     }
-    end_stratum(1, points.back().kind);
+    end_stratum(1);
   }
   void add_point(std::vector<Point>& points, double value) {
     points.push_back({value, Point::kind_of(tried_at(value))});
@@ -284,6 +219,15 @@ class GuidedStep {
     bisect(points, left, middle, depth - 1);
     bisect(points, middle, right, depth - 1);
   }
+
+  // The trials of one draw. Their memory serves many steps.
+  struct Trials {
+    std::vector<Alternative> alternatives;
+    std::vector<double> promises;
+    std::vector<State> ends;     // of those that ended with the observation, where they are kept
+    std::vector<int> end_of;     // the place of each alternative's end, -1 for none
+    std::vector<double> weights;  // of the ends
+  };
 
   // Follows the step from the draws in `values_` on. Returns the sum of the weights.
   double follow(double weight, int branches, Visit visit) {
@@ -302,11 +246,7 @@ class GuidedStep {
     const Trial reached = tried(&trials.alternatives);
     if (reached.has_ended) return reached.agrees ? visited(next_, weight * replay_.weight(), values_, visit) : 0;
     const bool is_discrete = !trials.alternatives.empty();
-    if (is_discrete) {
-      trials.strata.clear();
-    } else {
-      stratify(trials);
-    }
+    if (!is_discrete) explore(trials.alternatives);
     try_all(trials);
     const std::vector<double>& promises = trials.promises;
     const auto promising = std::count_if(promises.begin(), promises.end(), [](double p) { return p >= doubtful; });
@@ -327,11 +267,8 @@ class GuidedStep {
     trials.ends.clear();
     trials.end_of.clear();
     trials.weights.clear();
-    bool do_fit = true;
-    for (std::size_t i = 0; i < trials.alternatives.size(); ++i) {
-      const Trial trial = tried_at(trials.alternatives[i].value);
-      const int expected = trials.strata.empty() ? Stratum::mixed : trials.strata[i].kind;
-      do_fit = do_fit && (expected == Stratum::mixed || expected == Point::kind_of(trial));
+    for (const Alternative& alternative : trials.alternatives) {
+      const Trial trial = tried_at(alternative.value);
       trials.promises.push_back(trial.promise());
       const bool is_kept = keeps_ends_ && trial.has_ended && trial.agrees;
       trials.end_of.push_back(is_kept ? static_cast<int>(trials.ends.size()) : -1);
@@ -339,8 +276,6 @@ class GuidedStep {
       trials.ends.push_back(next_);
       trials.weights.push_back(replay_.weight());
     }
-    // They serve this step all the same: to choose by what the trials told would be biased.
-    if (!do_fit && trials.kept != NumberIndex::none) kept_[trials.kept].do_fit = false;
   }
 
   static double visited(const State& next, double weight, const std::vector<double>& values, Visit visit) {
@@ -417,9 +352,6 @@ class GuidedStep {
   std::vector<double> rest_;
   std::vector<std::unique_ptr<Trials>> trials_;  // of the draws that are followed now
   std::size_t depth_ = 0;
-  std::vector<KeptStrata> kept_;
-  NumberIndex kept_index_;
-  std::size_t most_kept_ = max_kept_strata;
   std::vector<double> others_;
   std::vector<double> shares_;
   std::string text_;

@@ -40,7 +40,6 @@ inline constexpr std::size_t max_passage_bytes = std::size_t{64} << 20;  // of a
 inline constexpr std::size_t max_moving_steps = 600'000;  // of one call with an effort of 1
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
-inline constexpr std::size_t max_moving_strata = 16 * max_kept_strata;  // of all steps
 inline constexpr int proposals_in_a_row = 4;
 inline constexpr std::size_t telling_share = 10;         // after a tenth of the steps moves end, if they promise
 inline constexpr double few_moves = 0.15;                // less than so many for each copy
@@ -348,7 +347,6 @@ class Moves {
       const HistoryStep& step = history_.steps()[place - 1];
       guided = std::make_unique<GuidedStep<Model>>(step.action, step.observation, nullptr, random_);
       guided->leave_to_chance(step.by_chance);
-      guided->keep_strata(std::min(max_kept_strata, max_moving_strata / history_.steps().size()));
     }
     return *guided;
   }

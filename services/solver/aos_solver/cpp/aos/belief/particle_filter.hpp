@@ -91,12 +91,11 @@ class ParticleFilter {
     replay_.report_to(numbers_);
     if (before.history.steps().size() >= max_history) before = begun(before.particles, false);
     Updated updated = propagated(before, step);
-    // Without steps before it, moves draw the documents' belief once more.
-    const bool has_more = !before.history.steps().empty() || (before.history.begins_with_the_documents() && updated.cloud.particles.empty());
+    const bool is_worth_moving = !before.history.steps().empty() || before.history.begins_with_the_documents();
     // The samples that agree with a rare observation are few. More of them agree if there were more before it. Moves after
     // it may not help: it may leave states that no move connects. An observation that tells little needs no such rescue.
     const double enough = std::min(too_few_effective, surprise * before.effective());
-    for (int rescue = 0; step.is_observed && has_more; ++rescue) {
+    for (int rescue = 0; step.is_observed && is_worth_moving; ++rescue) {
       if (updated.cloud.effective() >= enough) break;
       if (rescue >= (updated.cloud.particles.empty() ? max_rescues_of_none : max_rescues)) break;
       before = moved(before, updated.cloud.effective(), rescue_effort);
@@ -197,7 +196,7 @@ class ParticleFilter {
     std::nth_element(first_guided.begin(), first_guided.begin() + pilot_count / 2, first_guided.end());
     const double share = static_cast<double>(agreed) / pilot_count;
     const std::size_t by_chance = first_guided[pilot_count / 2];
-    if (!has_guided || (by_chance > 0 && share >= rare_observation)) {
+    if (by_chance > 0 && (share >= rare_observation || !has_guided)) {
       return {false, 0, by_weight(before, std::min(wanted(before) / std::max(share, 1.0 / pilot_count), max_guided_runs))};
     }
     return {true, by_chance, by_promise(before, step, by_chance)};
@@ -275,7 +274,8 @@ class ParticleFilter {
     while (covered > 0 && (light -= sorted[covered - 1]) > 0) --covered;
     covered = std::min(covered, static_cast<std::size_t>(max_covering_runs / price));
     const double min_share = covered > 0 ? sorted[covered - 1] : 1;
-    const double all = std::min(max_guided_runs / price, wanted(before) * price_count / outcomes);
+    const double runs = max_guided_runs * wanted(before) / particle_count;
+    const double all = std::min(runs / price, wanted(before) * price_count / outcomes);
     for (double& share : shares) share = std::max(all * share, share >= min_share ? 1.0 : 0.0);
     return shares;
   }
