@@ -171,7 +171,7 @@ async def test_a_result_of_another_type_is_not_put_on_a_topic_that_said_nothing(
     await system.adapter.serve("/sense", answering({"wet": "very"}))
     outcome = await system.activate("sense")
     assert outcome.fault is not None
-    assert outcome.fault.message.endswith("'str' and 'float'")
+    assert outcome.fault.message.endswith("'str' and 'float'; wet is \"very\"")
 
 
 @pytest.mark.parametrize("kind", ["late", "foreign"])
