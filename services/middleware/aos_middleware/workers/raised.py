@@ -7,7 +7,7 @@ from aos_middleware.workers.frames import Raised
 from aos_protocol.spelling import shortened
 
 _MAX_ERROR_CHARACTERS = 2000
-_NAME = re.compile(r"[^\W\d]\w*")
+_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*")
 
 
 class NoTruthValue(TypeError):
