@@ -31,23 +31,14 @@ class SeekPlanner final : public Planner<Model> {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
     if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
     if (belief.probability_of(Ending::running) < 1 || pomcp_.has_wide_values(belief, horizon) || !looks_.is_due()) return false;
-    const SearchTime time{choosing};
-    const auto start = PlanningClock::now();
-    const ForgottenTexts forgotten;
-    Sampler own{Sampler{random}.bits()};
-    const double affordable = share * affordable_.of(budget, horizon);
-    sought_ = policy_.find(belief, horizon, barred, affordable, own);
-    affordable_.note(affordable, PlanningClock::now() - start);
-    if (sought_.action >= 0) looks_.succeed();
-    else looks_.fail();
+    seek(belief, horizon, barred, share * affordable_.of(budget, horizon), random, choosing);
     const double least = sought_.returned - (has_decided_ ? 0 : sought_.error);
     has_decided_ = sought_.action >= 0 && least > policy_.given_up();
+    if (has_decided_) pomcp_.prepare(question, random, choosing);
     return has_decided_;
   }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
-    Choosing choosing;
-    pomcp_.prepare(question, random, choosing);
     const std::uint64_t simulations = pomcp_.search(question, random, why);
     estimates_ = pomcp_.estimates(question.belief);
     const auto chosen = static_cast<std::size_t>(pomcp_.choice(estimates_, question.horizon, question.barred));
@@ -58,7 +49,7 @@ class SeekPlanner final : public Planner<Model> {
     }
     why += "; to seek what is somewhere returns more, and decides";
     estimates_.assign(estimates_.size(), {});
-    estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, 64, sought_.error};
+    estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, sought_.missions, sought_.error};
     return simulations;
   }
 
@@ -71,6 +62,17 @@ class SeekPlanner final : public Planner<Model> {
   }
 
  private:
+  void seek(const Belief<Model>& belief, int horizon, const BarredActions& barred, double affordable, Sampler random, Choosing& choosing) {
+    const SearchTime time{choosing};
+    const auto start = PlanningClock::now();
+    const ForgottenTexts forgotten;
+    Sampler own{random.bits()};
+    sought_ = policy_.find(belief, horizon, barred, affordable, own);
+    affordable_.note(affordable, PlanningClock::now() - start);
+    if (sought_.action >= 0) looks_.succeed();
+    else looks_.fail();
+  }
+
   static constexpr double share = 0.5;  // of a decision's steps
 
   Pomcp<Model>& pomcp_;

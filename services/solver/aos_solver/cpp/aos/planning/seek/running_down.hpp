@@ -1,0 +1,116 @@
+// What of a state only runs one way, such as a battery: it makes no place new, and no test wins by it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aos/base/mixed.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/values.hpp"
+#include "aos/planning/values/leaf_cells.hpp"
+#include "aos/planning/values/random_walk.hpp"
+
+namespace aos {
+
+template <class Model>
+class RunningDown {
+ public:
+  using State = typename Model::State;
+
+  // Finds it by random walks from the belief.
+  void find(const Belief<Model>& belief, Sampler& random) {
+    cells_.prepare(belief, random);
+    const std::vector<PlacedLeaf> leaves = leaves_of(belief.particles().front().state);
+    std::vector<Trend> of_cells(cells_.size()), of_leaves(leaves.size());
+    std::vector<std::uint64_t> cells_before(cells_.size());
+    cell_.resize(cells_.size());
+    int taken = 0;
+    RandomWalk<Model> walk;
+    for (int i = 0; i < walks; ++i) {
+      State state = belief.sample(random);
+      walk.start();
+      for (int step = 0; step < longest && Model::ending(state) == Ending::running; ++step, ++taken) {
+        const State before = state;
+        cells_.write(before, cells_before.data());
+        Model::step(state, walk.next(state, random), random);
+        cells_.write(state, cell_.data());
+        for (std::size_t c = 0; c < cell_.size(); ++c) of_cells[c].note(static_cast<double>(static_cast<std::int64_t>(cell_[c] - cells_before[c])));
+        for (std::size_t l = 0; l < leaves.size(); ++l) of_leaves[l].note(number(leaves[l], state) - number(leaves[l], before));
+      }
+    }
+    runs_.clear();
+    for (const Trend& trend : of_cells) runs_.push_back(trend.only_runs(taken));
+    lasts_.assign(Model::state_bytes(), true);
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+      if (!of_leaves[l].only_runs(taken)) continue;
+      std::fill_n(lasts_.begin() + static_cast<std::ptrdiff_t>(leaves[l].first), leaves[l].second.size, false);
+    }
+  }
+
+  // A number for all of a state that does not run down.
+  std::uint64_t place_of(const State& state) {
+    cells_.write(state, cell_.data());
+    std::uint64_t key = Model::ending(state) == Ending::running ? 1 : 0;
+    for (std::size_t c = 0; c < cell_.size(); ++c) key = runs_[c] ? key : mixed(key, cell_[c]);
+    return key;
+  }
+  std::uint64_t place_of(const std::vector<State>& states) {
+    std::uint64_t key = 0;
+    for (const State& state : states) key = mixed(key, place_of(state));
+    return key;
+  }
+  // Whether two states differ, but for what runs down.
+  bool differ(const State& one, const State& other) const {
+    const std::byte* const left = Model::bytes_of(one);
+    const std::byte* const right = Model::bytes_of(other);
+    for (std::size_t i = 0; i < lasts_.size(); ++i) {
+      if (lasts_[i] && left[i] != right[i]) return true;
+    }
+    return false;
+  }
+
+ private:
+  using PlacedLeaf = std::pair<std::size_t, Leaf>;  // with its place in a state
+  static constexpr int walks = 50;
+  static constexpr int longest = 20;
+
+  struct Trend {
+    int ups = 0;
+    int downs = 0;
+    void note(double change) {
+      ups += change > 0;
+      downs += change < 0;
+    }
+    bool only_runs(int taken) const { return std::min(ups, downs) == 0 && 2 * std::max(ups, downs) > taken; }
+  };
+
+  static std::vector<PlacedLeaf> leaves_of(const State& state) {
+    std::vector<PlacedLeaf> leaves;
+    NamedLeaves named{[&](const std::string&, const Leaf& leaf) {
+      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
+      if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(Model::state_bytes()) && !is_text(leaf)) leaves.emplace_back(offset, leaf);
+    }};
+    Model::visit_values(state, named);
+    return leaves;
+  }
+  static double number(const PlacedLeaf& leaf, const State& state) {
+    const std::byte* const place = Model::bytes_of(state) + leaf.first;
+    const std::size_t size = leaf.second.size;
+    if (leaf.second.kind == Leaf::Kind::real) return size == sizeof(float) ? static_cast<double>(stored_at<float>(place)) : stored_at<double>(place);
+    return size == sizeof(std::int32_t) ? static_cast<double>(stored_at<std::int32_t>(place)) : static_cast<double>(std::to_integer<int>(*place));
+  }
+
+  LeafCells<Model> cells_;
+  std::vector<std::uint64_t> cell_;  // of the state that is looked at
+  std::vector<bool> runs_;           // by cell
+  std::vector<bool> lasts_;          // by byte of a state
+};
+
+}  // namespace aos

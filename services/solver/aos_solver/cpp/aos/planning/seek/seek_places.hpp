@@ -1,0 +1,200 @@
+// The places that moves lead to which tell nothing, the tests that can be made there, the ends, and the ways between.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/options/step_reports.hpp"
+#include "aos/planning/seek/running_down.hpp"
+
+namespace aos {
+
+template <class Model>
+class SeekPlaces {
+ public:
+  using State = typename Model::State;
+  static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
+
+  struct Place {
+    std::vector<State> states;
+    std::vector<std::uint32_t> next;  // by action; nowhere for what is no move
+    std::vector<double> paid;         // by action, on average
+  };
+  struct Test {
+    std::uint32_t place;
+    int action;
+    double reward;                    // on average, where it does not win
+    std::size_t outcomes;
+    std::vector<double> odds{};       // [state * outcomes + outcome], later by class
+    std::vector<double> doubts{};     // by class: the entropy of what is observed
+    std::vector<double> own{};        // as `odds`, by state
+  };
+  struct End {
+    std::uint32_t place;
+    int action;
+    double reward;
+  };
+  struct Ways {  // from a place
+    std::vector<std::uint32_t> distance;
+    std::vector<std::uint32_t> before;
+    std::vector<int> by;
+    std::vector<double> paid;
+  };
+
+  // Finds places from the states of a belief on, breadth first, all states in step and under the same luck. Takes at most
+  // half of the steps.
+  void explore(const SampledBelief<Model>& belief, RunningDown<Model>& running_down, const BarredActions& barred, double& steps, Sampler& random) {
+    places_.clear();
+    tests_.clear();
+    ends_.clear();
+    ways_.clear();
+    after_.clear();
+    std::unordered_map<std::uint64_t, std::uint32_t> known;
+    const auto actions = static_cast<std::size_t>(Model::action_count());
+    places_.push_back({belief.states(), {}, {}});
+    known.emplace(running_down.place_of(places_[0].states), 0);
+    std::vector<StepReports> reports(belief.size());
+    const double least = steps / 2;
+    for (std::uint32_t number = 0; number < places_.size() && steps > least; ++number) {
+      places_[number].next.assign(actions, nowhere);
+      places_[number].paid.assign(actions, 0);
+      for (std::size_t a = 0; a < actions; ++a) {
+        if (barred.contains(a)) continue;
+        std::vector<State> next = places_[number].states;
+        const Sampler luck{random.bits()};
+        double reward = 0, running = 0, failing = 0;
+        bool tells = false;
+        for (std::size_t k = 0; k < next.size(); ++k) {
+          Sampler same = luck;
+          reward += belief.weights()[k] * reported_.take(next[k], static_cast<int>(a), reports[k], steps, same);
+          running += Model::ending(next[k]) == Ending::running ? belief.weights()[k] : 0;
+          failing += Model::ending(next[k]) == Ending::failure ? belief.weights()[k] : 0;
+          tells = tells || !reports[k].is_like(reports[0]);
+        }
+        places_[number].paid[a] = reward;
+        if (running < 0.5) {
+          if (failing < 0.5) ends_.push_back({number, static_cast<int>(a), reward});
+          continue;
+        }
+        if (tells) {
+          add_test(number, static_cast<int>(a), reward, reports, next);
+          continue;
+        }
+        const auto [entry, is_new] = known.emplace(running_down.place_of(next), static_cast<std::uint32_t>(places_.size()));
+        if (is_new && places_.size() >= most_places) {
+          known.erase(entry);
+          continue;
+        }
+        places_[number].next[a] = entry->second;
+        if (is_new) places_.push_back({std::move(next), {}, {}});
+      }
+    }
+    for (Place& place : places_) {
+      place.next.resize(actions, nowhere);
+      place.paid.resize(actions, 0);
+    }
+  }
+
+  const std::vector<Place>& places() const { return places_; }
+  std::vector<Test>& tests() { return tests_; }
+  std::vector<End>& ends() { return ends_; }
+  // The states of the belief after a test, until the next exploration.
+  const std::vector<State>& after(std::size_t test) const { return after_[test]; }
+
+  const Ways& ways_from(std::uint32_t start) {
+    const auto [entry, is_new] = ways_.try_emplace(start);
+    Ways& ways = entry->second;
+    if (!is_new) return ways;
+    ways.distance.assign(places_.size(), nowhere);
+    ways.before.assign(places_.size(), nowhere);
+    ways.by.assign(places_.size(), -1);
+    ways.paid.assign(places_.size(), 0);
+    ways.distance[start] = 0;
+    std::vector<std::uint32_t> open{start};
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const Place& place = places_[open[i]];
+      for (std::size_t a = 0; a < place.next.size(); ++a) {
+        const std::uint32_t to = place.next[a];
+        if (to == nowhere || ways.distance[to] != nowhere) continue;
+        ways.distance[to] = ways.distance[open[i]] + 1;
+        ways.before[to] = open[i];
+        ways.by[to] = static_cast<int>(a);
+        ways.paid[to] = ways.paid[open[i]] + std::pow(Model::discount, ways.distance[open[i]]) * place.paid[a];
+        open.push_back(to);
+      }
+    }
+    return ways;
+  }
+  std::vector<int> way(std::uint32_t from, std::uint32_t to, int last) {
+    const Ways& ways = ways_from(from);
+    std::vector<int> actions{last};
+    for (; to != from; to = ways.before[to]) actions.push_back(ways.by[to]);
+    std::ranges::reverse(actions);
+    return actions;
+  }
+
+ private:
+  static constexpr std::size_t most_places = 256;
+  static constexpr int cells_of_numbers = 6;
+  static constexpr int quantiles = 16;
+
+  void add_test(std::uint32_t place, int action, double reward, const std::vector<StepReports>& reports, std::vector<State>& next) {
+    Test test{place, action, reward, 0};
+    const std::vector<Observation> responses = few_responses(reports);
+    if (!responses.empty()) {
+      test.outcomes = responses.size();
+      for (const StepReports& report : reports) {
+        for (const Observation response : responses) test.own.push_back(report.likelihood({response, {}}));
+      }
+    } else if (!by_cells(reports, test)) {
+      return;
+    }
+    tests_.push_back(std::move(test));
+    after_.resize(tests_.size());
+    after_.back() = std::move(next);
+  }
+
+  // A number that is reported falls into one of a few cells of about the same probability.
+  bool by_cells(const std::vector<StepReports>& reports, Test& test) {
+    std::vector<double> all;
+    std::vector<std::vector<double>> own(reports.size());
+    for (std::size_t k = 0; k < reports.size(); ++k) {
+      const auto& branches = reports[k].branches();
+      if (branches.size() != 1 || branches[0].numbers.size() != 1) return false;
+      for (int i = 0; i < quantiles; ++i) own[k].push_back(branches[0].numbers[0].second.quantile((i + 0.5) / quantiles));
+      all.insert(all.end(), own[k].begin(), own[k].end());
+    }
+    std::ranges::sort(all);
+    test.outcomes = cells_of_numbers;
+    for (const auto& numbers : own) {
+      std::vector<double> odds(cells_of_numbers, 0.01 / cells_of_numbers);
+      for (const double number : numbers) {
+        const auto rank = static_cast<std::size_t>(std::ranges::lower_bound(all, number) - all.begin());
+        odds[std::min<std::size_t>(rank * cells_of_numbers / all.size(), cells_of_numbers - 1)] += 0.99 / quantiles;
+      }
+      test.own.insert(test.own.end(), odds.begin(), odds.end());
+    }
+    return true;
+  }
+
+  ReportedStep<Model> reported_;
+  std::vector<Place> places_;
+  std::vector<Test> tests_;
+  std::vector<std::vector<State>> after_;  // by test
+  std::vector<End> ends_;
+  std::map<std::uint32_t, Ways> ways_;  // by the place where they begin
+};
+
+}  // namespace aos
