@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "aos/base/utf8.hpp"
+
 namespace aos {
 
 // The shortest text that reads back as the same number.
@@ -17,21 +19,6 @@ std::string number_text(Number number) {
   char buffer[64];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, number).ptr;
   return {buffer, end};
-}
-
-// The bytes of the UTF-8 letter that a text begins with; 0 where these are none.
-inline std::size_t letter_size(std::string_view text) {
-  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
-  const unsigned char first = byte(0);
-  const std::size_t size = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (size > text.size()) return 0;
-  for (std::size_t at = 1; at < size; ++at) {
-    if ((byte(at) & 0xC0) != 0x80) return 0;
-  }
-  if (size < 3) return size;
-  const bool is_overlong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
-  const bool is_beyond = (first == 0xED && byte(1) >= 0xA0) || (first == 0xF4 && byte(1) >= 0x90);
-  return is_overlong || is_beyond ? 0 : size;
 }
 
 // Writes one JSON value. The writer sets the commas. Numbers that JSON does not know become null, and bytes that are

@@ -23,13 +23,13 @@
 //   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
 //   kept_tree
 #define AOS_MECHANISMS(of)                                                                                     \
-  of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek)                                  \
-  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours)                                                       \
-  of(saving_lookahead)                                                                                         \
-  of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies)                  \
-  of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information)  \
-  of(step_table) of(expected_rewards)                                                                           \
-  of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns)              \
+  of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek) \
+  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) \
+  of(saving_lookahead) \
+  of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies) \
+  of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information) \
+  of(step_table) of(expected_rewards) \
+  of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns) \
   of(certain_actions) of(sooner) of(observation_cells) of(kept_tree)
 
 namespace aos::switches {

@@ -40,9 +40,9 @@ inline constexpr std::size_t max_passage_bytes = std::size_t{64} << 20;  // of a
 inline constexpr std::size_t max_moving_steps = 600'000;  // of one call with an effort of 1
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
-inline constexpr int proposals_in_a_row = 4;
-inline constexpr std::size_t telling_share = 10;         // after a tenth of the steps moves end, if they promise
-inline constexpr double few_moves = 0.15;                // less than so many for each copy
+inline constexpr int proposals_in_a_row = 4;                // of one copy
+inline constexpr std::size_t telling_share = 10;         // the part of the steps after which moves may end early
+inline constexpr double few_moves = 0.15;                // accepted ones for each copy, by all steps; with fewer in sight moves end
 
 template <class Model>
 class Moves {

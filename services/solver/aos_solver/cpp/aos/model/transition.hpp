@@ -10,8 +10,8 @@
 #include <type_traits>
 
 #include "aos/base/fault.hpp"
-#include "aos/base/json.hpp"
 #include "aos/base/reward_ledger.hpp"
+#include "aos/base/utf8.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
@@ -169,11 +169,7 @@ template <class Skill>
 Observation observation_of(const auto& effect) {
   if constexpr (Skill::has_text_response) {
     if (effect.text != no_text_response) {
-      for (std::string_view text = effect.text; !text.empty();) {
-        const std::size_t size = letter_size(text);
-        if (size == 0) no_text(effect.text.size() - text.size());
-        text.remove_prefix(size);
-      }
+      if (const std::size_t byte = first_no_letter(effect.text); byte != std::string_view::npos) no_text(byte);
       return text_observation(effect.text);
     }
   }
