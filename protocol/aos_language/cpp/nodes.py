@@ -33,3 +33,25 @@ def below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
         part = waiting.pop()
         yield part
         waiting += reversed(part.children)
+
+
+def child_of(node: tree_sitter.Node, field: str) -> tree_sitter.Node:
+    """The part of a node in a field; its first part where it has none."""
+    child = node.child_by_field_name(field)
+    return child if child is not None else node.children[0]
+
+
+def names_of(node: tree_sitter.Node | None) -> tuple[str, ...]:
+    """The names of a qualified or templated name, without template arguments."""
+    parts: list[str] = []
+    while node is not None:
+        if node.type == "qualified_identifier":
+            scope = node.child_by_field_name("scope")
+            parts += [text_of(scope).split("<")[0]] if scope is not None else []
+            node = node.child_by_field_name("name")
+        elif node.type in ("template_function", "template_method", "template_type", "dependent_name"):
+            node = node.child_by_field_name("name") or next(iter(node.named_children), None)
+        else:
+            parts.append(text_of(node))
+            node = None
+    return tuple(parts)

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 import tree_sitter
 
+from aos_language.cpp.elements import asks_for_element, begun_container, is_checked, root_of
 from aos_language.cpp.facts import (
     CHANGING_METHODS,
     HANDLE_METHODS,
@@ -17,13 +18,10 @@ from aos_language.cpp.facts import (
     Element,
     Mention,
 )
-from aos_language.cpp.nodes import below, picks_member, text_of
+from aos_language.cpp.nodes import below, child_of, names_of, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
-_OF_FILLED = frozenset({"back", "front", "pop", "pop_back", "pop_front", "top"})
-_BEGINNINGS = frozenset({"begin", "cbegin", "crbegin", "rbegin"})
-_EXTREMES = frozenset({"max_element", "min_element"})
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
 """Expressions that do nothing but have a value."""
 
@@ -134,55 +132,40 @@ class TreeReader:
         while True:
             if picks_member(current):
                 parts.clear()  # The field may be any.
-                chosen = _child(current, "field")
+                chosen = child_of(current, "field")
                 extent = self.extent(chosen)
                 self.mentions.append(Mention((text_of(chosen),), Access.READ, extent, extent))
-                current = _child(current, "argument")
+                current = child_of(current, "argument")
             elif current.type == "field_expression":
-                parts += reversed(_names(current.child_by_field_name("field")))
+                parts += reversed(names_of(current.child_by_field_name("field")))
                 is_arrow = text_of(current.children[1]) == "->"
-                current = _child(current, "argument")
+                current = child_of(current, "argument")
                 if is_arrow:
                     self._dereferenced(current)
             elif current.type == "subscript_expression":
                 parts.append("[]")
                 indices = current.child_by_field_name("indices")
                 self._push([indices])
-                if indices is not None and _is_checked(current, indices):
-                    self._element(_child(current, "argument"), self.extent(indices))
-                current = _child(current, "argument")
+                if indices is not None and is_checked(current, indices):
+                    self._element(child_of(current, "argument"), self.extent(indices))
+                current = child_of(current, "argument")
             elif current.type == "parenthesized_expression" and current.named_child_count == 1:
                 current = current.named_children[0]
             elif current.type in ("identifier", "this"):
                 return (text_of(current), *reversed(parts)), current
             elif current.type == "qualified_identifier":
                 self._push_template_arguments(current)
-                return (*_names(current), *reversed(parts)), current
+                return (*names_of(current), *reversed(parts)), current
             else:
                 self._push([current], access)
                 return (), None
 
     def _element(self, container: tree_sitter.Node, brackets: Extent | None = None) -> None:
-        self.elements.append(Element(self.extent(container), brackets, text_of(_root(container))))
+        self.elements.append(Element(self.extent(container), brackets, text_of(root_of(container))))
 
     def _dereferenced(self, iterator: tree_sitter.Node) -> None:
-        """Asks the container of `*row.begin()` or `*max_element(row.begin(), row.end())` for an element."""
-        if iterator.type != "call_expression":
-            return
-        function = _child(iterator, "function")
-        if function.type != "field_expression":
-            first = _child(iterator, "arguments").named_children[:1]
-            if not _EXTREMES.isdisjoint(_names(function)[-1:]) and first:
-                taken = self._filled if "ranges" in _names(function) else self._dereferenced
-                taken(first[0])
-            return
-        method = _names(function.child_by_field_name("field"))
-        if not _BEGINNINGS.isdisjoint(method) and text_of(function.children[1]) == ".":
-            self._filled(_child(function, "argument"))
-
-    def _filled(self, container: tree_sitter.Node) -> None:
-        """Asks a container that has a name; also one of the state, whose iterators check nothing."""
-        if _root(container).type == "identifier":
+        """Asks the container of an iterator, also one of the state, whose iterators check nothing."""
+        if (container := begun_container(iterator)) is not None:
             self.elements.append(Element(self.extent(container)))
 
     def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
@@ -196,7 +179,7 @@ class TreeReader:
     def _assignment(self, node: tree_sitter.Node, access: Access) -> None:
         operator = node.child_by_field_name("operator")
         is_plain = operator is None or text_of(operator) == "="
-        left, right = _child(node, "left"), node.child_by_field_name("right")
+        left, right = child_of(node, "left"), node.child_by_field_name("right")
         kind = Access.WRITE if is_plain else Access.UPDATE
         if is_plain and operator is not None and self._is_condition(node):
             self.set_in_conditions.append((self.extent(left), self.extent(operator)))
@@ -227,7 +210,7 @@ class TreeReader:
     def _pointer(self, node: tree_sitter.Node, access: Access) -> None:
         is_address = node.children[0].type == "&"
         if not is_address:
-            self._dereferenced(_child(node, "argument"))
+            self._dereferenced(child_of(node, "argument"))
         self._push([node.child_by_field_name("argument")], Access.BIND if is_address else access)
 
     def _pass_on(self, node: tree_sitter.Node, access: Access) -> None:
@@ -240,8 +223,8 @@ class TreeReader:
         self._push(child for child in node.children if child.is_error)
 
     def _call(self, node: tree_sitter.Node, access: Access) -> None:
-        function = _child(node, "function")
-        arguments = _child(node, "arguments")
+        function = child_of(node, "function")
+        arguments = child_of(node, "arguments")
         named = [child for child in arguments.named_children if child.type != "comment"]
         name = self._called(function, access)
         gives_place = access is not Access.READ and function.type != "field_expression"
@@ -254,15 +237,15 @@ class TreeReader:
     def _called(self, function: tree_sitter.Node, access: Access) -> tuple[str, ...]:
         if function.type == "template_function":
             self._push([function.child_by_field_name("arguments")])
-            function = _child(function, "name")
+            function = child_of(function, "name")
         if function.type != "field_expression":
             parts, root = self._flatten(function)
             if root is not None:
                 self.mentions.append(Mention(parts, Access.CALL, self.extent(function), self.extent(root)))
             return parts
-        target = _child(function, "argument")
-        method = _names(function.child_by_field_name("field"))[-1:]
-        if not _OF_FILLED.isdisjoint(method) and text_of(function.children[1]) == ".":
+        target = child_of(function, "argument")
+        method = names_of(function.child_by_field_name("field"))[-1:]
+        if asks_for_element(function):
             self._element(target)
         parts, root = self._flatten(target, _method_access("".join(method), access, is_aos=False))
         if root is not None:
@@ -296,7 +279,7 @@ class TreeReader:
         self, node: tree_sitter.Node, type_text: str, kind: DeclarationKind, is_constant: bool
     ) -> None:
         initial = node.child_by_field_name("value") if node.type == "init_declarator" else None
-        inner = _child(node, "declarator") if node.type == "init_declarator" else node
+        inner = child_of(node, "declarator") if node.type == "init_declarator" else node
         if inner.type in ("reference_declarator", "pointer_declarator"):
             initial = _within_brackets(initial)
         binds = inner.type == "reference_declarator" and not is_constant
@@ -395,21 +378,6 @@ _HANDLERS = {
 }
 
 
-def _is_checked(subscript: tree_sitter.Node, indices: tree_sitter.Node) -> bool:
-    """Returns whether an index must be that of an element: not a key `{1, 2}`, nor `&row[9]`, where one may
-    stand just behind the last."""
-    outer = subscript.parent
-    is_address = outer is not None and outer.type == "pointer_expression" and outer.children[0].type == "&"
-    is_one = [part.type for part in indices.named_children if part.type != "comment"]
-    return not is_address and len(is_one) == 1 and is_one[0] not in ("initializer_list", "comma_expression")
-
-
-def _root(container: tree_sitter.Node) -> tree_sitter.Node:
-    while container.type in ("field_expression", "subscript_expression"):
-        container = _child(container, "argument")
-    return container
-
-
 def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
     if is_aos:
         return Access.CALL
@@ -418,22 +386,6 @@ def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
     if method in HANDLE_METHODS:
         return Access.BIND
     return outer
-
-
-def _names(node: tree_sitter.Node | None) -> tuple[str, ...]:
-    """The names of a qualified or templated name, without template arguments."""
-    parts: list[str] = []
-    while node is not None:
-        if node.type == "qualified_identifier":
-            scope = node.child_by_field_name("scope")
-            parts += [text_of(scope).split("<")[0]] if scope is not None else []
-            node = node.child_by_field_name("name")
-        elif node.type in ("template_function", "template_method", "template_type", "dependent_name"):
-            node = node.child_by_field_name("name") or next(iter(node.named_children), None)
-        else:
-            parts.append(text_of(node))
-            node = None
-    return tuple(parts)
 
 
 def _is_type(node: tree_sitter.Node | None) -> bool:
@@ -447,11 +399,6 @@ def _within_brackets(initial: tree_sitter.Node | None) -> tree_sitter.Node | Non
     if initial is None or initial.type not in ("argument_list", "initializer_list"):
         return initial
     return initial.named_children[0] if initial.named_child_count == 1 else initial
-
-
-def _child(node: tree_sitter.Node, field: str) -> tree_sitter.Node:
-    child = node.child_by_field_name(field)
-    return child if child is not None else node.children[0]
 
 
 def _by_start(item: Mention | Call | Declaration | Fault) -> int:
