@@ -40,7 +40,7 @@ async def until_skills_can_run(
         return max(state.refused, state.revision) >= project.revision
 
     def is_decided(state: MappingState) -> bool:
-        return has_revision(state) and (not _missing(state, project) or _is_certain(state))
+        return has_revision(state) and (not _missing(state, project) or bool(state.for_good))
 
     # How long mappings take to be generated says nothing of adapters.
     await state_when(
@@ -81,11 +81,6 @@ async def until_skills_can_run(
 
 def _missing(state: MappingState, project: ProjectRevision) -> bool:
     return state.refused < project.revision and bool(state.unavailable)
-
-
-def _is_certain(state: MappingState) -> bool:
-    """Says whether a skill is missing for good: the robot defines its interface otherwise."""
-    return any("says: AOS509" in reason for reason in state.unavailable.values())
 
 
 async def _served_by_several(supervisor: Supervisor) -> list[str]:

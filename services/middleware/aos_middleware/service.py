@@ -116,10 +116,15 @@ class _Middleware:
         shut, paths = self._around.gate.shut, self._mappings.paths
         why = {skill: self._served.why_unavailable(path) or shut for skill, path in paths.items()}
         unavailable = {skill: reason for skill, reason in why.items() if reason}
+        for_good = tuple(skill for skill, path in paths.items() if self._served.is_for_good(path))
         announced = {skill: self._served.announced(path) for skill, path in paths.items()}
         self._stamp_ns = max(self._stamp_ns + 1, round(self._service.clock.monotonic_s() * 1e9))
         return msgspec.structs.replace(
-            self._mappings.state, unavailable=unavailable, announced=announced, stamp_ns=self._stamp_ns
+            self._mappings.state,
+            unavailable=unavailable,
+            for_good=for_good,
+            announced=announced,
+            stamp_ns=self._stamp_ns,
         )
 
     def _take_over(self) -> None:

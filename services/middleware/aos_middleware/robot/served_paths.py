@@ -29,7 +29,7 @@ class ServedPaths:
         self._on_change = on_change
         self._changed = asyncio.Event()
         self._servers: dict[str, list[Serving]] = {}
-        self._lacks: dict[str, dict[str, str]] = {}
+        self._lacks: dict[str, dict[str, Lack]] = {}
         self._announced: Counter[str] = Counter()
         self._is_ready: dict[str, bool] = {}
         self._has_heard = asyncio.Event()
@@ -61,8 +61,8 @@ class ServedPaths:
     def _take_lack(self, lack: Lack, is_alive: bool) -> None:
         told = self._lacks.setdefault(lack.path, {})
         if is_alive:
-            told[lack.adapter] = lack.reason
-        elif told.get(lack.adapter) == lack.reason:
+            told[lack.adapter] = lack
+        elif told.get(lack.adapter) == lack:
             del told[lack.adapter]
 
     async def until_heard(self) -> None:
@@ -81,8 +81,9 @@ class ServedPaths:
         """Returns why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""
         servers = self.servers(path)
         if not servers:
-            told = self._lacks.get("/" + path.strip("/"), {})
-            return no_adapter(path, "; ".join(f"{name} says: {why}" for name, why in sorted(told.items())))
+            return no_adapter(
+                path, "; ".join(f"{lack.adapter} says: {lack.reason}" for lack in self._lacking(path))
+            )
         if len(servers) > 1:
             names = " and ".join(server.who for server in servers)
             return SkillError(
@@ -91,6 +92,13 @@ class ServedPaths:
                 hint="End one of them, or bind it to another path",
             )
         return None
+
+    def is_for_good(self, path: str) -> bool:
+        """Returns whether nobody serves a path, and an adapter says that to wait does not mend it."""
+        return not self.servers(path) and any(lack.is_for_good for lack in self._lacking(path))
+
+    def _lacking(self, path: str) -> list[Lack]:
+        return sorted(self._lacks.get("/" + path.strip("/"), {}).values())
 
     def why_unavailable(self, path: str) -> str:
         """Returns why nobody should decide for a skill of this path now; empty where somebody may."""
