@@ -45,9 +45,12 @@ class BuildCache:
         self._size_bytes = size_bytes
 
     def find(self, name: str) -> Path | None:
-        """The entry of that name, if it is complete."""
+        """The entry of that name, if it is complete and can be opened."""
         entry = self.directory / name
-        handle = _held(entry)
+        try:
+            handle = _held(entry)
+        except OSError:
+            return None
         if handle is None:
             return None
         status = os.fstat(handle)
@@ -133,11 +136,18 @@ class BuildCache:
                 excess_bytes -= size_bytes
 
 
+def _opened(folder: Path) -> int:
+    return os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+
+
 def _held(folder: Path) -> int | None:
-    """An open file that holds a folder's lock beside others; None where it is not there, or being removed."""
+    """An open file that holds a folder's lock beside others; None where it is not there, or being removed.
+
+    OSError where it cannot be opened.
+    """
     try:
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    except OSError:
+        handle = _opened(folder)
+    except (FileNotFoundError, NotADirectoryError):
         return None
     try:
         fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -154,7 +164,7 @@ def _held(folder: Path) -> int | None:
 def _remove(folder: Path) -> bool:
     """Removes a folder that nobody holds; returns whether it has gone."""
     try:
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        handle = _opened(folder)
     except OSError:
         return False
     try:
