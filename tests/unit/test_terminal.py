@@ -1,7 +1,7 @@
 """Progress of long work where standard error is no terminal."""
 
 import io
-import time
+import threading
 
 import pytest
 
@@ -31,15 +31,25 @@ def test_counted_work_tells_a_log_now_and_then_how_much_is_done(capsys, monkeypa
     assert second == "aos: working for 0 s: easy-table: 4 of 10"
 
 
-def test_work_that_tells_nothing_is_told_of_all_the_same(capsys, monkeypatch):
+class Log(io.StringIO):
+    """A standard error that lets somebody wait for a first line."""
+
+    def __init__(self):
+        super().__init__()
+        self.has_a_line = threading.Event()
+
+    def flush(self):
+        super().flush()
+        self.has_a_line.set()
+
+
+def test_work_that_tells_nothing_is_told_of_all_the_same(monkeypatch):
+    log = Log()
+    monkeypatch.setattr("sys.stderr", log)
     monkeypatch.setattr(terminal, "TICK_S", 0.01)
-    said = ""
     with terminal.waiting("looking", first_s=0.02):
-        until_s = time.monotonic() + 30
-        while not said and time.monotonic() < until_s:
-            time.sleep(0.01)
-            said = capsys.readouterr().err
-    assert said == "aos: looking for 0 s\n"
+        assert log.has_a_line.wait(30)
+    assert log.getvalue() == "aos: looking for 0 s\n"
 
 
 @pytest.mark.parametrize(
