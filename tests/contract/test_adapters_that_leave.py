@@ -34,7 +34,7 @@ async def launch(system: System, endpoint: str, folder: Path, robot: str = ROBOT
 @pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
     system: System, endpoint: str, tmp_path: Path, death: signal.Signals
-) -> None:
+):
     child = await launch(system, endpoint, tmp_path)
     try:
         await system.state_when(lambda state: "sense" not in state.unavailable)
@@ -55,7 +55,7 @@ async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
 @pytest.mark.parametrize("is_told", [True, False], ids=["told", "untold"])
 async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_it_was_given_up(
     system: System, endpoint: str, tmp_path: Path, is_told: bool
-) -> None:
+):
     begun = tmp_path / "begun"
 
     async def state(_: MissionQuery, __: str) -> MissionState:
@@ -99,9 +99,7 @@ async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_i
         await child.wait()
 
 
-async def test_an_adapter_that_ends_at_once_may_have_begun(
-    system: System, endpoint: str, tmp_path: Path
-) -> None:
+async def test_an_adapter_that_ends_at_once_may_have_begun(system: System, endpoint: str, tmp_path: Path):
     for step in range(1, 5):
         child = await launch(system, endpoint, tmp_path, "import os\ndef sense(call):\n    os._exit(1)\n")
         await system.state_when(lambda state: "sense" not in state.unavailable)
@@ -111,7 +109,7 @@ async def test_an_adapter_that_ends_at_once_may_have_begun(
         await system.state_when(lambda state: "sense" in state.unavailable)
 
 
-async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_is_started_again(system: System) -> None:
+async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_is_started_again(system: System):
     ready = system.keys.live("scripted")
     await system.adapter.announce("/sense")
     await system.bus.announce(ready)
@@ -123,7 +121,7 @@ async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_is_started_
     await system.state_when(lambda state: state.unavailable.keys().isdisjoint({"sense", "serve"}))
 
 
-async def test_a_token_without_anybody_who_answers_is_no_adapter(system: System) -> None:
+async def test_a_token_without_anybody_who_answers_is_no_adapter(system: System):
     await system.adapter.announce("/sense")
     await system.state_when(lambda state: "sense" not in state.unavailable)
     outcome = await system.activate("sense", 1)

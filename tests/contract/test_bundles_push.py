@@ -43,7 +43,7 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
     await child.stop(5.0)
 
 
-async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos, bundles: Path) -> None:
+async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos, bundles: Path):
     assert (await aos("bundle", "list")).output == "The registry holds no projects.\n"
     pushed = await aos("bundle", "push", str(bundles / "armadillo-finer"))
     assert pushed.exit_code == 0, pushed.output
@@ -62,7 +62,7 @@ async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos, bundles: Path) -> N
 
 async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(
     aos: Aos, bundles: Path, tmp_path: Path
-) -> None:
+):
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     folder = shutil.copytree(bundles / "armadillo-rough", tmp_path / "rough")
     (folder / "pick.am").write_text("project: armadillo\nresponse: pick_succeeded\nresponse_rule: True +\n")
@@ -72,7 +72,7 @@ async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(
     assert refused.output.endswith("refused; the project stays at revision 1\n")
 
 
-async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos: Aos, bundles: Path) -> None:
+async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos: Aos, bundles: Path):
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     removed = await aos("bundle", "rm", "armadillo", "observe_holding")
     assert (
@@ -93,7 +93,7 @@ async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos:
 
 async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
     aos: Aos, bundles: Path, tmp_path: Path
-) -> None:
+):
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     skill = tmp_path / "ask"
     skill.mkdir()
@@ -107,9 +107,7 @@ async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
     assert "removed ask" in (await aos("bundle", "rm", "armadillo", "ask")).output
 
 
-async def test_a_pushed_skill_that_nobody_serves_is_told(
-    aos: Aos, bus: Bus, keys: Keys, bundles: Path
-) -> None:
+async def test_a_pushed_skill_that_nobody_serves_is_told(aos: Aos, bus: Bus, keys: Keys, bundles: Path):
     async def state(_: MappingQuery, __: str) -> MappingState:
         return MappingState(1, ("pick",), unavailable={"pick": "no adapter answers calls of /pick"})
 
@@ -120,7 +118,7 @@ async def test_a_pushed_skill_that_nobody_serves_is_told(
     assert "pick: warning[AOS505]: nobody can run it now: no adapter answers calls of /pick" in pushed.output
 
 
-async def test_what_is_not_there_is_told_with_the_nearest(aos: Aos, bundles: Path) -> None:
+async def test_what_is_not_there_is_told_with_the_nearest(aos: Aos, bundles: Path):
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     for arguments, told in (
         (("show", "armadilo"), "Did you mean `armadillo`?"),

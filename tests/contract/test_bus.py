@@ -17,7 +17,7 @@ from aos_runtime.bus.bus import Bus
 from aos_runtime.processes.children import PIPE, Child
 
 
-async def test_no_router_is_a_clear_error(unused_tcp_port: int) -> None:
+async def test_no_router_is_a_clear_error(unused_tcp_port: int):
     with pytest.raises(BusError, match="no bus router answers at") as caught:
         await Bus.open(f"tcp/127.0.0.1:{unused_tcp_port}", sender="lonely", connect_timeout_s=0.1)
     assert caught.value.code == "AOS605"
@@ -25,7 +25,7 @@ async def test_no_router_is_a_clear_error(unused_tcp_port: int) -> None:
 
 async def test_a_key_that_goes_in_the_moment_in_which_a_watch_begins_is_not_there_for_ever(
     bus: Bus, other: Bus, keys: Keys
-) -> None:
+):
     key = keys.live("leaving")
     async with bus.presence(keys.all_live):  # So its session knows the key.
         for _ in range(100):
@@ -43,7 +43,7 @@ async def test_a_key_that_goes_in_the_moment_in_which_a_watch_begins_is_not_ther
 
 async def test_a_key_that_came_while_a_watch_ended_and_went_is_not_there_for_the_next_watch(
     bus: Bus, other: Bus, keys: Keys
-) -> None:
+):
     key = keys.live("passing")
     for _ in range(300):
         async with bus.presence(key) as present:
@@ -54,14 +54,14 @@ async def test_a_key_that_came_while_a_watch_ended_and_went_is_not_there_for_the
         other.withdraw(keys.live("later"))
 
 
-async def test_an_endpoint_that_is_none_is_refused_before_anything_is_opened() -> None:
+async def test_an_endpoint_that_is_none_is_refused_before_anything_is_opened():
     with pytest.raises(BusError, match="is not a bus endpoint"):
         await Bus.open("127.0.0.1:7447", sender="lost")
 
 
 async def test_presence_shows_who_is_there_who_comes_and_who_goes(
     endpoint: str, bus: Bus, other: Bus, keys: Keys
-) -> None:
+):
     early, late = keys.live("early"), keys.live("late")
     await other.announce(early)
     async with bus.presence(keys.all_live) as changes:
@@ -88,7 +88,7 @@ asyncio.run(main())
 @pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 async def test_presence_ends_with_a_process_that_cannot_say_goodbye(
     endpoint: str, bus: Bus, keys: Keys, death: signal.Signals
-) -> None:
+):
     async with (
         bus.presence(keys.all_live) as changes,
         running(sys.executable, "-c", ANNOUNCE, endpoint) as child,
@@ -99,7 +99,7 @@ async def test_presence_ends_with_a_process_that_cannot_say_goodbye(
         assert await anext(changes) == (keys.live("mortal"), False)
 
 
-async def test_who_left_the_bus_is_told_so(endpoint: str, keys: Keys) -> None:
+async def test_who_left_the_bus_is_told_so(endpoint: str, keys: Keys):
     bus = await Bus.open(endpoint, sender="gone")
     await bus.close()
     await bus.close()
@@ -121,7 +121,7 @@ asyncio.run(main())
 """
 
 
-async def test_an_interpreter_ends_though_its_bus_was_never_closed(endpoint: str) -> None:
+async def test_an_interpreter_ends_though_its_bus_was_never_closed(endpoint: str):
     async with running(sys.executable, "-c", NEVER_CLOSE, endpoint) as child, asyncio.timeout(HANG_S):
         assert await child.wait() == 5
 

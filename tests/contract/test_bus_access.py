@@ -21,11 +21,11 @@ def router(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Routed]:
         yield made
 
 
-def test_what_the_table_allows_passes_and_nothing_else(router: Routed) -> None:
+def test_what_the_table_allows_passes_and_nothing_else(router: Routed):
     assert list(wrong(router, attempts(share=0.05))) == []
 
 
-def test_the_passwords_are_read_by_their_user_alone_and_the_routers_file_is_gone(router: Routed) -> None:
+def test_the_passwords_are_read_by_their_user_alone_and_the_routers_file_is_gone(router: Routed):
     router.session(OPERATOR)  # Now the router has read it.
     assert not router.passes.dictionary.exists()
     files = list(router.passes.dictionary.parent.iterdir())
@@ -34,7 +34,7 @@ def test_the_passwords_are_read_by_their_user_alone_and_the_routers_file_is_gone
 
 
 @pytest.mark.parametrize("credential", [None, Credential("operator", "guessed"), Credential("nobody", "x")])
-async def test_a_stranger_gets_no_connection(router: Routed, credential: Credential | None) -> None:
+async def test_a_stranger_gets_no_connection(router: Routed, credential: Credential | None):
     with pytest.raises(BusError, match="no bus router answers") as caught:
         await Bus.open(router.endpoint, sender="x", connect_timeout_s=0.2, credential=credential)
     assert caught.value.code == "AOS605"

@@ -42,7 +42,7 @@ async def list_catalogue(query: ProjectQuery, key: str) -> Message:
     return Catalogue((msgspec.structs.replace(ENTRY, project=f"{query.project} at {key}"),))
 
 
-async def test_a_wildcard_answers_every_key_and_is_told_which(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_a_wildcard_answers_every_key_and_is_told_which(bus: Bus, other: Bus, keys: Keys):
     await other.answer(keys.activate_any, ProjectQuery, list_catalogue)
 
     for skill in ("pick", "serve"):
@@ -50,14 +50,14 @@ async def test_a_wildcard_answers_every_key_and_is_told_which(bus: Bus, other: B
         assert catalogue.entries[0].project == f"a at {keys.activate(skill)}"
 
 
-async def test_answers_are_reachable_as_soon_as_they_are_declared(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_answers_are_reachable_as_soon_as_they_are_declared(bus: Bus, other: Bus, keys: Keys):
     for number in range(50):
         key = keys.topic(f"declared/{number}")
         await other.answer(key, ProjectQuery, list_catalogue)
         await bus.ask(key, ProjectQuery("a"), Catalogue, timeout_s=2)
 
 
-async def test_questions_overlap(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_questions_overlap(bus: Bus, other: Bus, keys: Keys):
     everyone_is_here = asyncio.Barrier(8)
 
     async def wait_for_the_others(_: CatalogueQuery, __: str) -> Message:
@@ -89,7 +89,7 @@ asyncio.run(main())
 """
 
 
-async def test_who_dies_over_a_question_is_told_from_nobody(endpoint: str, bus: Bus, keys: Keys) -> None:
+async def test_who_dies_over_a_question_is_told_from_nobody(endpoint: str, bus: Bus, keys: Keys):
     child = await Child.start([sys.executable, "-c", MORTAL, endpoint], stdout=PIPE)
     try:
         assert await child.stdout.readline() == b"ready\n"
@@ -103,7 +103,7 @@ async def test_who_dies_over_a_question_is_told_from_nobody(endpoint: str, bus: 
         await child.stop()
 
 
-async def test_who_leaves_the_bus_over_a_question_says_so(bus: Bus, endpoint: str, keys: Keys) -> None:
+async def test_who_leaves_the_bus_over_a_question_says_so(bus: Bus, endpoint: str, keys: Keys):
     leaving = await Bus.open(endpoint, sender="leaving")
     is_asked = asyncio.Event()
 
@@ -159,9 +159,7 @@ class Holder:
             error = await _error_of(bus.ask(self._key, ProjectQuery(), Catalogue, timeout_s=0.5))
 
 
-async def test_a_question_is_lost_once_its_server_has_left(
-    endpoint: str, bus: Bus, other: Bus, keys: Keys
-) -> None:
+async def test_a_question_is_lost_once_its_server_has_left(endpoint: str, bus: Bus, other: Bus, keys: Keys):
     async with outsider_on(endpoint) as outsider:
         holder = Holder(outsider, keys.project)
         await holder.until_asked(bus)
@@ -175,7 +173,7 @@ async def test_a_question_is_lost_once_its_server_has_left(
 
 async def test_a_key_that_is_served_again_is_not_served_for_who_watched_its_server_leave(
     endpoint: str, other: Bus, keys: Keys
-) -> None:
+):
     async with outsider_on(endpoint) as outsider, outsider_on(endpoint) as asker, asyncio.timeout(HANG_S):
         holder = Holder(outsider, keys.project)
         await holder.until_asked(other)
@@ -190,7 +188,7 @@ async def test_a_key_that_is_served_again_is_not_served_for_who_watched_its_serv
 
 async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
     endpoint: str, bus: Bus, other: Bus, keys: Keys
-) -> None:
+):
     async with outsider_on(endpoint) as outsider:
         question = encode(ProjectQuery("a"), sender="outsider", stamp_ns=0)
         answer = encode(Catalogue((ENTRY,)), sender="outsider", stamp_ns=0)
@@ -224,7 +222,7 @@ async def _error_of(asked: Awaitable[Message]) -> AosError:
     return error.value
 
 
-async def test_a_late_answer_is_a_timeout(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_a_late_answer_is_a_timeout(bus: Bus, other: Bus, keys: Keys):
     async def never(_: ProjectQuery, __: str) -> Message:
         await asyncio.Event().wait()
         return Catalogue(())
@@ -236,7 +234,7 @@ async def test_a_late_answer_is_a_timeout(bus: Bus, other: Bus, keys: Keys) -> N
     assert caught.value.code == "AOS601"
 
 
-async def test_a_handlers_own_error_arrives_whole(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_a_handlers_own_error_arrives_whole(bus: Bus, other: Bus, keys: Keys):
     finding = Diagnostic(Severity.ERROR, "AOS201", "no such name", Span("pick.sd", 7, 3))
 
     async def refuse(_: ProjectQuery, __: str) -> Message:
@@ -253,7 +251,7 @@ async def test_a_handlers_own_error_arrives_whole(bus: Bus, other: Bus, keys: Ke
 
 async def test_a_defect_in_a_handler_is_an_answer_and_the_next_question_is_served(
     bus: Bus, other: Bus, keys: Keys
-) -> None:
+):
     async def fail_once(query: ProjectQuery, _: str) -> Message:
         if query.project == "first":
             raise ValueError("a defect")
@@ -267,7 +265,7 @@ async def test_a_defect_in_a_handler_is_an_answer_and_the_next_question_is_serve
     assert await bus.ask(keys.project, ProjectQuery("second"), Catalogue, timeout_s=2) == Catalogue(())
 
 
-async def test_a_question_or_answer_of_the_wrong_kind_is_malformed(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_a_question_or_answer_of_the_wrong_kind_is_malformed(bus: Bus, other: Bus, keys: Keys):
     async def describe(message: TopicMessage, _: str) -> Message:
         return message
 
@@ -280,7 +278,7 @@ async def test_a_question_or_answer_of_the_wrong_kind_is_malformed(bus: Bus, oth
     assert wrong_question.value.code == wrong_answer.value.code == "AOS602"
 
 
-async def test_rubbish_as_a_question_is_refused(endpoint: str, other: Bus, keys: Keys) -> None:
+async def test_rubbish_as_a_question_is_refused(endpoint: str, other: Bus, keys: Keys):
     await other.answer(keys.catalogue, ProjectQuery, list_catalogue)
     rogue = await asyncio.to_thread(zenoh.open, client_config(endpoint))
     try:
@@ -291,7 +289,7 @@ async def test_rubbish_as_a_question_is_refused(endpoint: str, other: Bus, keys:
         await asyncio.to_thread(rogue.close)
 
 
-async def test_an_oversize_message_never_leaves(bus: Bus, other: Bus, keys: Keys) -> None:
+async def test_an_oversize_message_never_leaves(bus: Bus, other: Bus, keys: Keys):
     async def reply_with_too_much(_: ProjectQuery, __: str) -> Message:
         return TopicMessage(1, {"data": bytes(17 * 2**20)})
 

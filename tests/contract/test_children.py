@@ -10,7 +10,7 @@ from typing import Any
 from aos_runtime.processes.children import Child
 
 
-async def test_a_child_that_is_killed_while_it_is_told_something_leaves_nothing_in_the_log() -> None:
+async def test_a_child_that_is_killed_while_it_is_told_something_leaves_nothing_in_the_log():
     faults: list[dict[str, Any]] = []
     asyncio.get_running_loop().set_exception_handler(lambda _, context: faults.append(context))
     child = await Child.start(

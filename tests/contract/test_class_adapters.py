@@ -34,7 +34,7 @@ class Arm:
 
 async def test_a_call_that_is_no_coroutine_fails_and_is_told_how_to_write_it(
     bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
-) -> None:
+):
     (tmp_path / "hasty_arm.py").write_text(ARM)
     arm = AdapterProcess(bus, keys, endpoint, tmp_path)
     bound = {path: Binding() for path in ("/wave", "/drop")}

@@ -43,7 +43,7 @@ def fast_dds_program(cache_dir: Path) -> Path:
     return asyncio.run(BuildCache(cache_dir).fill(name, make)) / "peer"
 
 
-def test_fast_dds_understands_us_and_we_it(fast_dds_program: Path) -> None:
+def test_fast_dds_understands_us_and_we_it(fast_dds_program: Path):
     domain = str(random.SystemRandom().randint(1, 100))
     with subprocess.Popen([fast_dds_program, domain]) as peer:
         try:
@@ -54,7 +54,7 @@ def test_fast_dds_understands_us_and_we_it(fast_dds_program: Path) -> None:
     assert talk.returncode == 0, talk.stderr
 
 
-async def test_a_network_interface_that_is_not_there_is_an_error_that_says_so() -> None:
+async def test_a_network_interface_that_is_not_there_is_an_error_that_says_so():
     with pytest.raises(BusError, match=r"DDS cannot be used on the network interface nonesuch0") as raised:
         DdsNode(RosTypes(), domain=1, interface="nonesuch0")
     assert raised.value.code == "AOS605"

@@ -77,9 +77,7 @@ async def sequences(client: AosClient) -> list[int]:
     return [decision.sequence async for decision in client.decisions()]
 
 
-async def test_who_joins_late_gets_everything_from_the_first_step(
-    client: AosClient, solver: Storyteller
-) -> None:
+async def test_who_joins_late_gets_everything_from_the_first_step(client: AosClient, solver: Storyteller):
     await solver.appear()
     for _ in range(5):
         solver.decide()
@@ -90,7 +88,7 @@ async def test_who_joins_late_gets_everything_from_the_first_step(
     assert [decision.sequence async for decision in following] == [5]
 
 
-async def test_a_long_history_comes_page_after_page(client: AosClient, solver: Storyteller) -> None:
+async def test_a_long_history_comes_page_after_page(client: AosClient, solver: Storyteller):
     solver.page = 3
     await solver.appear()
     for _ in range(10):
@@ -103,7 +101,7 @@ async def test_a_long_history_comes_page_after_page(client: AosClient, solver: S
 
 async def test_a_history_that_is_late_is_asked_for_again(
     client: AosClient, solver: Storyteller, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr("aos_runtime.client._ANSWER_S", 0.3)
     await solver.appear()
     solver.decide(is_lost=True)
@@ -112,7 +110,7 @@ async def test_a_history_that_is_late_is_asked_for_again(
     assert [record.sequence async for record in client.history()] == [0]
 
 
-async def test_who_comes_before_the_solver_waits_for_it(client: AosClient, solver: Storyteller) -> None:
+async def test_who_comes_before_the_solver_waits_for_it(client: AosClient, solver: Storyteller):
     async with asyncio.TaskGroup() as tasks:
         following = tasks.create_task(sequences(client))
         await solver.appear()
@@ -122,7 +120,7 @@ async def test_who_comes_before_the_solver_waits_for_it(client: AosClient, solve
     assert following.result() == [0, 1, 2]
 
 
-async def test_a_gap_in_the_stream_is_filled(client: AosClient, solver: Storyteller) -> None:
+async def test_a_gap_in_the_stream_is_filled(client: AosClient, solver: Storyteller):
     await solver.appear()
     solver.decide()
     following = client.decisions()
@@ -136,7 +134,7 @@ async def test_a_gap_in_the_stream_is_filled(client: AosClient, solver: Storytel
     assert [decision.sequence async for decision in following] == [4]
 
 
-async def test_following_ends_when_the_solver_goes(endpoint: str, client: AosClient, keys: Keys) -> None:
+async def test_following_ends_when_the_solver_goes(endpoint: str, client: AosClient, keys: Keys):
     async with await Bus.open(endpoint, sender="solver") as mortal:
         solver = Storyteller(mortal, keys)
         await solver.appear()
@@ -146,11 +144,11 @@ async def test_following_ends_when_the_solver_goes(endpoint: str, client: AosCli
     assert [event async for event in following if isinstance(event, DecisionRecord)] == []
 
 
-async def test_who_comes_when_the_solver_has_gone_waits_as_long_as_was_said(client: AosClient) -> None:
+async def test_who_comes_when_the_solver_has_gone_waits_as_long_as_was_said(client: AosClient):
     assert [event async for event in client.follow(begins_s=0.1)] == []
 
 
-async def test_states_come_between_the_decisions(client: AosClient, solver: Storyteller) -> None:
+async def test_states_come_between_the_decisions(client: AosClient, solver: Storyteller):
     await solver.appear()
     solver.decide(is_lost=True)
     events = client.follow()
@@ -160,7 +158,7 @@ async def test_states_come_between_the_decisions(client: AosClient, solver: Stor
     assert [event async for event in events] == [solver.state]
 
 
-async def test_a_few_lines_are_enough(endpoint: str, solver: Storyteller, keys: Keys) -> None:
+async def test_a_few_lines_are_enough(endpoint: str, solver: Storyteller, keys: Keys):
     await solver.appear()
     solver.decide()
     solver.end()
@@ -168,7 +166,7 @@ async def test_a_few_lines_are_enough(endpoint: str, solver: Storyteller, keys: 
         assert [decision.action async for decision in aos.decisions()] == ["pick"]
 
 
-def test_a_feed_gives_each_record_once_and_in_order() -> None:
+def test_a_feed_gives_each_record_once_and_in_order():
     feed = DecisionFeed()
     assert [r.sequence for r in feed.take(record(0))] == [0]
     assert feed.take(record(0)) == []
@@ -181,7 +179,7 @@ def test_a_feed_gives_each_record_once_and_in_order() -> None:
 
 async def test_a_solver_of_another_mission_is_followed_from_its_first_record(
     endpoint: str, client: AosClient, solver: Storyteller, keys: Keys
-) -> None:
+):
     async with await Bus.open(endpoint, sender="first") as mortal:
         first = Storyteller(mortal, keys)
         await first.appear()

@@ -36,7 +36,7 @@ async def with_mapping(system: System, text: str) -> None:
     await system.state(system.registry.current.revision)
 
 
-async def test_a_rule_can_tell_how_a_skill_has_ended(system: System) -> None:
+async def test_a_rule_can_tell_how_a_skill_has_ended(system: System):
     async def ending(call: SkillCall) -> dict[str, Any]:
         if call.id.step < 3:
             raise SkillError("the gripper is jammed" if call.id.step == 1 else "no power", code="AOS510")
@@ -55,9 +55,7 @@ async def test_a_rule_can_tell_how_a_skill_has_ended(system: System) -> None:
     ]  # fmt: skip
 
 
-async def test_an_adapter_that_leaves_and_a_second_one_of_a_path_make_its_skills_unavailable(
-    system: System,
-) -> None:
+async def test_an_adapter_that_leaves_and_a_second_one_of_a_path_make_its_skills_unavailable(system: System):
     await system.adapter.serve("/sense", answering({}))
     await system.state_when(lambda state: "sense" not in state.unavailable)
     system.adapter.withdraw("/sense")
@@ -77,7 +75,7 @@ async def test_an_adapter_that_leaves_and_a_second_one_of_a_path_make_its_skills
     assert (await system.activate("sense", 2)).status == "observed"
 
 
-async def test_an_adapter_that_is_there_tells_why_it_does_not_serve_a_path(system: System) -> None:
+async def test_an_adapter_that_is_there_tells_why_it_does_not_serve_a_path(system: System):
     await system.adapter.lack("/sense", "AOS509: /sense is of type a/B, not c/D")
     state = await system.state_when(lambda state: "AOS509" in state.unavailable.get("sense", ""))
     why = "no adapter answers calls of /sense: scripted says: AOS509: /sense is of type a/B, not c/D"
@@ -85,14 +83,14 @@ async def test_an_adapter_that_is_there_tells_why_it_does_not_serve_a_path(syste
     assert_refused(await system.activate("sense", 1), "AOS505", why)
 
 
-async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -> None:
+async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System):
     waiting, is_still = await system.beside_a_motion("sense")
     assert [call.id.step for call in system.adapter.calls] == [1]
     is_still.set()
     assert (await waiting).status == "observed"
 
 
-async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_called(system: System) -> None:
+async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_called(system: System):
     waiting, is_still = await system.beside_a_motion("sense", deadline_s=1.0)
     system.adapter.withdraw("/sense")
     await system.state_when(lambda state: "sense" in state.unavailable)
@@ -100,9 +98,7 @@ async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_c
     assert_refused(await waiting, "AOS505", "no adapter answers calls of /sense")
 
 
-async def test_an_adapter_that_ends_since_it_cannot_stop_is_called_when_it_is_started_again(
-    system: System,
-) -> None:
+async def test_an_adapter_that_ends_since_it_cannot_stop_is_called_when_it_is_started_again(system: System):
     waiting, is_still = await system.beside_a_motion("sense")
     system.adapter.withdraw("/sense")
     await system.state_when(lambda state: "sense" in state.unavailable)
@@ -112,7 +108,7 @@ async def test_an_adapter_that_ends_since_it_cannot_stop_is_called_when_it_is_st
     assert (await waiting).status == "observed"
 
 
-async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system: System) -> None:
+async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system: System):
     await system.adapter.serve(
         "/sense", lambda call: hang(call) if call.id.step == 1 else answering({})(call)
     )
@@ -126,7 +122,7 @@ async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system
 
 async def test_a_call_of_a_middleware_that_a_signal_has_frozen_is_joined_and_no_adapter_is_lost(
     system: System,
-) -> None:
+):
     is_over = asyncio.Event()
 
     async def pick(_: SkillCall) -> dict[str, Any]:
@@ -155,15 +151,13 @@ async def test_a_call_of_a_middleware_that_a_signal_has_frozen_is_joined_and_no_
     assert (outcome.status, outcome.fault) == ("observed", None)
 
 
-async def test_a_skill_whose_time_is_over_when_the_earlier_one_stands_still_is_not_called(
-    system: System,
-) -> None:
+async def test_a_skill_whose_time_is_over_when_the_earlier_one_stands_still_is_not_called(system: System):
     waiting, is_still = await system.beside_a_motion("sense", deadline_s=1e-9)
     is_still.set()
     assert_refused(await waiting, "AOS512", "the time of /sense was over before what ran earlier stood still")
 
 
-async def test_a_result_of_another_type_is_not_put_on_a_topic_that_said_nothing(system: System) -> None:
+async def test_a_result_of_another_type_is_not_put_on_a_topic_that_said_nothing(system: System):
     result = "local_variable: wet\nfrom_ros_service_response: true\ncode:\nwet = __input.wet\n"
     topic = "local_variable: level\ntopic: /level\ntype: float\ncode:\nlevel = __input.data\n"
     rule = "response: wet\nresponse_rule: wet > 0.5 and level > 0\nmodule_activation: skill\npath: /sense\n"
@@ -175,7 +169,7 @@ async def test_a_result_of_another_type_is_not_put_on_a_topic_that_said_nothing(
 
 
 @pytest.mark.parametrize("kind", ["late", "foreign"])
-async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind: str) -> None:
+async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind: str):
     is_over = asyncio.Event()
 
     async def sense(call: SkillCall) -> dict[str, Any]:
@@ -202,7 +196,7 @@ async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system:
     assert (stray.id, stray.kind, stray.path) == (outcome.id, kind, "/sense")
 
 
-async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: System) -> None:
+async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: System):
     no_result: Any = Cancelled()
     await system.adapter.serve("/sense", answering({}), lambda _: no_result)
     outcome = await system.activate("sense", 1)
@@ -210,7 +204,7 @@ async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: Sys
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS602")
 
 
-async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_doubt(system: System) -> None:
+async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_doubt(system: System):
     large = f"module_activation: skill\npath: /sense\nparameter: map\ncode:\n'x' * {MAX_BYTES}\n"
     await with_mapping(system, "project: armadillo\nresponse: done\nresponse_rule: True\n" + large)
     await system.adapter.serve("/sense", answering({}))

@@ -67,7 +67,7 @@ def host(tmp_path: Path, endpoint: str) -> Host:
 
 async def test_a_service_is_present_while_it_runs_and_cleans_up_when_told_to_stop(
     host: Host, bus: Bus, keys: Keys
-) -> None:
+):
     async with bus.presence(keys.live("garden")) as changes, host.running("garden") as child:
         assert await anext(changes) == (keys.live("garden"), True)
         assert await child.stop() == 0
@@ -76,7 +76,7 @@ async def test_a_service_is_present_while_it_runs_and_cleans_up_when_told_to_sto
     assert not fault_path(host.run_dir, "garden").exists()
 
 
-async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys: Keys) -> None:
+async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys: Keys):
     async with bus.presence(keys.live("garden")) as changes, host.running("garden") as first:
         await anext(changes)
         async with host.running("garden") as second:
@@ -85,14 +85,14 @@ async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys:
         assert first.returncode is None
 
 
-async def test_a_service_without_a_router_says_so(tmp_path: Path, unused_tcp_port: int) -> None:
+async def test_a_service_without_a_router_says_so(tmp_path: Path, unused_tcp_port: int):
     host = Host(tmp_path, f"tcp/127.0.0.1:{unused_tcp_port}")
     async with host.running("garden", program=("-c", IMPATIENT)) as child:
         assert await child.wait() == 1
     assert host.fault("garden").code == "AOS605"
 
 
-async def test_wrong_settings_are_a_usage_error(tmp_path: Path) -> None:
+async def test_wrong_settings_are_a_usage_error(tmp_path: Path):
     path = tmp_path / "settings.json"
     path.write_text('{"robot": "test"}')
     argv = [sys.executable, "-m", "small_service", str(path)]
@@ -113,7 +113,7 @@ asyncio.run(main())
 
 
 @pytest.mark.parametrize("mood", ["good", "parental"])
-async def test_a_service_ends_with_its_parent(host: Host, bus: Bus, keys: Keys, mood: str) -> None:
+async def test_a_service_ends_with_its_parent(host: Host, bus: Bus, keys: Keys, mood: str):
     argv = [sys.executable, "-c", START_A_SERVICE, str(host.settings("garden", mood))]
     parent = await Child.start(argv, env={"PYTHONPATH": str(TESTS)}, stdout=PIPE)
     async with bus.presence(keys.live("garden")) as changes, asyncio.timeout(HANG_S):

@@ -10,9 +10,7 @@ from aos_runtime.bus.bus import Bus
 from aos_solver.mapping_watch import MappingWatch
 
 
-async def test_an_answer_that_is_read_after_a_newer_state_changes_nothing(
-    bus: Bus, other: Bus, keys: Keys
-) -> None:
+async def test_an_answer_that_is_read_after_a_newer_state_changes_nothing(bus: Bus, other: Bus, keys: Keys):
     """A mission held for ever: an answer from before the adapters were there came after all was well."""
     follows, has_changed = asyncio.Event(), asyncio.Event()
     watch = MappingWatch(bus, keys, has_changed.set)

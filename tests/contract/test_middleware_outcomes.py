@@ -18,7 +18,7 @@ from aos_protocol.errors import SkillError
 from aos_protocol.messages import ActivationId, SkillCall
 
 
-async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(system: System) -> None:
+async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(system: System):
     await system.adapter.serve("/navigate", succeed)
     parameters = {"destination": {"place": "Corridor", "x": 4.0, "y": 0.0, "yaw": 0.5}}
     outcome = await system.activate("navigate", parameters=parameters)
@@ -31,7 +31,7 @@ async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(syst
     assert 0 < outcome.started_ns <= outcome.ended_ns
 
 
-async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system: System) -> None:
+async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system: System):
     sees = b"project: armadillo\nparameter: tLocation place\ndynamic_model:\n__moduleResponse = seen;\n"
     model = read_documents({"see.sd": sees}, Findings())["see.sd"].content
     assert isinstance(model, SkillModel)
@@ -61,7 +61,7 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
     assert (faults[2].code, faults[2].hint) == ("AOS402", "Did you mean `seen`?")
 
 
-async def test_only_messages_of_the_activation_count_and_all_of_them(system: System) -> None:
+async def test_only_messages_of_the_activation_count_and_all_of_them(system: System):
     async def publish_many(call: SkillCall) -> dict[str, Any]:
         for level in range(200 if call.id.step < 3 else 0):
             system.adapter.publish("/level", {"data": 0 if level < 199 else 9})
@@ -76,7 +76,7 @@ async def test_only_messages_of_the_activation_count_and_all_of_them(system: Sys
     assert (await system.activate("sense", 3)).response == "quiet"
 
 
-async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: System) -> None:
+async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: System):
     async def publish_behind(call: SkillCall) -> dict[str, Any]:
         if call.id.step == 1:
             asyncio.get_running_loop().call_later(0.02, system.adapter.publish, "/level", {"data": 9})
@@ -95,7 +95,7 @@ async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: S
     assert silent.fault.message.endswith("; level has no value, for no message came on /level")
 
 
-async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System) -> None:
+async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System):
     async def publish_elsewhere(_: SkillCall) -> dict[str, Any]:
         system.adapter.publish("/levels", {"data": 9})
         return {}
@@ -105,7 +105,7 @@ async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System) -> No
     await system.logged("no message has come on /level in 3 calls of skills. Did you mean `/levels`?")
 
 
-async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: System) -> None:
+async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: System):
     async def look(call: SkillCall) -> dict[str, Any]:
         last = {"last": math.nan} if call.id.step == 3 else {}
         return {"lux": math.nan, "pose": {"x": math.inf, "y": 1.0}, "ranges": [math.inf], **last}
@@ -119,7 +119,7 @@ async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: S
     assert said.count("no finite number") == 3
 
 
-async def test_holding_is_decided_from_the_published_gap_and_forces(system: System) -> None:
+async def test_holding_is_decided_from_the_published_gap_and_forces(system: System):
     async def squeeze(call: SkillCall) -> dict[str, Any]:
         force_n = 4.0 if call.id.step == 1 else 0.0
         fields = {"gap_m": 0.06, "left_force_n": force_n, "right_force_n": 4.0}
@@ -131,7 +131,7 @@ async def test_holding_is_decided_from_the_published_gap_and_forces(system: Syst
     assert (await system.activate("observe_holding", 2)).response == "not_holding"
 
 
-async def test_what_cannot_be_called_says_why(system: System) -> None:
+async def test_what_cannot_be_called_says_why(system: System):
     with pytest.raises(SkillError, match="Did you mean `navigate`") as refusal:
         await system.activate("navigat")
     assert refusal.value.code == "AOS501"
@@ -149,7 +149,7 @@ async def test_what_cannot_be_called_says_why(system: System) -> None:
     assert "bind:" in outcome.fault.hint
 
 
-async def test_an_adapters_error_becomes_a_defined_outcome(system: System) -> None:
+async def test_an_adapters_error_becomes_a_defined_outcome(system: System):
     statuses = {
         "AOS502": "refused", "AOS503": "timed_out", "AOS504": "unknown", "AOS506": "refused",
         "AOS507": "cancelled", "AOS510": "failed",
@@ -167,7 +167,7 @@ async def test_an_adapters_error_becomes_a_defined_outcome(system: System) -> No
         assert (outcome.fault.code, outcome.fault.message, outcome.fault.hint) == (code, "no", "why")
 
 
-async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System) -> None:
+async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System):
     await system.adapter.serve("/sense", hang)
     await system.adapter.serve_cancel("/sense")
     outcome = await system.activate("sense")
@@ -182,7 +182,7 @@ async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System
     assert system.adapter.calls[1].deadline_s <= 0.1
 
 
-async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(system: System) -> None:
+async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(system: System):
     project = system.registry.current.project
     text = SENSE.replace("level <= 3", "level < 0")
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
@@ -197,9 +197,7 @@ async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(system: S
     assert outcome.fault.diagnostics[0].span.file == "sense.am"
 
 
-async def test_mapping_code_that_raises_is_unknown_at_the_documents_line(
-    system: System, bundles: Path
-) -> None:
+async def test_mapping_code_that_raises_is_unknown_at_the_documents_line(system: System, bundles: Path):
     await system.adapter.serve("/pick", answering({"sucess": True}))
     outcome = await system.activate("pick")
     assert outcome.status == "unknown"
@@ -211,7 +209,7 @@ async def test_mapping_code_that_raises_is_unknown_at_the_documents_line(
     assert "did you mean 'sucess'" in outcome.fault.message
 
 
-async def test_mapping_code_that_fails_during_the_call_does_not_end_the_call(system: System) -> None:
+async def test_mapping_code_that_fails_during_the_call_does_not_end_the_call(system: System):
     ended = asyncio.Event()
 
     async def publish_wrong(_: SkillCall) -> dict[str, Any]:

@@ -38,9 +38,7 @@ asyncio.run(main())
 """
 
 
-async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_running_model(
-    system: System,
-) -> None:
+async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_running_model(system: System):
     state = await system.state(1)
     skills = ("navigate", "observe_arm_outstretched", "observe_holding", "pick", "sense", "serve")
     assert (state.revision, state.skills, state.refused) == (1, skills, 0)
@@ -59,7 +57,7 @@ async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_runnin
     assert (await system.activate("sense", 4, revision=1)).response == "quiet"
 
 
-async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(system: System) -> None:
+async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(system: System):
     await system.adapter.serve("/sense", answering({}))
     text = SENSE.replace("path:", "imports: import: no_such_module_at_all\npath:")
     project = system.registry.current.project
@@ -70,9 +68,7 @@ async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(
     assert (await system.activate("sense")).response == "quiet"
 
 
-async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(
-    system: System, endpoint: str
-) -> None:
+async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(system: System, endpoint: str):
     await system.adapter.serve("/pick", succeed)
     first = await system.activate("pick")
     assert await system.activate("pick") == first
@@ -87,7 +83,7 @@ async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(
     assert len(system.adapter.calls) == 1
 
 
-async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: System) -> None:
+async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: System):
     go_on = asyncio.Event()
 
     async def wait(_: SkillCall) -> dict[str, Any]:
@@ -114,7 +110,7 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
 )
 async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
     system: System, endpoint: str, ending: str, skill: str, result: tuple[str, str]
-) -> None:
+):
     may_end = asyncio.Event()
 
     async def move(_: SkillCall) -> dict[str, Any]:
@@ -142,9 +138,7 @@ async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
     assert len(system.adapter.motions) == 1
 
 
-async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(
-    system: System, endpoint: str
-) -> None:
+async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(system: System, endpoint: str):
     await system.adapter.serve("/pick", hang)
     assert system.child is not None
     async with asyncio.TaskGroup() as tasks:
@@ -160,9 +154,7 @@ async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS505")
 
 
-async def test_an_adapter_killed_during_the_call_leaves_the_outcome_unknown(
-    system: System, endpoint: str
-) -> None:
+async def test_an_adapter_killed_during_the_call_leaves_the_outcome_unknown(system: System, endpoint: str):
     adapter = await Child.start([sys.executable, "-c", HANGING_ADAPTER, endpoint], stdout=PIPE)
     assert await adapter.stdout.readline() == b"serving\n"
     async with asyncio.TaskGroup() as tasks:

@@ -59,7 +59,7 @@ async def sensed(system: System, step: int, *levels: Any, response: str = "") ->
     return await system.activate("sense", step)
 
 
-async def test_the_newest_message_of_a_step_gives_one_response_and_silence_none(system: System) -> None:
+async def test_the_newest_message_of_a_step_gives_one_response_and_silence_none(system: System):
     await monitored(system)
     answers = iter([(), (0.9, 0.15), (), (0.15, 0.9), (0.2,)])
 
@@ -76,7 +76,7 @@ async def test_the_newest_message_of_a_step_gives_one_response_and_silence_none(
     assert await system.activate("sense", 2) == outcomes[1]
 
 
-async def test_a_monitor_stops_what_runs_and_says_so_with_the_same_outcome(system: System) -> None:
+async def test_a_monitor_stops_what_runs_and_says_so_with_the_same_outcome(system: System):
     adapter = await monitored(system)
     running = asyncio.create_task(system.activate("drive", 1))
     await asyncio.wait_for(adapter.is_called.wait(), HANG_S)
@@ -99,9 +99,7 @@ async def test_a_monitor_stops_what_runs_and_says_so_with_the_same_outcome(syste
     assert len(adapter.asked) == 1
 
 
-async def test_what_becomes_true_between_two_skills_keeps_the_next_one_from_being_called(
-    system: System,
-) -> None:
+async def test_what_becomes_true_between_two_skills_keeps_the_next_one_from_being_called(system: System):
     adapter = await monitored(system)
     # What is said before the monitor listens is not heard.
     assert (await sensed(system, 1, 0.9)).monitors == {"battery": "fine"}
@@ -114,7 +112,7 @@ async def test_what_becomes_true_between_two_skills_keeps_the_next_one_from_bein
     assert stopped.monitors == {"battery": "empty"}
 
 
-async def test_a_monitor_that_fails_says_nothing_is_told_and_begins_anew(system: System) -> None:
+async def test_a_monitor_that_fails_says_nothing_is_told_and_begins_anew(system: System):
     await monitored(system)
     answers = iter([("empty",), (0.9,)])
 
@@ -131,15 +129,13 @@ async def test_a_monitor_that_fails_says_nothing_is_told_and_begins_anew(system:
     assert (outcome.monitors, outcome.monitor_faults) == ({"battery": "fine"}, {})
 
 
-async def test_a_skill_that_is_played_brings_the_responses_of_monitors_that_its_adapter_knows(
-    system: System,
-) -> None:
+async def test_a_skill_that_is_played_brings_the_responses_of_monitors_that_its_adapter_knows(system: System):
     await monitored(system)
     outcome = await sensed(system, 1, response="heard")
     assert (outcome.response, outcome.monitors) == ("heard", {"battery": "low"})
 
 
-async def test_a_monitor_is_exchanged_by_a_push_and_goes_with_it(system: System) -> None:
+async def test_a_monitor_is_exchanged_by_a_push_and_goes_with_it(system: System):
     await monitored(system)
 
     async def answer(_: SkillCall) -> dict[str, Any]:

@@ -221,9 +221,7 @@ def values(belief: BeliefSummary, variable: str) -> dict[str, float]:
     return next(marginal.values for marginal in belief.marginals if marginal.variable == variable)
 
 
-async def test_the_belief_follows_what_the_robot_finds_until_the_goal(
-    robot: Robot, stock: BuiltModel
-) -> None:
+async def test_the_belief_follows_what_the_robot_finds_until_the_goal(robot: Robot, stock: BuiltModel):
     state = await mission(stock, robot)
     assert (state.ending, state.step) == ("goal", 3)
     first, second, third = robot.records

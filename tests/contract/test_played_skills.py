@@ -56,7 +56,7 @@ def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str, bundl
 )
 async def test_a_played_skill_needs_no_fields_and_a_real_one_is_not_called_without(
     start: StartSystem, played: tuple[str, ...], status: str, calls: int
-) -> None:
+):
     async with start(played=played) as system:
         outcome = await outcome_of(system)
         assert (outcome.status, len(system.adapter.calls)) == (status, calls)

@@ -144,7 +144,7 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIte
         await robot.stop()
 
 
-async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: Robot) -> None:
+async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: Robot):
     await robot.start(drive="robot.py:drive", pick="robot.py:Arm.pick", count="robot.py:Arm.count")
     progress = robot.bus.listen(robot.keys.progress("/drive"), SkillProgress)
     poses = robot.bus.listen(robot.keys.topic("/pose"), TopicMessage)
@@ -163,7 +163,7 @@ async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: R
     assert (await robot.call("/count", 3)).fields == {"picks": 1}
 
 
-async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) -> None:
+async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot):
     await robot.start(measure="robot.py:measure")
     scans = robot.bus.listen(robot.keys.topic("/scan"), TopicMessage)
     async with asyncio.timeout(HANG_S), scans:
@@ -175,7 +175,7 @@ async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) 
     }  # fmt: skip
 
 
-async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot) -> None:
+async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot):
     wrong: list[tuple[str, dict[str, Any], str, str]] = [
         ("fail", {}, "AOS510", "/fail failed: RuntimeError: gripper jammed"),
         ("odd", {}, "AOS504", "/odd answered 3, which is no mapping of field names to values"),
@@ -197,7 +197,7 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot)
 
 
 @pytest.mark.parametrize("function", ["wait", "block"])
-async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function: str) -> None:
+async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function: str):
     await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
     async with asyncio.timeout(HANG_S), progress:
@@ -210,7 +210,7 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
 
 async def test_a_call_that_comes_again_while_it_runs_joins_it_and_its_id_is_for_nothing_else(
     robot: Robot, tmp_path: Path
-) -> None:
+):
     await robot.start(wait="robot.py:wait_for_pipe")
     pipe = tmp_path / "go on"
     os.mkfifo(pipe)
@@ -224,7 +224,7 @@ async def test_a_call_that_comes_again_while_it_runs_joins_it_and_its_id_is_for_
     assert await again == await first
 
 
-async def test_what_moves_is_stopped_when_the_middleware_was_away_for_too_long(robot: Robot) -> None:
+async def test_what_moves_is_stopped_when_the_middleware_was_away_for_too_long(robot: Robot):
     middleware = robot.keys.live("middleware")
     await robot.bus.announce(middleware)
     await robot.start(wait="robot.py:wait", drive="robot.py:drive")
@@ -240,7 +240,7 @@ async def test_what_moves_is_stopped_when_the_middleware_was_away_for_too_long(r
 @pytest.mark.parametrize(("deadline_s", "until"), [(20.0, "executing"), (0.1, "cancelling")])
 async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown(
     robot: Robot, deadline_s: float, until: str
-) -> None:
+):
     await robot.start(skill="robot.py:hang")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
     async with asyncio.timeout(HANG_S), progress:
@@ -268,9 +268,7 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
         ("robot.py:beep", "takes no arguments. A function gets the call first"),
     ],
 )
-async def test_what_cannot_be_bound_ends_the_process_with_one_message(
-    robot: Robot, target: str, text: str
-) -> None:
+async def test_what_cannot_be_bound_ends_the_process_with_one_message(robot: Robot, target: str, text: str):
     child = await robot.launch(skill=target)
     async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1

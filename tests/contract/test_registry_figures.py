@@ -15,7 +15,7 @@ ROUNDS = 20
 
 async def test_twenty_pushes_are_timed_beside_their_checks(
     tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, bundles: Path
-) -> None:
+):
     files = read_bundle_files(bundles / "armadillo-finer")[0]
     lint_s, push_s = [], []
     async with running_registry(tmp_path / "run", endpoint, bus, keys):

@@ -108,7 +108,7 @@ def hostile_archive(files: dict[str, bytes], chance: random.Random) -> tuple[str
 
 async def test_hostile_pushes_are_answered_and_change_nothing_that_is_not_sound(
     registry: tuple[Path, Child], bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     chance = random.Random(SEED)
     await push(bus, keys, finer)
     for _ in range(HOSTILE_PUSHES):
@@ -125,7 +125,7 @@ async def test_hostile_pushes_are_answered_and_change_nothing_that_is_not_sound(
 
 async def test_dropped_hostile_archives_do_not_take_the_registry_down(
     registry: tuple[Path, Child], bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     run_dir, child = registry
     chance = random.Random(SEED)
     async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, BundleReport) as reports:
@@ -143,7 +143,7 @@ async def test_dropped_hostile_archives_do_not_take_the_registry_down(
     assert not list(run_dir.parent.glob("*.sd"))
 
 
-def test_hostile_archives_are_read_or_refused(finer: dict[str, bytes], tmp_path: Path) -> None:
+def test_hostile_archives_are_read_or_refused(finer: dict[str, bytes], tmp_path: Path):
     chance = random.Random(SEED)
     refused = 0
     for number in range(HOSTILE_ARCHIVES):

@@ -78,7 +78,7 @@ async def current(bus: Bus, keys: Keys, project: str = "armadillo") -> messages.
 
 async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     async with asyncio.timeout(HANG_S), bus.listen(keys.announced, messages.ProjectRevision) as announced:
         report = await push(bus, keys, finer)
         assert report.is_accepted
@@ -101,7 +101,7 @@ async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
 
 async def test_a_skill_can_be_pushed_on_its_own_and_a_better_document_replaces_the_old_one(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes], bundles: Path
-) -> None:
+):
     observe = {name: finer.pop(name) for name in list(finer) if name.startswith("observe_holding")}
     await push(bus, keys, finer)
     report = await push(bus, keys, observe)
@@ -114,7 +114,7 @@ async def test_a_skill_can_be_pushed_on_its_own_and_a_better_document_replaces_t
 
 async def test_a_bad_bundle_changes_nothing_and_says_where(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     await push(bus, keys, finer)
     before = await current(bus, keys)
     broken = finer["pick.sd"].replace(b"__reward = -2;", b"__reward = (-2;")
@@ -131,7 +131,7 @@ async def test_a_bad_bundle_changes_nothing_and_says_where(
 
 async def test_the_solver_is_asked_and_its_complaint_refuses_the_bundle(
     registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     complaint = Diagnostic(Severity.ERROR, "AOS201", "no such function", Span("pick.sd", 28, 1))
 
     async def refuse(question: messages.CheckModel, key: str) -> messages.ModelCheck:
@@ -151,7 +151,7 @@ async def test_the_solver_is_asked_and_its_complaint_refuses_the_bundle(
 
 async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_unchecked(
     registry: Path, bus: Bus, endpoint: str, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     solver = await Bus.open(endpoint, sender="solver")
 
     async def never(_: messages.CheckModel, __: str) -> messages.ModelCheck:
@@ -169,7 +169,7 @@ async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_un
 
 async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
     tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, bundles: Path
-) -> None:
+):
     registry = tmp_path / "run"
     async with (
         asyncio.timeout(HANG_S),
@@ -192,7 +192,7 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
             break
 
 
-async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Keys, bundles: Path) -> None:
+async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Keys, bundles: Path):
     async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, messages.BundleReport) as reports:
         shutil.make_archive(str(registry / "drop" / "armadillo"), "zip", bundles / "armadillo-finer")
         async for _, report in reports:
@@ -202,7 +202,7 @@ async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Key
 
 async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
     registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     pick = {name: finer.pop(name) for name in list(finer) if name.startswith("pick")}
     async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
         sequence = aiter(reports)
@@ -230,7 +230,7 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
 
 async def test_the_catalogue_survives_a_restart(
     tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     async with running_registry(tmp_path / "run", endpoint, bus, keys):
         await push(bus, keys, finer)
         before = await current(bus, keys)
@@ -240,7 +240,7 @@ async def test_the_catalogue_survives_a_restart(
 
 async def test_a_changed_document_with_the_version_it_had_is_refused_and_a_higher_one_taken(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
-) -> None:
+):
     def pick(version: str, reward: str) -> dict[str, bytes]:
         text = finer["pick.sd"].replace(b"__reward = -2;", f"__reward = {reward};".encode())
         first, rest = text.split(b"\n", 1)

@@ -35,7 +35,7 @@ class Registry:
 
 async def test_documents_come_although_the_first_answers_are_late(
     bus: Bus, other: Bus, keys: Keys, bundles: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(registry_watch, "ASK_TIMEOUT_S", 0.1)
     registry = Registry(2, load_bundle(bundles / "errand").project)
     await other.answer(keys.project, ProjectQuery, registry.answer)
@@ -49,7 +49,7 @@ async def test_documents_come_although_the_first_answers_are_late(
 
 async def test_whoever_asks_once_goes_on_without_documents(
     bus: Bus, other: Bus, keys: Keys, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(registry_watch, "ASK_TIMEOUT_S", 0.1)
     given: asyncio.Queue[ProjectRevision] = asyncio.Queue()
     await other.answer(keys.project, ProjectQuery, Registry(1, None).answer)

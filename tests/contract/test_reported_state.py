@@ -50,9 +50,7 @@ async def revision_from(bus: Bus, keys: Keys, least: int, timeout_s: float = HAN
     return state.revision
 
 
-async def test_what_was_told_before_anybody_listened_is_asked_for(
-    bus: Bus, keys: Keys, teller: Teller
-) -> None:
+async def test_what_was_told_before_anybody_listened_is_asked_for(bus: Bus, keys: Keys, teller: Teller):
     await teller.serve()
     teller.tell(3)
     assert await revision_from(bus, keys, 3) == 3
@@ -60,7 +58,7 @@ async def test_what_was_told_before_anybody_listened_is_asked_for(
 
 async def test_what_is_told_later_is_heard_and_what_does_not_hold_is_passed_over(
     bus: Bus, keys: Keys, teller: Teller
-) -> None:
+):
     await teller.serve()
     async with asyncio.TaskGroup() as tasks:
         awaited = tasks.create_task(revision_from(bus, keys, 3))
@@ -70,7 +68,7 @@ async def test_what_is_told_later_is_heard_and_what_does_not_hold_is_passed_over
     assert awaited.result() == 5
 
 
-async def test_the_service_may_come_later(bus: Bus, keys: Keys, teller: Teller) -> None:
+async def test_the_service_may_come_later(bus: Bus, keys: Keys, teller: Teller):
     async def refuse(_: MappingQuery, __: str) -> MappingState:
         teller.was_asked.set()
         raise NobodyAnswersError("still starting")
@@ -83,14 +81,14 @@ async def test_the_service_may_come_later(bus: Bus, keys: Keys, teller: Teller) 
     assert awaited.result() == 1
 
 
-async def test_a_state_that_is_not_told_in_time_is_an_error(bus: Bus, keys: Keys, teller: Teller) -> None:
+async def test_a_state_that_is_not_told_in_time_is_an_error(bus: Bus, keys: Keys, teller: Teller):
     await teller.serve()
     with pytest.raises(BusError, match=r"did not come in 0\.2 s") as error:
         await revision_from(bus, keys, 1, timeout_s=0.2)
     assert error.value.code == "AOS601"
 
 
-async def test_a_refusal_of_the_question_is_told(bus: Bus, keys: Keys) -> None:
+async def test_a_refusal_of_the_question_is_told(bus: Bus, keys: Keys):
     async def refuse(_: MappingQuery, __: str) -> MappingState:
         raise BusError("of another version", code="AOS603")
 
@@ -101,7 +99,7 @@ async def test_a_refusal_of_the_question_is_told(bus: Bus, keys: Keys) -> None:
 
 async def test_what_was_told_while_the_router_was_away_is_asked_for_again(
     bus: Bus, keys: Keys, teller: Teller
-) -> None:
+):
     """A mission waited for its whole deadline, 20 s, for mappings that were there long since."""
     await teller.serve()
     async with asyncio.TaskGroup() as tasks:

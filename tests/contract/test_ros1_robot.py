@@ -47,7 +47,7 @@ async def node(master: str) -> AsyncIterator[Ros1Node]:
         yield node
 
 
-async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros1Node) -> None:
+async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros1Node):
     stop = {"success": True, "message": "stands"}
     assert await node.call(ServiceRequest("/robot/stop", {}, timeout_s=HANG_S, discovery_s=HANG_S)) == stop
     with pytest.raises(SkillError, match="the brake is worn") as raised:
@@ -59,7 +59,7 @@ async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros
         await node.call(ServiceRequest("/robot/stop", {"speed": 1}, timeout_s=HANG_S))
 
 
-async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, node: Ros1Node) -> None:
+async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, node: Ros1Node):
     await until(node, "/robot/drive", "action")
     feedback: list[Any] = []
     end = await node.run_action(
@@ -83,7 +83,7 @@ async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, no
     assert end.result["result"] < 10_000
 
 
-async def test_topics_are_found_by_name_and_latched_messages_come(robot: Child, node: Ros1Node) -> None:
+async def test_topics_are_found_by_name_and_latched_messages_come(robot: Child, node: Ros1Node):
     found = await node.topic("/robot/said", HANG_S)
     assert found is not None
     assert found.type_name == "std_msgs/String"
@@ -101,7 +101,7 @@ def kept_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None
 
 
 @pytest.mark.usefixtures("kept_empty")
-async def test_messages_of_own_interfaces_leave_no_files_behind(master: str) -> None:
+async def test_messages_of_own_interfaces_leave_no_files_behind(master: str):
     seen: asyncio.Queue[Any] = asyncio.Queue()
     async with await Ros1Node.open(master, name="aos", interfaces=[INTERFACES]) as node:
         node.subscribe("/cup", "lab_msgs/msg/Cup", seen.put_nowait)
@@ -109,7 +109,7 @@ async def test_messages_of_own_interfaces_leave_no_files_behind(master: str) -> 
         assert await asyncio.wait_for(seen.get(), HANG_S) == CUP
 
 
-async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, node: Ros1Node) -> None:
+async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, node: Ros1Node):
     await until(node, "/robot/drive", "action")
     started = asyncio.Event()
     driving = asyncio.create_task(
@@ -130,7 +130,7 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
     assert raised.value.code == "AOS504"
 
 
-async def test_of_whatever_answers_in_place_of_a_master_little_is_told() -> None:
+async def test_of_whatever_answers_in_place_of_a_master_little_is_told():
     skip_without_ros1()
 
     async def answer(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -145,7 +145,7 @@ async def test_of_whatever_answers_in_place_of_a_master_little_is_told() -> None
     assert len(raised.value.message) < 300
 
 
-async def test_without_a_master_or_rospy_it_is_said_what_to_do(master: str) -> None:
+async def test_without_a_master_or_rospy_it_is_said_what_to_do(master: str):
     with pytest.raises(
         BusError, match=r"no ROS master answers at http://127\.0\.0\.1:1: .*roscore"
     ) as raised:

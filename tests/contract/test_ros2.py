@@ -72,9 +72,7 @@ async def count_up(
     return {"sequence": sequence}
 
 
-async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
-    robot: Node, node: Node
-) -> None:
+async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(robot: Node, node: Node):
     robot.serve("/lab/add", ADD, add)
     await node.service_type("/lab/add", ADD, HANG_S)
     with pytest.raises(SkillError, match=r"no ROS 2 node serves /lab/sub .*/lab/add") as raised:
@@ -82,7 +80,7 @@ async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
     assert raised.value.code == "AOS505"
 
 
-async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, node: Node) -> None:
+async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, node: Node):
     robot.serve("/lab/add", ADD, add)
     with pytest.raises(SkillError, match=f"/lab/add is of type {ADD}, not std_srvs/srv/Trigger"):
         await node.call(ServiceRequest("/lab/add", {}, type_name="std_srvs/srv/Trigger", timeout_s=HANG_S))
@@ -90,7 +88,7 @@ async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, nod
 
 async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_silence(
     endpoint: str, node: Node, tmp_path: Path
-) -> None:
+):
     folder = tmp_path / "example_interfaces" / "srv"
     folder.mkdir(parents=True)
     (folder / "AddTwoInts.srv").write_text("int32 a\nint32 b\n---\nint64 sum\n")
@@ -103,14 +101,14 @@ async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_sile
 
 async def test_a_type_that_is_not_known_here_names_the_file_to_add(
     endpoint: str, robot: Node, tmp_path: Path
-) -> None:
+):
     robot.serve("/lab/add", ADD, add)
     async with opened(endpoint, "ignorant", tmp_path) as ignorant:
         with pytest.raises(DeployError, match=r"example_interfaces/srv/AddTwoInts\.srv"):
             await ignorant.call(ServiceRequest("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S))
 
 
-async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node: Node) -> None:
+async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node: Node):
     async def never(_: dict[str, Any]) -> dict[str, Any]:
         await asyncio.Event().wait()
         return {}
@@ -121,14 +119,14 @@ async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node:
     assert raised.value.code == "AOS503"
 
 
-async def test_humble_has_no_hashes_and_is_understood(endpoint: str, node: Node) -> None:
+async def test_humble_has_no_hashes_and_is_understood(endpoint: str, node: Node):
     async with await Node.open(endpoint, RosTypes("humble", [INTERFACES]), name="old") as old:
         old.serve("/lab/add", ADD, add)
         assert (await node._server("/lab/add", ADD, HANG_S)).key.endswith("/TypeHashNotSupported")
         assert await node.call(ServiceRequest("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S)) == {"sum": 3}
 
 
-async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node, node: Node) -> None:
+async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node, node: Node):
     latched = Qos(depth=1, is_transient_local=True)
     received: asyncio.Queue[Any] = asyncio.Queue()
     publish = robot.publisher("/lab/map", STRING, latched)
@@ -147,7 +145,7 @@ async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node,
         assert message == {"data": "newest"}
 
 
-async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robot: Node, node: Node) -> None:
+async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robot: Node, node: Node):
     ended = asyncio.Event()
 
     async def wait(_: Any, stop: asyncio.Event, __: Any) -> dict[str, Any]:
@@ -170,7 +168,7 @@ def serve_goals(robot: Node, send_goal: Handler, get_result: Handler) -> None:
     robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", get_result)
 
 
-async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: Node, node: Node) -> None:
+async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: Node, node: Node):
     async def answer(_: dict[str, Any]) -> dict[str, Any]:
         return next(answers)
 
@@ -181,9 +179,7 @@ async def test_nobody_knows_what_a_goal_did_that_the_node_has_forgotten(robot: N
     assert raised.value.code == "AOS504"
 
 
-async def test_a_goal_that_was_given_up_before_it_was_accepted_may_move_the_robot(
-    robot: Node, node: Node
-) -> None:
+async def test_a_goal_that_was_given_up_before_it_was_accepted_may_move_the_robot(robot: Node, node: Node):
     async def never(_: dict[str, Any]) -> dict[str, Any]:
         was_asked.set()
         return await asyncio.Future()
@@ -201,14 +197,14 @@ async def test_a_goal_that_was_given_up_before_it_was_accepted_may_move_the_robo
 
 async def test_an_action_that_fails_is_aborted_and_the_log_says_why(
     robot: Node, node: Node, caplog: pytest.LogCaptureFixture
-) -> None:
+):
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     end = await node.run_action(ActionRequest("/lab/fibonacci", {"order": -1}, timeout_s=HANG_S))
     assert end.status == "aborted"
     assert "a goal of /lab/fibonacci is aborted: " in caplog.text
 
 
-async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: str, node: Node) -> None:
+async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: str, node: Node):
     async with opened(endpoint, "leaving") as leaving:
         leaving.serve_action("/lab/fibonacci", FIBONACCI, count_up)
         started = asyncio.Event()
@@ -225,7 +221,7 @@ async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: st
     assert raised.value.code == "AOS504"
 
 
-async def test_a_router_that_is_not_there_is_an_error_that_says_how_to_start_it() -> None:
+async def test_a_router_that_is_not_there_is_an_error_that_says_how_to_start_it():
     with pytest.raises(BusError, match=r"no Zenoh router answers .*rmw_zenohd"):
         await Node.open("tcp/127.0.0.1:1", RosTypes(), name="aos", connect_timeout_s=0.1)
 
@@ -246,7 +242,7 @@ async def answered(node: Node, service: str, fields: dict[str, Any]) -> dict[str
 )
 async def test_an_independent_implementation_understands_us_and_we_it(
     endpoint: str, robot: Node, tmp_path: Path
-) -> None:
+):
     robot.serve("/aos/add_two_ints", ADD, add)
     received: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
     robot.subscribe("/from_sdk", STRING, received.put_nowait)

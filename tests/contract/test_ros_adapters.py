@@ -193,7 +193,7 @@ async def count_up(
     return {"sequence": sequence}
 
 
-async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
+async def test_services_and_actions_of_the_robot_are_skills(lab: Lab):
     await lab.until_served("/sum")
     assert (await lab.call("/sum", {"a": 20, "b": 22}, 1)).fields == {"total": 42}
     await lab.until_served("/count")
@@ -214,7 +214,7 @@ async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
     assert raised.value.code == "AOS502"
 
 
-async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -> None:
+async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab):
     await lab.until_served("/count")
     async with lab.bus.listen(lab.keys.progress("/count"), SkillProgress) as progress:
         running = asyncio.create_task(lab.call("/count", {"order": 1000}, 1, limit_s=HANG_S))
@@ -233,7 +233,7 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
     assert (await lab.call("/count", {"order": 1}, 3, limit_s=HANG_S)).fields == {"sequence": [0]}
 
 
-async def test_a_goal_that_does_not_end_when_it_is_cancelled_counts_as_moving_until_it_ends(lab: Lab) -> None:
+async def test_a_goal_that_does_not_end_when_it_is_cancelled_counts_as_moving_until_it_ends(lab: Lab):
     is_still = asyncio.Event()
 
     async def deaf(
@@ -265,7 +265,7 @@ async def test_a_goal_that_does_not_end_when_it_is_cancelled_counts_as_moving_un
                 return
 
 
-async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
+async def test_documents_name_the_paths_and_topics(lab: Lab):
     project = load_files(encoded(DOCUMENTS)).project
     assert project is not None
     revision = ProjectRevision(1, "digest", project)
@@ -292,7 +292,7 @@ async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
 @pytest.mark.parametrize("path", ["/lab/add", "/lab/count"])
 async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_add(
     kind: str, path: str, request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
-) -> None:
+):
     robot, options = await robot_of(kind, request, endpoint)
     lab = Lab(bus, keys, endpoint, tmp_path, robot)
     try:
@@ -310,7 +310,7 @@ async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_
 
 async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
     request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
-) -> None:
+):
     robot, options = await robot_of("ros2", request, endpoint)
     lab = Lab(bus, keys, endpoint, tmp_path, robot)
     asked = asyncio.Event()
@@ -336,7 +336,7 @@ async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
         await robot.close()
 
 
-async def test_a_robot_that_leaves_is_withdrawn_and_why_a_path_is_not_served_is_told(lab: Lab) -> None:
+async def test_a_robot_that_leaves_is_withdrawn_and_why_a_path_is_not_served_is_told(lab: Lab):
     none = await lab.until_lacked("/wave", "/lab/add, /lab/count")
     assert none == "no node serves /lab/wave; served are /lab/add, /lab/count"
     async with asyncio.timeout(HANG_S), lab.bus.presence(lab.keys.all_serve) as present:

@@ -89,7 +89,7 @@ async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path)
         await robot.stop()
 
 
-async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(robot: Robot) -> None:
+async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(robot: Robot):
     await robot.start()
     async with robot.bus.listen(robot.keys.topic("/gripper"), TopicMessage) as gripper:
         result = await robot.call("/sense")
@@ -109,7 +109,7 @@ async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_t
     assert (robot.folder / "mission.gif").stat().st_size > 0
 
 
-async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> None:
+async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot):
     await robot.start()
     driving = asyncio.create_task(robot.refusal("/navigate", 1, FAR_AWAY))
     await robot.moving()
@@ -123,7 +123,7 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> N
     assert "gap_m" in (await robot.call("/sense", 2)).fields
 
 
-async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused(robot: Robot) -> None:
+async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused(robot: Robot):
     await robot.start()
     assert (await robot.refusal("/sense", 1, epoch=2)).code == "AOS506"
 
@@ -136,7 +136,7 @@ async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused
     assert (await robot.refusal("/sense", 2, epoch=1)).code == "AOS506"
 
 
-async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(robot: Robot) -> None:
+async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(robot: Robot):
     await robot.start()
     assert "gap_m" in (await robot.call("/sense", 1)).fields
     driving = asyncio.create_task(robot.refusal("/navigate", 2, FAR_AWAY))
@@ -160,7 +160,7 @@ async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(
 )
 async def test_what_cannot_be_bound_ends_the_service_with_one_message(
     robot: Robot, settings: dict[str, Any], message: str
-) -> None:
+):
     child = await robot.launch(**settings)
     async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1

@@ -100,7 +100,7 @@ async def outcome_of(adapter: Driving, *messages: object, step: int = 1, ends: b
 
 async def test_a_message_that_makes_it_true_stops_the_skill_once_and_rules_say_what_was_observed(
     system: System,
-) -> None:
+):
     adapter = await driving(system)
     outcome = await outcome_of(adapter, 3.0, 0.4, 0.3, 2.0)
     assert (outcome.status, outcome.response, outcome.stopped_by) == ("observed", "halted", "drive")
@@ -117,14 +117,14 @@ async def test_a_message_that_makes_it_true_stops_the_skill_once_and_rules_say_w
     assert outcome.local_variables["distance_m"] == "0.1"
 
 
-async def test_a_cancellation_that_overtakes_its_call_is_said_again(system: System) -> None:
+async def test_a_cancellation_that_overtakes_its_call_is_said_again(system: System):
     adapter = await driving(system)
     adapter.has_missed = 2
     assert (await outcome_of(adapter, 0.1)).response == "halted"
     assert len(adapter.asked) == 3
 
 
-async def test_a_skill_is_not_called_where_it_would_be_stopped_at_once(system: System) -> None:
+async def test_a_skill_is_not_called_where_it_would_be_stopped_at_once(system: System):
     adapter = await driving(system)
     running, is_still = await system.beside_a_motion("drive")
     adapter.say(0.1)
@@ -149,7 +149,7 @@ async def test_a_skill_is_not_called_where_it_would_be_stopped_at_once(system: S
 )  # fmt: skip
 async def test_what_cannot_be_told_is_an_error_at_its_place_and_the_service_goes_on(
     system: System, mapping: str, status: str, code: str, text: str
-) -> None:
+):
     adapter = await driving(system, mapping)
     outcome = await outcome_of(adapter, 0.1, ends=code == "AOS401")
     assert outcome.fault is not None

@@ -73,7 +73,7 @@ print(*sorted({name.split(".")[0] for name in sys.modules}))
 
 
 @pytest.mark.parametrize("which", ["python", "humble_python"])
-def test_every_module_of_it_can_be_imported(which: str, request: pytest.FixtureRequest) -> None:
+def test_every_module_of_it_can_be_imported(which: str, request: pytest.FixtureRequest):
     imported = said_by(request.getfixturevalue(which), IMPORT_ALL).split()
     assert {"aos_protocol", "aos_runtime", "zenoh", "msgspec"} <= set(imported)
     assert not {"tree_sitter", "numpy", "aos_deploy", "aos_solver"} & set(imported)
@@ -82,7 +82,7 @@ def test_every_module_of_it_can_be_imported(which: str, request: pytest.FixtureR
 @pytest.mark.parametrize("which", ["python", "humble_python"])
 def test_an_adapter_of_it_runs_a_mission(
     which: str, request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     python = request.getfixturevalue(which)
     monkeypatch.chdir(tmp_path)
     aos("new", "project", "fetch")
@@ -110,20 +110,20 @@ def test_an_adapter_of_it_runs_a_mission(
 )
 def test_a_command_that_is_wrong_is_told(
     python: Path, words: list[str], environment: dict[str, str], said: str
-) -> None:
+):
     command = [python, "-m", "aos_runtime.adapters", *words]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=COMMAND_S)
     assert done.returncode == 2
     assert done.stderr.startswith(said)
 
 
-def test_it_shares_no_file_with_what_else_is_installed(wheel: Path) -> None:
+def test_it_shares_no_file_with_what_else_is_installed(wheel: Path):
     with zipfile.ZipFile(wheel) as archive:
         tops = {name.split("/")[0] for name in archive.namelist()}
     assert tops == {"aos_adapter", "aos-adapter.pth", wheel.name.split("-py3")[0] + ".dist-info"}
 
 
-def test_the_modules_of_aos_itself_come_first(python: Path) -> None:
+def test_the_modules_of_aos_itself_come_first(python: Path):
     where = "import aos_protocol; print(aos_protocol.__file__)"
     assert "aos_adapter" in said_by(python, where)
     (packages,) = python.parents[1].glob("lib/python*/site-packages")
@@ -150,7 +150,7 @@ def size_of(python: Path) -> Callable[[str], int]:
     return size
 
 
-def test_it_is_small(size_of: Callable[[str], int], tmp_path: Path, python: Path) -> None:
+def test_it_is_small(size_of: Callable[[str], int], tmp_path: Path, python: Path):
     ours = sum(map(size_of, ("aos_adapter", "aos_adapter-*.dist-info", "aos-adapter.pth")))
     assert ours < 1e6
     if shutil.which("strip") is None:

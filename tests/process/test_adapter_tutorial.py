@@ -34,7 +34,7 @@ def run(command: str) -> str:
     return done.stdout
 
 
-def test_the_tutorial_can_be_followed(root: Path) -> None:
+def test_the_tutorial_can_be_followed(root: Path):
     text = (root / "docs/adapters/tutorial.md").read_text(encoding="utf-8")
     files = {"python": "fetch_robot.py", "yaml": "fetch.yaml"}
     commands = 0
@@ -53,7 +53,7 @@ def test_the_tutorial_can_be_followed(root: Path) -> None:
     assert '"response":"taken"' in Path("runs/latest/journal.db").read_bytes().decode(errors="replace")
 
 
-def test_a_new_external_adapter_runs_as_it_is() -> None:
+def test_a_new_external_adapter_runs_as_it_is():
     run("aos new project fetch")
     run("aos new adapter external --in fetch")
     arguments = ["fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]

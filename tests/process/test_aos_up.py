@@ -158,13 +158,13 @@ def mission(root: Path, deploy_file: Path) -> Mission:
     return Mission(running, status, run, [json.loads(line) for line in lines.splitlines()], printed)
 
 
-def test_a_mission_ends_in_a_defined_way(mission: Mission) -> None:
+def test_a_mission_ends_in_a_defined_way(mission: Mission):
     ended = [event for event in mission.up.events if event["event"] == "mission"][-1]
     assert ended["phase"] == "ended"
     assert mission.status == ENDINGS[ended["ending"]]
 
 
-def test_services_start_in_order_and_all_get_ready(mission: Mission) -> None:
+def test_services_start_in_order_and_all_get_ready(mission: Mission):
     services = [event for event in mission.up.events if event["event"] == "service"]
     order = [event["service"] for event in services if event["state"] == "starting"]
     assert order == ["router", "registry", "middleware", "pybullet", "solver"]
@@ -172,7 +172,7 @@ def test_services_start_in_order_and_all_get_ready(mission: Mission) -> None:
     assert [event["service"] for event in services if event["state"] == "ended"] == order[::-1]
 
 
-def test_the_run_directory_keeps_the_mission(mission: Mission) -> None:
+def test_the_run_directory_keeps_the_mission(mission: Mission):
     summary = json.loads((mission.run / "summary.json").read_text())
     decided = [event for event in mission.up.events if event["event"] == "decision"]
     verdict = account_of(mission.run).verdict()
@@ -185,26 +185,26 @@ def test_the_run_directory_keeps_the_mission(mission: Mission) -> None:
     assert list((mission.run / "faults").iterdir()) == []
 
 
-def test_the_history_of_a_mission_breaks_no_rule(mission: Mission) -> None:
+def test_the_history_of_a_mission_breaks_no_rule(mission: Mission):
     checked = subprocess.run([BIN / "aos", "check", mission.run, "--json"], capture_output=True, text=True)
     assert json.loads(checked.stdout)["violations"] == []
     assert checked.returncode == 0
 
 
-def test_who_joins_late_has_every_decision(mission: Mission) -> None:
+def test_who_joins_late_has_every_decision(mission: Mission):
     with Journal.read(mission.run / "journal.db") as journal:
         journaled = [json.loads(row.payload) for row in journal.rows("decision")]
     assert mission.followed == journaled
     assert [record["sequence"] for record in journaled] == list(range(len(journaled)))
 
 
-def test_the_example_script_sees_the_same(mission: Mission) -> None:
+def test_the_example_script_sees_the_same(mission: Mission):
     last_step = mission.followed[-1]["step"]
     assert mission.example.startswith("step 1: ")
     assert f"step {last_step}: observed " in mission.example
 
 
-def test_a_finished_mission_can_be_read(mission: Mission) -> None:
+def test_a_finished_mission_can_be_read(mission: Mission):
     command = [BIN / "aos", "decisions", "--run", mission.run]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert len([line for line in text.splitlines() if line.startswith("step")]) == len(mission.followed)
@@ -212,14 +212,14 @@ def test_a_finished_mission_can_be_read(mission: Mission) -> None:
     assert text.splitlines()[-1].startswith("mission ended: ")
 
 
-def test_nothing_is_left_after_a_normal_end(mission: Mission, scratch: Path) -> None:
+def test_nothing_is_left_after_a_normal_end(mission: Mission, scratch: Path):
     assert len(mission.up.pids) >= 6
     assert not any(is_running(pid) for pid in mission.up.pids)
     assert not has_a_bus(mission.run)
     assert not files_left(scratch)
 
 
-async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch: Path) -> None:
+async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch: Path):
     with up(deploy_file) as running:
         running.until("decision")
         os.kill(running.process.pid, signal.SIGKILL)
@@ -242,7 +242,7 @@ def summary_of(deploy_file: Path) -> dict[str, Any]:
 
 def test_a_mission_goes_on_after_the_deaths_of_its_engine_and_of_services_and_ends_by_sigterm(
     tmp_path: Path, scratch: Path
-) -> None:
+):
     file = slow_deploy_file(tmp_path)
     victims = ("router", "registry", "middleware", "solver")
     with up(file) as running:
@@ -268,7 +268,7 @@ def test_a_mission_goes_on_after_the_deaths_of_its_engine_and_of_services_and_en
     assert [end["name"] for end in summary_of(file)["process_ends"] if end["name"] in victims] == [*victims]
 
 
-def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(tmp_path: Path) -> None:
+def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(tmp_path: Path):
     file = slow_deploy_file(tmp_path, step_limit=3)
     with up(file) as running:
         running.until("decision")
@@ -297,7 +297,7 @@ def refused(deploy_file: Path, text: str, *options: str) -> Refused:
     return Refused(status, error)
 
 
-def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path) -> None:
+def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path):
     text = deploy_file.read_text()
     assert "  /serve: pybullet\n" in text
     result = refused(deploy_file, text.replace("  /serve: pybullet\n", ""))
@@ -321,7 +321,7 @@ def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path
 )
 def test_mistakes_in_documents_are_shown_at_their_places(
     root: Path, deploy_file: Path, tmp_path: Path, mistakes: list[tuple[str, str, str, str]]
-) -> None:
+):
     bundle = tmp_path / "bundle"
     bundle.mkdir()
     for document in (root / "deploy/bundles/armadillo-finer").iterdir():
@@ -337,7 +337,7 @@ def test_mistakes_in_documents_are_shown_at_their_places(
         assert place in result.text
 
 
-def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path) -> None:
+def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path):
     with socket.create_server(("127.0.0.1", 0)) as server:
         endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
         result = refused(deploy_file, deploy_file.read_text(), "--listen", endpoint)

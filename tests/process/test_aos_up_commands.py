@@ -22,21 +22,21 @@ def run(*command: str, folder: Path | None = None) -> subprocess.CompletedProces
     )
 
 
-def test_help_has_an_example_and_every_exit_code() -> None:
+def test_help_has_an_example_and_every_exit_code():
     text = " ".join(run("aos-up", "--help").stdout.split())
     assert "Example: aos-up deploy/armadillo.yaml" in text
     codes = "0 the goal", "1 documents", "2 the command", "3 the machine", "4 the mission", "130 interr"
     assert [code for code in codes if code not in text] == []
 
 
-def test_the_overview_names_every_command() -> None:
+def test_the_overview_names_every_command():
     text = run("aos", "--help").stdout
     names = "up", "decisions", "runs", "bundle", "lint", "inspect", "plan", "simulate", "rate", "doctor"
     assert [name for name in names if f"  {name} " not in text] == []
 
 
 @pytest.mark.parametrize("command", [["aos-up"], ["aos-up", "x.yaml", "--sed", "1"], ["aos", "decide"]])
-def test_wrong_usage_has_its_own_exit_code(command: list[str]) -> None:
+def test_wrong_usage_has_its_own_exit_code(command: list[str]):
     assert run(*command).returncode == 2
 
 
@@ -50,7 +50,7 @@ def test_wrong_usage_has_its_own_exit_code(command: list[str]) -> None:
 )
 def test_what_no_mission_can_run_with_is_told_before_anything_starts(
     limit: str, folder: bytes, told: str, root: Path, tmp_path: Path
-) -> None:
+):
     deploy = tmp_path / os.fsdecode(folder) / "errand.yaml"
     deploy.parent.mkdir()
     deploy.write_text(
@@ -65,7 +65,7 @@ def test_what_no_mission_can_run_with_is_told_before_anything_starts(
     assert not (tmp_path / "runs").exists()
 
 
-def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path))
     result = run("aos", "decisions", folder=tmp_path)
     assert result.returncode == 3
@@ -73,20 +73,20 @@ def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pyt
     assert result.stderr.count("\n") == 1
 
 
-def test_decisions_of_a_folder_that_is_no_run_say_so(tmp_path: Path) -> None:
+def test_decisions_of_a_folder_that_is_no_run_say_so(tmp_path: Path):
     result = run("aos", "decisions", "--run", str(tmp_path))
     assert result.returncode == 1
     assert "is not a run directory" in result.stderr
 
 
-def test_the_doctor_says_what_is_there() -> None:
+def test_the_doctor_says_what_is_there():
     findings = {finding["subject"]: finding for finding in json.loads(run("aos", "doctor", "--json").stdout)}
     assert findings["pybullet"]["state"] == "ok"
     assert findings["loopback"]["state"] == "ok"
     assert "C++ compiler" in findings
 
 
-def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path, root: Path) -> None:
+def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path, root: Path):
     deploy = tmp_path / "room.yaml"
     deploy.write_text(
         f"aos: 1\nrobot: armadillo\nbundles: [{root / 'deploy/bundles/armadillo-finer'}]\n"
@@ -103,7 +103,7 @@ def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path, root: Path) ->
 
 def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "file" / "aos"))
     (cache,) = [finding for finding in examine_machine() if finding.subject == "cache"]
@@ -112,7 +112,7 @@ def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
 
 
 @pytest.mark.parametrize("command", ["aos", "aos-up"])
-def test_every_program_tells_its_version_and_has_a_short_help(command: str) -> None:
+def test_every_program_tells_its_version_and_has_a_short_help(command: str):
     assert run(command, "--version").stdout == f"aos {__version__}\n"
     assert run(command, "-h").stdout == (told := run(command, "--help").stdout)
     assert "--install-completion" in told
@@ -132,7 +132,7 @@ def test_every_program_tells_its_version_and_has_a_short_help(command: str) -> N
 )
 def test_a_shell_completes_commands_options_and_values(
     line: str, completed: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     name = line.split()[0]
     monkeypatch.setenv(f"_{name.upper().replace('-', '_')}_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", line)

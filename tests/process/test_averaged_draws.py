@@ -33,7 +33,7 @@ __moduleResponse = done;
 LEAVE = 0
 
 
-async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off(cache_dir: Path) -> None:
+async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off(cache_dir: Path):
     built = await built_text(EXIT, cache_dir)
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
@@ -46,7 +46,7 @@ async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off(cache
         assert (await engine.summary()).is_exact
 
 
-async def test_the_world_still_draws_the_reward(cache_dir: Path) -> None:
+async def test_the_world_still_draws_the_reward(cache_dir: Path):
     built = await built_text(EXIT, cache_dir)
     async with engine_of(built) as engine:
         rewards = []

@@ -83,7 +83,7 @@ def after_time(places: list[float], steps: int) -> list[float]:
 @pytest.mark.parametrize("is_kept", [False, True])
 async def test_a_beginning_is_the_belief_by_enumeration(
     cache_dir: Path, idle: int, given: tuple[str, ...], is_kept: bool
-) -> None:
+):
     built = await built_text(WALK, cache_dir)
     start = StartMission("keep" if is_kept else "initial", given, idle)
 
@@ -108,7 +108,7 @@ async def test_a_beginning_is_the_belief_by_enumeration(
         assert len(believed) == len(weights)
 
 
-async def test_a_state_that_had_ended_goes_on_in_the_next_mission(cache_dir: Path) -> None:
+async def test_a_state_that_had_ended_goes_on_in_the_next_mission(cache_dir: Path):
     files = WALK | {"walk.ef": WALK["walk.ef"].replace("state.place == 9", "state.place == 1")}
     built = await built_text(files, cache_dir)
     async with engine_of(built) as engine:
@@ -118,7 +118,7 @@ async def test_a_state_that_had_ended_goes_on_in_the_next_mission(cache_dir: Pat
         assert began.goal_probability == pytest.approx(after_time(places, 2)[1])
 
 
-async def test_what_is_impossible_begins_nothing(cache_dir: Path) -> None:
+async def test_what_is_impossible_begins_nothing(cache_dir: Path):
     built = await built_text(WALK, cache_dir)
     given = ("state.place == 7",)
 
@@ -133,9 +133,7 @@ async def test_what_is_impossible_begins_nothing(cache_dir: Path) -> None:
         assert await distribution(engine) == before
 
 
-async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_process(
-    cache_dir: Path,
-) -> None:
+async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_process(cache_dir: Path):
     aside = await Engine.start(
         await built_with_conditions(project(), ("state.place == 7",), cache_dir), seed=1
     )
@@ -165,21 +163,21 @@ async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_p
 )
 async def test_a_condition_that_cannot_be_used_is_told_with_its_column(
     cache_dir: Path, text: str, code: str, place: str
-) -> None:
+):
     with pytest.raises(AosError, match="what is given has errors") as refused:
         await built_with_conditions(project(), [text], cache_dir)
     (found, *_) = refused.value.diagnostics
     assert (found.code, str(found.span)) == (code, place)
 
 
-async def test_a_condition_that_faults_is_told_at_its_place(cache_dir: Path) -> None:
+async def test_a_condition_that_faults_is_told_at_its_place(cache_dir: Path):
     built = await built_with_conditions(project(), ["1 / (state.place - 1) == 0"], cache_dir)
     async with engine_of(built) as engine:
         with pytest.raises(AosError, match="--given:1:1"):
             await engine.condition(0.01)
 
 
-async def test_a_belief_is_kept_from_a_mission_before(cache_dir: Path, tmp_path: Path) -> None:
+async def test_a_belief_is_kept_from_a_mission_before(cache_dir: Path, tmp_path: Path):
     def terms(name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
         return Terms(name=name, epoch=epoch, search=Search(simulations=1, seed=seed))
 

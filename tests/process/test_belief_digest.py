@@ -47,7 +47,7 @@ async def kill(engine: Engine) -> None:
 @pytest.mark.parametrize("start", [DRAWN_START, LISTED_START], ids=["drawn", "exact"])
 async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_asked_other_things(
     start: str, cache_dir: Path
-) -> None:
+):
     built = await drifting(start, cache_dir)
     async with engine_of(built, seed=3) as engine, engine_of(built, seed=3) as disturbed:
         assert (await engine.summary()).is_exact == (start == LISTED_START)
@@ -63,7 +63,7 @@ async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_a
         assert len(digests) == STEPS
 
 
-async def test_particles_are_those_of_the_missions_seed(cache_dir: Path) -> None:
+async def test_particles_are_those_of_the_missions_seed(cache_dir: Path):
     built = await drifting(DRAWN_START, cache_dir)
     async with engine_of(built, seed=3) as engine, engine_of(built, seed=4) as other:
         at_start = await engine.summary()
@@ -74,7 +74,7 @@ async def test_particles_are_those_of_the_missions_seed(cache_dir: Path) -> None
         assert (await other.reset_belief()).digest != (await other.reset_belief()).digest
 
 
-async def test_the_digest_does_not_depend_on_the_order_of_the_states(cache_dir: Path) -> None:
+async def test_the_digest_does_not_depend_on_the_order_of_the_states(cache_dir: Path):
     built = await drifting(LISTED_START, cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other:
         digest = await take_step(engine, 1)

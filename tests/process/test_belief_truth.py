@@ -70,7 +70,7 @@ class RandomModel:
         return action, dice.choices(range(RESPONSES), odds)[0]
 
 
-async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path) -> None:
+async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path):
     model, dice = RandomModel(1), random.Random(1)
     belief = model.start
     async with engine_of_text(model.documents(), cache_dir) as engine:
@@ -85,7 +85,7 @@ async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path) ->
             assert [found.get(str(state), 0.0) for state in range(STATES)] == pytest.approx(belief, abs=1e-9)
 
 
-async def test_particles_follow_a_random_chain_closely(cache_dir: Path) -> None:
+async def test_particles_follow_a_random_chain_closely(cache_dir: Path):
     model, dice = RandomModel(1), random.Random(4)
     belief = model.start
     async with engine_of_text(model.documents(), cache_dir) as engine:
@@ -136,7 +136,7 @@ MANY_STATES = {
 """2^18 states, more than a belief holds; each lamp is independent of the others."""
 
 
-async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound(cache_dir: Path) -> None:
+async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound(cache_dir: Path):
     async with engine_of_text(MANY_STATES, cache_dir) as engine:
         first = await engine.summary()
         update = await engine.update("read(number=9)", "yes")
@@ -176,7 +176,7 @@ __moduleResponse = is_open && AOS.Bernoulli(0.01 * state__.level) ? yes : no;
 """A response of probability 1 in 10,000, decided by the last two draws after a continuous one."""
 
 
-async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cache_dir: Path) -> None:
+async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cache_dir: Path):
     async with engine_of_text(RARE, cache_dir) as engine:
         update = await engine.update("read", "yes")
     assert update.probability == pytest.approx(1e-4, rel=0.05)
@@ -206,7 +206,7 @@ async def turn_and_look(engine: Engine, card: int, hand: list[bool]) -> None:
     assert marginals[f"cards[{card}]"].get("true" if hand[card] else "false", 0.0) > 0.9, card
 
 
-async def test_particles_outlive_more_observations_than_they_can_tell_apart(cache_dir: Path) -> None:
+async def test_particles_outlive_more_observations_than_they_can_tell_apart(cache_dir: Path):
     dice = random.Random(1)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
     async with engine_of_text(DEPLETING, cache_dir) as engine:
@@ -232,7 +232,7 @@ SHAKEN = DEPLETING | {
 
 async def test_what_particles_have_by_chance_is_given_up_also_after_a_crash_and_a_change_of_engines(
     cache_dir: Path,
-) -> None:
+):
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
 
@@ -265,7 +265,7 @@ state__.is_dealt = true;""",
 """The same, but the cards are dealt when the first one is turned: the initial belief leaves none open."""
 
 
-async def test_what_opened_up_since_the_beginning_is_given_up_as_well(cache_dir: Path) -> None:
+async def test_what_opened_up_since_the_beginning_is_given_up_as_well(cache_dir: Path):
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
     async with engine_of_text(DEALT, cache_dir) as engine:

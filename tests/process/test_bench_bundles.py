@@ -22,7 +22,7 @@ NORMAL = ("laser-normal", "lightdark-normal")
 @pytest.mark.parametrize("problem", MODELS)
 async def test_rewards_observations_and_beliefs_are_the_literatures(
     problem: str, bundles: Path, cache_dir: Path
-) -> None:
+):
     model = MODELS[problem]
     draws = random.Random(f"walks of {problem}")
     async with engine_of_bundle(bundles / "bench" / problem, cache_dir) as engine:
@@ -49,7 +49,7 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
             assert (ending == "goal") == (not belief)
 
 
-async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_dir: Path) -> None:
+async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_dir: Path):
     """The robot starts in one of nine cells; after a step north it measures its place."""
     east_m, north_m = 2.9, 1.4
     weights = {}
@@ -68,13 +68,13 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_d
         assert rows[str(y)] == pytest.approx(weight / density, abs=1e-9)
 
 
-def test_the_kept_rocksample_is_as_its_layout_says(bundles: Path) -> None:
+def test_the_kept_rocksample_is_as_its_layout_says(bundles: Path):
     kept = bundles / "bench" / "rocksample-7-8"
     assert bundle("rocksample-7-8") == {path.name: path.read_text() for path in kept.iterdir()}
 
 
 @pytest.mark.parametrize("problem", [*MODELS, "rocksample-11-11", "rocksample-15-15", "pocman", *NORMAL])
-def test_the_benchmark_bundles_have_no_mistakes(problem: str) -> None:
+def test_the_benchmark_bundles_have_no_mistakes(problem: str):
     (known,) = problems_named([problem])
     loaded = load_bundle(known.bundle)
     assert loaded.project is not None

@@ -29,7 +29,7 @@ def report() -> dict[str, Any]:
     return json.loads(done.stdout)
 
 
-def test_a_report_says_where_and_how_it_was_measured(report: dict[str, Any]) -> None:
+def test_a_report_says_where_and_how_it_was_measured(report: dict[str, Any]):
     machine = report["machine"]
     assert machine["processor"]
     assert machine["date"].endswith("UTC")
@@ -37,7 +37,7 @@ def test_a_report_says_where_and_how_it_was_measured(report: dict[str, Any]) -> 
     assert (machine["seed"], machine["budget_s"]) == (1, 0.01)
 
 
-def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any]) -> None:
+def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any]):
     keys = {"name", "problem", "metric", "value", "stderr", "unit", "against", "ratio"}
     assert all(row.keys() == keys for row in report["rows"])
     ours = {(row["metric"], row["against"]): row for row in report["rows"] if row["name"] == "aos"}
@@ -46,7 +46,7 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
     assert ours["return, pomcp", ""]["unit"] == "2 runs"
 
 
-def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_path: Path):
     done = run_bench(str(tmp_path), "--quick")
     assert done.returncode == 1
     assert f"not measured: {tmp_path.name}: AOS104" in done.stdout
@@ -54,7 +54,7 @@ def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_p
 
 def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(
     bundles: Path, tmp_path: Path
-) -> None:
+):
     folder = shutil.copytree(bundles / "bench" / "tiger", tmp_path / "tiger")
     listen = folder / "listen.sd"
     policy = "rollout_policy:\n__heuristicValue = 2;\n"
@@ -69,13 +69,13 @@ def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_p
 
 
 @pytest.mark.parametrize("name", ["lion", "no/such/bundle"])
-def test_an_unknown_benchmark_is_refused_with_the_known_ones(name: str) -> None:
+def test_an_unknown_benchmark_is_refused_with_the_known_ones(name: str):
     done = run_bench(name)
     assert done.returncode == 2
     assert f"{name} is none of tiger, tag," in " ".join(done.stderr.split())
 
 
-async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path) -> None:
+async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path):
     """The baselines take random actions, in millions of steps each."""
     baselines = await Baselines.built(await find_compiler(), cache_dir)
     for problem in PROBLEMS:
@@ -85,7 +85,7 @@ async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, ca
         assert walked.mean_reward == pytest.approx(steps.check, rel=0.02), problem
 
 
-def test_ratios_are_ours_over_theirs() -> None:
+def test_ratios_are_ours_over_theirs():
     rows = [
         figure("aos", "tiger", "steps", [90.0, 110.0], "1/s"),
         figure("by hand", "tiger", "steps", [200.0], "1/s"),

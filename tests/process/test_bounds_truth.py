@@ -17,13 +17,13 @@ def checked(cache_dir: Path, first_seed: int, models: int, work: int) -> tuple[l
     return false, counted
 
 
-def test_no_bound_excludes_the_exact_value(cache_dir: Path) -> None:
+def test_no_bound_excludes_the_exact_value(cache_dir: Path):
     false, counted = checked(cache_dir, first_seed=1, models=120, work=300_000)
     assert not false
     assert counted["claims"] > 5000
 
 
-def test_plans_for_small_models_come_near_the_best(cache_dir: Path) -> None:
+def test_plans_for_small_models_come_near_the_best(cache_dir: Path):
     false, counted = checked(cache_dir, first_seed=70_000, models=40, work=5_000_000)
     assert not false
     assert counted["judged"] >= 20

@@ -73,7 +73,7 @@ def mission(project: Path, text: str = "", **functions: str) -> tuple[int, Summa
     return code, summary
 
 
-def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path) -> None:
+def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path):
     look = project / "fetch" / "look.sd"
     look.write_text(look.read_text().replace("__reward = -1", "__reward = -0.3"))
     code, summary = mission(project, look="look", take="broken", ask="ask")
@@ -84,7 +84,7 @@ def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path) -> None:
     assert [action.partition("(")[0] for action in summary.actions].count("take") == 3
 
 
-def test_beside_a_camera_that_ends_its_adapter_in_each_call_the_robot_asks(project: Path) -> None:
+def test_beside_a_camera_that_ends_its_adapter_in_each_call_the_robot_asks(project: Path):
     look = project / "fetch" / "look.sd"
     look.write_text(look.read_text().replace("0.85", "0.98"))
     code, summary = mission(project, look="ending", take="take", ask="ask")
@@ -92,9 +92,7 @@ def test_beside_a_camera_that_ends_its_adapter_in_each_call_the_robot_asks(proje
     assert summary.actions == ("look", "look", "look", "ask", "take(side=left_side)")
 
 
-def test_two_skills_that_end_their_adapter_in_each_call_end_the_mission_and_not_the_run(
-    project: Path,
-) -> None:
+def test_two_skills_that_end_their_adapter_in_each_call_end_the_mission_and_not_the_run(project: Path):
     limit = "mission: {stop_below_value: 0.0}\n"
     code, summary = mission(project, limit, look="ending", take="ending", ask="ask")
     assert (code, summary.ending) == (9, "skills_failed")

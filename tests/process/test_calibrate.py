@@ -90,7 +90,7 @@ def covered(result: Calibration) -> list[bool]:
     ]
 
 
-def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_finer: Path) -> None:
+def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_finer: Path):
     result = calibrate(read_missions(missions_of_finer), [FINER, RETRACT])
     assert not result.remarks
     assert all(estimate.is_counted for estimate in result.estimates)
@@ -100,7 +100,7 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_f
     assert held.count(False) <= 1
 
 
-def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path) -> None:
+def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path):
     blind = [DEPLOY / "bundles" / f"armadillo-{pick}-blind" for pick in ("finer", "rough")]
     recorded_missions = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
     unseen = tuple(
@@ -119,7 +119,7 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path:
     assert all(covered(results[1]))
 
 
-def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Path, tmp_path: Path) -> None:
+def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Path, tmp_path: Path):
     shutil.copytree(FINER, tmp_path / "bundle")
     pick = tmp_path / "bundle" / "pick.sd"
     wrong = pick.read_text().replace("{0.727, 0.181, 0.09, 0.0}", "{0.2, 0.181, 0.619, 0.0}")
@@ -150,7 +150,7 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Pa
     assert result["patch"] == ""
 
 
-def test_a_folder_without_missions_is_refused(tmp_path: Path) -> None:
+def test_a_folder_without_missions_is_refused(tmp_path: Path):
     run = subprocess.run(
         [AOS, "calibrate", tmp_path, FINER], capture_output=True, text=True, timeout=COMMAND_S, check=False
     )
@@ -159,9 +159,7 @@ def test_a_folder_without_missions_is_refused(tmp_path: Path) -> None:
     assert "holds no recorded missions" in run.stderr
 
 
-def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initial_one(
-    tmp_path: Path,
-) -> None:
+def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initial_one(tmp_path: Path):
     starts = [StartMission(), StartMission(belief="keep"), StartMission(idle=2), None]
     for number, start in enumerate(starts, 1):
         make_mission_folder(tmp_path, number)
@@ -172,7 +170,7 @@ def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initi
     assert "did not begin with the initial belief" in missions[1].ends_early
 
 
-def test_the_draws_of_documents_are_found_with_their_numbers() -> None:
+def test_the_draws_of_documents_are_found_with_their_numbers():
     files = {"lamp.ef": ENVIRONMENT, "press.sd": PRESS, "press.am": MAPPING}
     project = load_files(files, name="lamp").project
     assert project is not None
@@ -190,7 +188,7 @@ def test_the_draws_of_documents_are_found_with_their_numbers() -> None:
     ]
 
 
-def test_missions_are_explained_with_the_values_that_they_had(tmp_path: Path) -> None:
+def test_missions_are_explained_with_the_values_that_they_had(tmp_path: Path):
     missions: list[RecordedMission] = []
     for person in ("alice", "bob"):
         setting = Setting(deploy="errand.yaml", simulations=500, set={"target": person})

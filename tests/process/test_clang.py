@@ -39,13 +39,11 @@ def clang(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Compiler:
 
 
 @pytest.mark.parametrize("bundle", ["armadillo-finer", "tictactoe", "bench/lightdark-normal"])
-def test_clang_compiles_a_model(bundle: str, bundles: Path, clang: Compiler, cache_dir: Path) -> None:
+def test_clang_compiles_a_model(bundle: str, bundles: Path, clang: Compiler, cache_dir: Path):
     compile_model(bundle_project(bundles / bundle), clang, cache_dir)
 
 
-def test_clang_compiles_a_model_with_a_costly_constraint(
-    bundles: Path, clang: Compiler, cache_dir: Path
-) -> None:
+def test_clang_compiles_a_model_with_a_costly_constraint(bundles: Path, clang: Compiler, cache_dir: Path):
     never = constraint_of_option("0.01: serve && state.arm_outstretched")
     project = constrained(bundle_project(bundles / "armadillo-finer"), [never])
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
@@ -53,7 +51,7 @@ def test_clang_compiles_a_model_with_a_costly_constraint(
 
 
 @pytest.mark.parametrize("part", [NUMBERS, FUNCTIONS])
-def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_dir: Path) -> None:
+def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_dir: Path):
     command = clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0")
     once([part], clang, cache_dir, lambda folder: run(command, folder))
 

@@ -63,7 +63,7 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
     return [*Recorded.asked, command_line("restore_belief", change=1)]
 
 
-async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path, tmp_path: Path) -> None:
+async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path, tmp_path: Path):
     executable: list[Path] = []
     lines: list[str] = []
     lacking: list[tuple[str, str]] = []
@@ -84,7 +84,7 @@ async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path,
     assert texts == [f"{name} has no field {field}" for name, field in lacking]
 
 
-def test_a_belief_is_a_command_with_a_list() -> None:
+def test_a_belief_is_a_command_with_a_list():
     belief = ExportedBelief(0.5, True, 1, {"room": "3 4"}, "words", ((1.0, "1 0"),))
     assert belief.command.split("\t") == [
         "import_belief", "error_bound=0.5", "is_drawn=1", "history=words", "constants=1",
@@ -92,5 +92,5 @@ def test_a_belief_is_a_command_with_a_list() -> None:
     ]  # fmt: skip
 
 
-def test_a_text_is_one_field_whatever_is_in_it() -> None:
+def test_a_text_is_one_field_whatever_is_in_it():
     assert command_line("update", response="a\tb\n\\n") == "update\tresponse=a\\tb\\n\\\\n"

@@ -9,7 +9,7 @@ from gateway import gateway, slow_system
 
 def test_a_system_at_an_endpoint_is_shown_followed_and_steered(
     tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     there, here = tmp_path / "there", tmp_path / "here"
     there.mkdir()
     here.mkdir()

@@ -16,7 +16,7 @@ def bundle(root: Path) -> Path:
     return root / "tests" / "data" / "bundles" / "tiger"
 
 
-def test_a_plan_says_what_it_risks_and_what_is_too_risky(bundle: Path) -> None:
+def test_a_plan_says_what_it_risks_and_what_is_too_risky(bundle: Path):
     done = aos("plan", bundle, "--simulations", "100", "--never", f"0.2: {NEVER}")
     assert f"listen: risks 0, 0.2 left of 0.2: never {NEVER}" in done.stdout
     assert "too risky: open_left" in done.stdout
@@ -26,14 +26,14 @@ def test_a_plan_says_what_it_risks_and_what_is_too_risky(bundle: Path) -> None:
     assert found["forbidden"] == ["open_left"]
 
 
-def test_a_plan_for_which_nothing_is_allowed_is_an_error(bundle: Path) -> None:
+def test_a_plan_for_which_nothing_is_allowed_is_an_error(bundle: Path):
     done = aos("plan", bundle, "--never", "0.1: listen || open_left || state.is_left || open_right")
     assert isinstance(done.exception, PlanningError)
     assert done.exception.code == "AOS303"
     assert "the least risk is 1" in done.exception.message
 
 
-def test_a_policy_file_keeps_to_constraints_that_came_after_it(bundle: Path, tmp_path: Path) -> None:
+def test_a_policy_file_keeps_to_constraints_that_came_after_it(bundle: Path, tmp_path: Path):
     policy = tmp_path / "tiger.policy"
     aos("solve", bundle, "--time", "2", "--precision", "1", "--out", policy)
     options = ["--policy", str(policy), "--runs", "20", "--step-limit", "8", "--json"]

@@ -135,7 +135,7 @@ async def play(
         ]
 
 
-async def test_the_risk_of_an_action_is_its_probability_under_the_belief(cache_dir: Path) -> None:
+async def test_the_risk_of_an_action_is_its_probability_under_the_belief(cache_dir: Path):
     model = await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}")
     async with engine_of(model) as engine:
         assert await risk_of(engine, "touch") == pytest.approx(0.3)
@@ -147,7 +147,7 @@ async def test_the_risk_of_an_action_is_its_probability_under_the_belief(cache_d
         assert not (await engine.risks(seed=1)).is_sampled
 
 
-async def test_what_a_step_leads_to_is_enumerated(cache_dir: Path) -> None:
+async def test_what_a_step_leads_to_is_enumerated(cache_dir: Path):
     model = await built(SAW, cache_dir, f"0.01: {GETS_HURT}", "0.5: state__.cuts > 1 && cut")
     async with engine_of(model) as engine:
         assert await risk_of(engine, "cut") == pytest.approx(0.004)
@@ -157,7 +157,7 @@ async def test_what_a_step_leads_to_is_enumerated(cache_dir: Path) -> None:
         assert await risk_of(engine, "cut", 1) == pytest.approx(1)
 
 
-async def test_a_risk_that_cannot_be_enumerated_is_an_estimate_and_says_so(cache_dir: Path) -> None:
+async def test_a_risk_that_cannot_be_enumerated_is_an_estimate_and_says_so(cache_dir: Path):
     model = await built(GAUGE, cache_dir, "0.9: drain && state__.level > 0")
     async with engine_of(model) as engine:
         assert (await engine.risks(seed=1)).is_sampled
@@ -167,7 +167,7 @@ async def test_a_risk_that_cannot_be_enumerated_is_an_estimate_and_says_so(cache
 @pytest.mark.parametrize("planner", ["auto", "pomcp", "despot", "sarsop"])
 async def test_whichever_planner_decides_it_looks_until_the_risk_is_allowed(
     cache_dir: Path, planner: Planner
-) -> None:
+):
     for run in await play(await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}"), range(1, 11), planner):
         blacks = run.observations.count("black") - run.observations.count("red")
         assert (run.actions[-1] == "touch") == (blacks == 2)
@@ -176,7 +176,7 @@ async def test_whichever_planner_decides_it_looks_until_the_risk_is_allowed(
         assert run.actions == ("touch",)
 
 
-async def test_missions_violate_a_constraint_less_often_than_it_allows(cache_dir: Path) -> None:
+async def test_missions_violate_a_constraint_less_often_than_it_allows(cache_dir: Path):
     runs = await play(await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}"), range(1, 301))
     violations = sum(run.violated == (TOUCHES_HOT,) for run in runs)
     assert interval_of_share(violations, len(runs)).high < 0.05
@@ -189,24 +189,24 @@ async def test_missions_violate_a_constraint_less_often_than_it_allows(cache_dir
     assert 0.05 < touched_hot.low < 0.3 < touched_hot.high
 
 
-async def test_what_many_steps_risk_adds_up(cache_dir: Path) -> None:
+async def test_what_many_steps_risk_adds_up(cache_dir: Path):
     model = await built(SAW, cache_dir, f"0.01: {GETS_HURT}")
     for run in await play(model, range(1, 6), steps=8):
         assert run.actions.count("cut") == 2
         assert run.risked[GETS_HURT] == pytest.approx(0.004 + 0.996 * 0.004)
 
 
-async def test_an_event_may_be_forbidden_altogether(cache_dir: Path) -> None:
+async def test_an_event_may_be_forbidden_altogether(cache_dir: Path):
     for run in await play(await built(SAW, cache_dir, f"0: {GETS_HURT}"), range(1, 3), steps=4):
         assert run.actions == ("rest",) * 4
 
 
-async def test_a_mission_ends_where_every_action_is_too_risky(cache_dir: Path) -> None:
+async def test_a_mission_ends_where_every_action_is_too_risky(cache_dir: Path):
     (run,) = await play(await built(GAUGE, cache_dir, "0.1: drain && state__.level > 0"), range(1, 2))
     assert (run.ending, run.actions) == (Ending.TOO_RISKY, ())
 
 
-async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path) -> None:
+async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path):
     project = with_constraints(text_project(HOB), f"0.9: {TOUCHES_HOT}")
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
     costly_project = msgspec.structs.replace(project, constraints=(costly,))
@@ -219,14 +219,14 @@ async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path) ->
     assert values[1]["touch"] == pytest.approx(10 - 0.3 * 100)
 
 
-def test_constraints_without_a_cost_leave_the_model_what_it_is(bundles: Path) -> None:
+def test_constraints_without_a_cost_leave_the_model_what_it_is(bundles: Path):
     project = bundle_project(bundles / "armadillo-finer")
     bounded = with_constraints(project, "0.01: serve && state.arm_outstretched")
     assert emitted_model(bounded).digest == emitted_model(project).digest
     assert emitted_model(bounded).cpp != emitted_model(project).cpp
 
 
-async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path) -> None:
+async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path):
     looks = iter(["black", "black"])
 
     def robot(request: Activate) -> Outcome:
@@ -249,7 +249,7 @@ async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path) 
     }
 
 
-async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left(cache_dir: Path) -> None:
+async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left(cache_dir: Path):
     files = {name: text for name, text in HOB.items() if not name.startswith("look")}
     model = await built(files, cache_dir, f"0.05: {TOUCHES_HOT}")
     around = Surroundings(lambda request: observed(request, "touched"))

@@ -32,11 +32,11 @@ BELIEF = BeliefSummary(
 STEP = {"number": 3, "action": "go(to=lab)", "response": "arrived"}
 
 
-def test_the_likeliest_value_of_each_variable_is_plain_data() -> None:
+def test_the_likeliest_value_of_each_variable_is_plain_data():
     assert likeliest_state(BELIEF) == {"at": "lab", "count": 2, "lit": True, "depth": 1.5}
 
 
-async def test_a_picture_is_an_svg_or_a_png_of_state_belief_and_step() -> None:
+async def test_a_picture_is_an_svg_or_a_png_of_state_belief_and_step():
     text = (
         HEAD
         + "    print('this goes nowhere')\n"
@@ -74,9 +74,7 @@ async def test_a_picture_is_an_svg_or_a_png_of_state_belief_and_step() -> None:
         ("    import socket; socket.socket()", 2, "PermissionError"),
     ],
 )
-async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(
-    body: str, line: int, said: str
-) -> None:
+async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(body: str, line: int, said: str):
     with pytest.raises(DocumentError) as caught:
         await draw(HEAD + body + "\n", BELIEF, STEP)
     (found,) = caught.value.diagnostics
@@ -93,9 +91,7 @@ async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(
         ("\ndef draw(state): pass\n", "2:1", "does not take a state, a belief and a step"),
     ],
 )
-def test_a_picture_that_is_no_python_is_a_warning_of_lint(
-    bundles: Path, text: str, place: str, said: str
-) -> None:
+def test_a_picture_that_is_no_python_is_a_warning_of_lint(bundles: Path, text: str, place: str, said: str):
     files = {**read_bundle_files(bundles / "errand")[0], "picture.py": text.encode()}
     loaded = load_files(files)
     assert loaded.project is not None
@@ -104,7 +100,7 @@ def test_a_picture_that_is_no_python_is_a_warning_of_lint(
     assert said in found.message
 
 
-def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: Path) -> None:
+def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: Path):
     shutil.copytree(bundles / "errand", tmp_path / "errand")
     (tmp_path / "errand" / "picture.py").write_text("def draw(state, belief, step):\n    return (\n")
     told = aos("lint", tmp_path / "errand", "--format", "json")
@@ -112,7 +108,7 @@ def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: P
     assert found.count("AOS148") == 1
 
 
-async def test_lint_draws_the_beginning_of_a_mission(bundles: Path, cache_dir: Path) -> None:
+async def test_lint_draws_the_beginning_of_a_mission(bundles: Path, cache_dir: Path):
     files = read_bundle_files(bundles / "errand")[0]
     built = await built_bundle(bundles / "errand", cache_dir)
     assert await picture_findings(files, built) == ()
@@ -121,7 +117,7 @@ async def test_lint_draws_the_beginning_of_a_mission(bundles: Path, cache_dir: P
     assert (str(found.span), found.message) == ("picture.py:2:12", "KeyError: 'lion'")
 
 
-def test_another_picture_is_another_revision_and_the_same_model(bundles: Path) -> None:
+def test_another_picture_is_another_revision_and_the_same_model(bundles: Path):
     files = read_bundle_files(bundles / "errand")[0]
     before, after = (
         load_bundle(bundles / "errand"),

@@ -47,9 +47,7 @@ async def played(
         return mission, around
 
 
-async def test_a_skill_that_does_not_do_what_its_document_says_is_told_in_the_records(
-    cache_dir: Path,
-) -> None:
+async def test_a_skill_that_does_not_do_what_its_document_says_is_told_in_the_records(cache_dir: Path):
     mission, around = await played(LAMP, cache_dir, "stuck")
     alarmed = [record for record in around.outcomes if record.drift]
     assert 2 <= alarmed[0].step <= 6
@@ -61,7 +59,7 @@ async def test_a_skill_that_does_not_do_what_its_document_says_is_told_in_the_re
     assert folded(rows_of(around.journalled)).drift == mission.drift
 
 
-async def test_the_tests_go_over_to_the_next_mission_and_not_to_other_documents(cache_dir: Path) -> None:
+async def test_the_tests_go_over_to_the_next_mission_and_not_to_other_documents(cache_dir: Path):
     first, _ = await played(LAMP, cache_dir, "pressed")
     second, _ = await played(LAMP, cache_dir, "pressed", first.drift)
     assert [test.uses for test in second.drift.tests] == [16, 16]

@@ -46,9 +46,7 @@ async def _exact(engine: Engine, horizon: int) -> dict[str, float]:
     return {value.action: value.q for value in (await engine.exact_values(horizon)).actions}
 
 
-async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(
-    bundles: Path, cache_dir: Path
-) -> None:
+async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(bundles: Path, cache_dir: Path):
     texts: list[str] = []
     async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         engine.on_progress = lambda progress: texts.append(progress.text)
@@ -69,19 +67,17 @@ async def assert_exact(folder: Path, kind: str, cache_dir: Path, names: Mapping[
 @pytest.mark.parametrize("kind", ["rough", "finer"])
 async def test_exact_values_of_our_armadillo_are_the_published_ones(
     kind: str, bundles: Path, cache_dir: Path
-) -> None:
+):
     await assert_exact(bundles, kind, cache_dir, {action: action for action in EXACT_AT_8[kind]})
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("kind", ["rough", "finer"])
-async def test_the_original_armadillo_has_the_same_values(kind: str, corpus: Path, cache_dir: Path) -> None:
+async def test_the_original_armadillo_has_the_same_values(kind: str, corpus: Path, cache_dir: Path):
     await assert_exact(corpus, kind, cache_dir, CORPUS_NAMES)
 
 
-async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(
-    bundles: Path, cache_dir: Path
-) -> None:
+async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(bundles: Path, cache_dir: Path):
     built = await built_bundle(bundles / "armadillo-finer", cache_dir)
     async with engine_of(built, impossible_observation="hold") as engine:
         update = await engine.update("observe_holding", "holding")
@@ -92,7 +88,7 @@ async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(
 
 async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
     bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(engine_child, "FROZEN_S", 0.1)
     async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
@@ -106,7 +102,7 @@ async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
 
 async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_well(
     bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         start, killed = EngineChild.start, []
@@ -128,7 +124,7 @@ async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_w
 
 async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(
     bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     launch, killed = EngineChild.launch, []
 
     async def launch_and_kill(built: BuiltModel, beginning: EngineStart) -> EngineChild:
@@ -147,7 +143,7 @@ async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(
 
 async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         assert engine.pid is not None
         (child,) = descendants(engine.pid)
@@ -158,7 +154,7 @@ async def test_an_engine_that_crashes_between_documents_says_what_may_have_harme
     assert "through a pointer" in caught.value.hint
 
 
-async def test_model_code_that_crashes_is_named_by_its_document_line(root: Path, cache_dir: Path) -> None:
+async def test_model_code_that_crashes_is_named_by_its_document_line(root: Path, cache_dir: Path):
     tiger = root / "tests/data/bundles/tiger"
     crashing = {path.name: path.read_text() for path in tiger.iterdir()}
     crashing["listen.sd"] = (
@@ -179,7 +175,7 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(root: Path,
 
 async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
         limits = MissionLimits(stop_below_value=0.0)
         served = 0

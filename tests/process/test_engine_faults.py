@@ -49,7 +49,7 @@ def speaking(code: str) -> dict[str, str]:
     return LAMP | {"tell.sd": f"project: lamp\ndynamic_model:\n{code}\n"}
 
 
-async def test_a_response_is_any_text(cache_dir: Path) -> None:
+async def test_a_response_is_any_text(cache_dir: Path):
     code = r'__moduleResponseStr = AOS.Bernoulli(0.25) ? "a\tb\n\\n\"é" : "";'
     async with engine_of_text(speaking(code), cache_dir) as engine:
         told = {each.response: each.probability for each in (await engine.predict(1)).predicted}
@@ -57,7 +57,7 @@ async def test_a_response_is_any_text(cache_dir: Path) -> None:
         assert (await engine.update("tell", 'a\tb\n\\n"é')).probability == pytest.approx(0.25)
 
 
-async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line(cache_dir: Path) -> None:
+async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line(cache_dir: Path):
     async with engine_of_text(
         speaking('__moduleResponseStr = "aé";\n__moduleResponseStr.pop_back();'), cache_dir
     ) as engine:
@@ -67,7 +67,7 @@ async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line(cache_d
     assert (told.code, told.span.file, told.span.line) == ("AOS215", "tell.sd", 4)
 
 
-async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path) -> None:
+async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path):
     built = await built_text(LAMP, cache_dir)
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
     wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
@@ -88,7 +88,7 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
 )
 async def test_documents_whose_code_would_end_a_running_mission_are_refused(
     code: str, fault: str, file: str, cache_dir: Path
-) -> None:
+):
     refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
     assert (refusal.code, refusal.span.file) == (fault, file)
 
@@ -111,14 +111,14 @@ def slow(name: str, rounds: int) -> str:
     )
 
 
-async def test_code_that_makes_steps_slow_is_told_at_its_statement(cache_dir: Path) -> None:
+async def test_code_that_makes_steps_slow_is_told_at_its_statement(cache_dir: Path):
     code = f"int quick = 1;\nquick += 2;\n{slow('state__.count', 40_000_000)}"
     refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
     assert (refusal.code, str(refusal.span)) == ("AOS211", "press.sd:7:53")
     assert "of that here" in refusal.message
 
 
-async def test_of_slow_code_in_many_places_the_environment_document_is_told(cache_dir: Path) -> None:
+async def test_of_slow_code_in_many_places_the_environment_document_is_told(cache_dir: Path):
     changes, moves, earns = (slow(name, 15_000_000) for name in ("state_.count", "state__.count", "__reward"))
     documents = counting("lamp", "press", code=moves, steps="1000")
     documents["lamp.ef"] += f"{earns}\n\nextrinsic_code:\n{changes}\n"
@@ -127,7 +127,7 @@ async def test_of_slow_code_in_many_places_the_environment_document_is_told(cach
     assert "no one place" in refusal.message
 
 
-async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:
+async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path):
     built = await built_text(LAMP, cache_dir)
     command = [str(built.executable), "-1", "-1", "1", "widen", "12"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
@@ -135,9 +135,7 @@ async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_p
     assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS217"
 
 
-async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_what_to_report(
-    cache_dir: Path,
-) -> None:
+async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_what_to_report(cache_dir: Path):
     built = await built_text(LAMP, cache_dir)
     child = await EngineChild.start(built, EngineStart(seed=1, policy="widen"))
     try:
@@ -151,7 +149,7 @@ async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_wha
 
 async def test_a_model_that_prints_without_end_fills_no_log(
     cache_dir: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+):
     shouting = LAMP["press.sd"] + "printf(\"%s\\n\", string(4000, 'x').c_str());\n"
     built = await built_text(LAMP | {"press.sd": shouting}, cache_dir)
     async with engine_of(built) as engine:

@@ -63,7 +63,7 @@ __moduleResponse = high;
 """The only skill that play-outs prefer cannot be run."""
 
 
-async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path) -> None:
+async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path):
     async with engine_of_text(GAUGE, cache_dir) as engine:
         first = await engine.update("read", "high")
         plan = await engine.plan(simulations=1000, seed=1, planner="pomcp")
@@ -75,7 +75,7 @@ async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(ca
     assert plan.predicted[0].probability == pytest.approx(2 / 3, abs=0.03)
 
 
-async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> None:
+async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path):
     async with engine_of_text(SWITCHES, cache_dir) as engine:
         summary = await engine.summary()
         update = await engine.update("read", "high")
@@ -85,7 +85,7 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> No
     assert min(int(value) for value in update.summary.marginals[0].values) >= 13
 
 
-async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(cache_dir: Path) -> None:
+async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(cache_dir: Path):
     async with engine_of_text(TEMPTING, cache_dir) as engine:
         plan = await engine.plan(simulations=2, seed=1, planner="pomcp")
     values = {value.action: value for value in plan.actions}
@@ -122,7 +122,7 @@ __moduleResponse = high;
 @pytest.mark.parametrize(("leap", "best"), [("-3", "read"), ("-1", "leap")])
 async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
     leap: str, best: str, cache_dir: Path
-) -> None:
+):
     files = PREJUDICED | {"leap.sd": PREJUDICED["leap.sd"].format(leap=leap)}
     async with engine_of_text(files, cache_dir) as engine:
         plan = await engine.plan(simulations=10_000, seed=1, planner="pomcp")
@@ -134,9 +134,7 @@ async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
         assert -five_steps - 0.95**3 - 0.95**4 - 0.15 < plan.best.q < -five_steps + 0.15
 
 
-async def test_what_holds_in_every_particle_is_certain_whatever_their_weights_sum_up_to(
-    cache_dir: Path,
-) -> None:
+async def test_what_holds_in_every_particle_is_certain_whatever_their_weights_sum_up_to(cache_dir: Path):
     counted = (
         "state_variable: int hour\nextrinsic_code:\nstate_.hour++;\n"
         "reward_code:\nif (state.hour >= 5) __isGoalState = true, __reward = 1;\n"

@@ -41,7 +41,7 @@ async def _plan(files: dict[str, str], cache_dir: Path, planner: str = "auto") -
         return await engine.plan(simulations=5000, seed=1, planner=planner)
 
 
-async def test_values_are_those_of_the_same_model_with_flags(cache_dir: Path) -> None:
+async def test_values_are_those_of_the_same_model_with_flags(cache_dir: Path):
     files = shelf()
     plan = await _plan(files, cache_dir)
     assert plan.planner == "sarsop"
@@ -58,18 +58,18 @@ async def test_values_are_those_of_the_same_model_with_flags(cache_dir: Path) ->
 
 
 @pytest.mark.parametrize("planner", ["auto", "pomcp", "despot", "sarsop"])
-async def test_no_planner_tells_bounds_of_it(planner: str, cache_dir: Path) -> None:
+async def test_no_planner_tells_bounds_of_it(planner: str, cache_dir: Path):
     plan = await _plan(shelf(), cache_dir, planner)
     assert all(action.at_least is None and action.at_most is None for action in plan.actions)
     assert "proven" not in plan.why
 
 
-async def test_a_rare_draw_counts(cache_dir: Path) -> None:
+async def test_a_rare_draw_counts(cache_dir: Path):
     plan = await _plan(_cliff("double drawn = AOS.SampleNormal(0, 1);"), cache_dir)
     assert plan.actions[plan.index].action == "rest"
 
 
-async def test_two_draws_have_fewer_strata_and_a_state_that_keeps_its_draw_none(cache_dir: Path) -> None:
+async def test_two_draws_have_fewer_strata_and_a_state_that_keeps_its_draw_none(cache_dir: Path):
     two = "double drawn = 0.7071 * (AOS.SampleNormal(0, 1) + AOS.SampleNormal(0, 1));"
     assert "stands for 60 numbers" in (await _plan(_cliff(two), cache_dir)).why
     files = shelf()
@@ -81,7 +81,7 @@ async def test_two_draws_have_fewer_strata_and_a_state_that_keeps_its_draw_none(
     assert (await _plan(kept, cache_dir)).planner in {"options", "pomcp"}
 
 
-async def test_an_engine_spends_the_processor_time_of_the_process_below_its_guard(cache_dir: Path) -> None:
+async def test_an_engine_spends_the_processor_time_of_the_process_below_its_guard(cache_dir: Path):
     async with engine_of_text(shelf(), cache_dir) as engine:
         before = processor_s(engine)
         plan = await engine.plan(simulations=5000, seed=1, planner="pomcp")

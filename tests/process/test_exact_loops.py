@@ -197,7 +197,7 @@ def approximately(odds: dict[int, Fraction]) -> dict[str, float]:
     return {str(value): pytest.approx(float(odds), abs=1e-12) for value, odds in odds.items()}
 
 
-async def test_beliefs_and_values_after_loops_are_closed_forms(cache_dir: Path) -> None:
+async def test_beliefs_and_values_after_loops_are_closed_forms(cache_dir: Path):
     async with engine_of_text(FILES, cache_dir) as engine:
         start = await engine.summary()
         sides = {str(side): pytest.approx(float(odds), abs=1e-12) for side, odds in SIDES.items()}
@@ -274,7 +274,7 @@ __moduleResponse = yes;
 """
 
 
-def test_the_command_plans_exactly_after_a_loop(tmp_path: Path) -> None:
+def test_the_command_plans_exactly_after_a_loop(tmp_path: Path):
     loop = f"int x = 1;\n{DEEP[0]}\nstate.side = spot;"
     mean = sum((spot * odds for spot, odds in DEEP[1](1).items()), Fraction())
     files = {"loops.ef": ISSUE.format(loop=loop), "turn.sd": TURN}

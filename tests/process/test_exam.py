@@ -33,7 +33,7 @@ def truth(executable: Path) -> Iterator[Driver]:
 
 
 @pytest.mark.parametrize("name", ["dense/3", "doors/2", "endings/5", "heaven/1", "late/4"])
-def test_the_truth_is_what_all_histories_add_up_to(name: str, truth: Driver) -> None:
+def test_the_truth_is_what_all_histories_add_up_to(name: str, truth: Driver):
     problem = named_problem(name, 200)
     decisions = 3
     brackets = truth.report(problem.with_horizon(decisions))["values"]
@@ -44,7 +44,7 @@ def test_the_truth_is_what_all_histories_add_up_to(name: str, truth: Driver) -> 
         assert upper == pytest.approx(value, abs=1e-7)
 
 
-def test_no_claim_about_random_models_is_false(executable: Path) -> None:
+def test_no_claim_about_random_models_is_false(executable: Path):
     found = Bounds()
     options = {"seed": 1, "simulations": 200, "truth": 0.05, "steps": 2}
     for problem, answer in reports(
@@ -54,7 +54,7 @@ def test_no_claim_about_random_models_is_false(executable: Path) -> None:
     assert found.claims > 1500
 
 
-def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
+def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path):
     found = Regrets()
     options = {"simulations": 2000, "missions": 1, "planners": "auto,look-ahead", "truth": 1}
     asked = [*problems(list(FAMILIES), 22, 300, False, 100), *problems(NEEDLES, 6, 400, True, 200)]
@@ -66,9 +66,7 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
     assert max(excesses) <= WORST_TARGET
 
 
-def test_values_margins_and_changes_of_the_choice_are_within_the_errors_that_are_told(
-    executable: Path,
-) -> None:
+def test_values_margins_and_changes_of_the_choice_are_within_the_errors_that_are_told(executable: Path):
     found = Intervals()
     options = {"seed": 5, "simulations": 2000, "truth": 0.1}
     for problem, answer in reports(
@@ -79,7 +77,7 @@ def test_values_margins_and_changes_of_the_choice_are_within_the_errors_that_are
     assert found.is_passed(), found.table()
 
 
-def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(executable: Path) -> None:
+def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(executable: Path):
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": "auto", "truth": 0.5}
     asked = [named_problem(name, 100) for name in ("counter/8", "late/306")]
@@ -97,7 +95,7 @@ def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(exec
 )
 def test_the_first_decision_of_a_tree_tells_what_missions_return(
     planner: str, names: tuple[str, ...], executable: Path
-) -> None:
+):
     """Trees alone promise too much in `counter/8`, and too little in the others."""
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": planner, "truth": 0.5}
@@ -107,7 +105,7 @@ def test_the_first_decision_of_a_tree_tells_what_missions_return(
     assert len(found.all_of(planner)) == len(names)
 
 
-def test_a_value_by_sarsop_tells_that_few_missions_were_played(executable: Path) -> None:
+def test_a_value_by_sarsop_tells_that_few_missions_were_played(executable: Path):
     """The budget pays for a mission or two here, which lose nothing, where others put off their prize."""
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": "sarsop", "truth": 0.2, "seed": 77}
@@ -117,7 +115,7 @@ def test_a_value_by_sarsop_tells_that_few_missions_were_played(executable: Path)
     assert [entry.planner for entry in found.all_of("sarsop")] == ["sarsop"] * 3
 
 
-def test_a_value_is_wrong_beyond_two_errors_and_a_twentieth_of_the_range() -> None:
+def test_a_value_is_wrong_beyond_two_errors_and_a_twentieth_of_the_range():
     def entry_of(value: float, error: float, returned_error: float) -> Told:
         return Told("p", "auto", value, error, 10.0, returned_error, range=100.0)
 
@@ -128,20 +126,20 @@ def test_a_value_is_wrong_beyond_two_errors_and_a_twentieth_of_the_range() -> No
     assert entry_of(-4.9, 3, 7).is_right
 
 
-def test_no_variable_is_left_out_that_matters() -> None:
+def test_no_variable_is_left_out_that_matters():
     wrong = {bundle.name: left_out(bundle) for bundle in map(documents, range(150)) if left_out(bundle)}
     assert not wrong
 
 
 @pytest.mark.parametrize("seed", range(4))
-async def test_compiled_documents_mean_what_they_say(seed: int, truth: Driver, cache_dir: Path) -> None:
+async def test_compiled_documents_mean_what_they_say(seed: int, truth: Driver, cache_dir: Path):
     found = await examined(documents(seed), truth, cache_dir, "auto", simulations=500)
     assert not found.false
     assert found.decisions > 0
     assert found.worst <= 100 * WORST_TARGET
 
 
-async def test_with_a_broken_skill_no_goal_is_claimed_falsely_and_others_stand_in(cache_dir: Path) -> None:
+async def test_with_a_broken_skill_no_goal_is_claimed_falsely_and_others_stand_in(cache_dir: Path):
     found = Failures(
         [await played_job(job(seed), cache_dir, simulations=500) for seed in (3, 4, 5, 8, 9, 25)]
     )

@@ -76,7 +76,7 @@ def goals(around: Surroundings) -> list[float]:
     return [record.belief.goal_probability for record in around.records]
 
 
-async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel) -> None:
+async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return jammed(request) if request.skill == "take" else observed(request, "seen_left")
 
@@ -86,7 +86,7 @@ async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel) -> None
     assert [record.skill for record in around.decisions].count("take") == 3
 
 
-async def test_beside_a_camera_that_always_fails_the_robot_asks(cache_dir: Path) -> None:
+async def test_beside_a_camera_that_always_fails_the_robot_asks(cache_dir: Path):
     built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
     answers = {"ask": "said_right", "take": "taken"}
 
@@ -104,7 +104,7 @@ async def test_beside_a_camera_that_always_fails_the_robot_asks(cache_dir: Path)
     assert "look" not in {value.action for value in decision.actions}
 
 
-async def test_a_skill_of_which_nobody_knows_ran_always_or_never(tutorial: BuiltModel) -> None:
+async def test_a_skill_of_which_nobody_knows_ran_always_or_never(tutorial: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return timed_out(request) if request.skill == "take" else observed(request, "seen_left")
 
@@ -128,7 +128,7 @@ __reward = state__.is_taken ? -2 : -20;
 """
 
 
-async def test_what_follows_from_the_remedy_of_nonsense_alone_is_not_claimed(cache_dir: Path) -> None:
+async def test_what_follows_from_the_remedy_of_nonsense_alone_is_not_claimed(cache_dir: Path):
     built = await built_text(fetch(look=LOOK, ask=ASK, take=SURE_TAKE), cache_dir)
 
     def robot(request: Activate) -> Outcome:
@@ -140,9 +140,7 @@ async def test_what_follows_from_the_remedy_of_nonsense_alone_is_not_claimed(cac
     assert state.ending == "skills_failed"
 
 
-async def test_where_the_mission_would_be_over_it_is_decided_as_if_nothing_had_run(
-    tutorial: BuiltModel,
-) -> None:
+async def test_where_the_mission_would_be_over_it_is_decided_as_if_nothing_had_run(tutorial: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return timed_out(request) if request.skill == "take" else observed(request, "seen_left")
 
@@ -165,7 +163,7 @@ __reward = -0.5;
 """
 
 
-async def test_observations_can_refute_that_nothing_ran(cache_dir: Path) -> None:
+async def test_observations_can_refute_that_nothing_ran(cache_dir: Path):
     async with engine_of_text(fetch(take=TAKE, feel=FEEL), cache_dir) as engine:
         ran = await engine.update_without_observation("take(side=left_side)", ran_probability=0.5)
         assert ran.summary.goal_probability == pytest.approx(0.5 * 0.5 * 0.9)
@@ -187,7 +185,7 @@ __reward = -6;
 """
 
 
-async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_taken(cache_dir: Path) -> None:
+async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_taken(cache_dir: Path):
     only_costs = fetch(look=LOOK.replace("-0.3", "-2"), take=TAKE.replace("-20", "-2"), grab=GRAB)
     only_costs["fetch.ef"] = SHELF.replace("__reward = 20", "__isFailureState = false")
     built = await built_text(only_costs, cache_dir)
@@ -202,7 +200,7 @@ async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_tak
     assert skills.count("take") == 3
 
 
-async def test_a_skill_that_answers_with_words_of_no_document_is_set_aside(cache_dir: Path) -> None:
+async def test_a_skill_that_answers_with_words_of_no_document_is_set_aside(cache_dir: Path):
     built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
     answers = {"look": "fine_weather", "ask": "said_right", "take": "taken"}
 
@@ -215,9 +213,7 @@ async def test_a_skill_that_answers_with_words_of_no_document_is_set_aside(cache
     assert around.outcomes[2].remark.startswith("look is set aside for 300 s after 3 failures in a row")
 
 
-async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason(
-    cache_dir: Path,
-) -> None:
+async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason(cache_dir: Path):
     dear = fetch(look=LOOK, take=TAKE, grab=GRAB.replace("-6", "-30"))
     built = await built_text(dear, cache_dir)
 
@@ -231,7 +227,7 @@ async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the
     assert "grab" not in [record.skill for record in around.decisions]
 
 
-async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure(cache_dir: Path) -> None:
+async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure(cache_dir: Path):
     built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
     around = Surroundings(jammed)
     around.clock = clock = Clock()
@@ -254,7 +250,7 @@ def told_failure(request: Activate, response: str) -> Outcome:
     return Outcome(request.id, request.skill, "observed", response, fault=fault)
 
 
-async def test_failures_that_a_rule_tells_count_by_how_improbable_they_are(cache_dir: Path) -> None:
+async def test_failures_that_a_rule_tells_count_by_how_improbable_they_are(cache_dir: Path):
     look = """project: fetch
 dynamic_model:
 bool seems_left = AOS.Bernoulli(0.97) == (state.thing_at == Left);

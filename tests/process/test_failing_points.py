@@ -9,7 +9,7 @@ from processes import COMMAND_S
 RUNS = ("failpoint:journal.intended.after:1", "readonly:middleware.started.before:1")
 
 
-def test_missions_keep_what_is_promised(root: Path) -> None:
+def test_missions_keep_what_is_promised(root: Path):
     ran = subprocess.run(
         [sys.executable, "-m", "tests.chaos", "--again", *RUNS],
         cwd=root,

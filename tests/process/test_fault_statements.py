@@ -155,7 +155,7 @@ async def fault_of(built: BuiltModel, skill: str, name: str) -> ModelError:
     ("name", "document"),
     [*((name, "slip.sd") for name in FAULTS), ("eLambda", "trip.json"), ("eResponse", "trip.json")],
 )
-async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_dir: Path) -> None:
+async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_dir: Path):
     fault = await fault_of(await built_text(BUNDLE, cache_dir), document.partition(".")[0], name)
     (diagnostic,) = fault.diagnostics
     code, message = FAULTS[name]
@@ -195,7 +195,7 @@ __moduleResponse = drawn;
 """
 
 
-async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot(cache_dir: Path) -> None:
+async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot(cache_dir: Path):
     drawing = ANSWERING.replace("ward", "board").replace("response: ok", "response: drawn")
     built = await built_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing}, cache_dir)
     async with engine_of(built) as running:

@@ -30,7 +30,7 @@ def archive(folder: Path, **changed: str) -> bytes:
     return packed.getvalue()
 
 
-def test_a_run_and_its_mission_are_listed(past: tuple[Gateway, str]) -> None:
+def test_a_run_and_its_mission_are_listed(past: tuple[Gateway, str]):
     served, name = past
     (run,) = served.ask("/v1/runs").json["runs"]
     assert (run["run"], run["robot"], run["is_running"], run["ending"]) == (name, "errand", False, "goal")
@@ -40,7 +40,7 @@ def test_a_run_and_its_mission_are_listed(past: tuple[Gateway, str]) -> None:
     assert served.ask(f"/v1/runs/{name}").json == run
 
 
-def test_decisions_beliefs_activations_and_trace_tell_of_the_same_steps(past: tuple[Gateway, str]) -> None:
+def test_decisions_beliefs_activations_and_trace_tell_of_the_same_steps(past: tuple[Gateway, str]):
     served, name = past
     path = f"/v1/missions/{name}"
     records = served.ask(f"{path}/decisions").json["records"]
@@ -56,9 +56,7 @@ def test_decisions_beliefs_activations_and_trace_tell_of_the_same_steps(past: tu
     assert (last["decided"], last["observed"]) == (records[-2], records[-1])
 
 
-def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(
-    past: tuple[Gateway, str],
-) -> None:
+def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(past: tuple[Gateway, str]):
     served, name = past
     path = f"/v1/missions/{name}/decisions/2"
     decided = served.ask(path).json["decided"]
@@ -71,9 +69,7 @@ def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(
     assert (unknown.status, unknown.json["code"]) == (404, "AOS501")
 
 
-def test_a_run_that_somebody_has_sent_is_shown(
-    past: tuple[Gateway, str], tmp_path: Path, cache_dir: Path
-) -> None:
+def test_a_run_that_somebody_has_sent_is_shown(past: tuple[Gateway, str], tmp_path: Path, cache_dir: Path):
     served, name = past
     file = tmp_path / "sent.aosrun"
     write_bundle([served.folder / "runs" / name], file)
@@ -84,7 +80,7 @@ def test_a_run_that_somebody_has_sent_is_shown(
         assert other.ask(path).json == served.ask(path).json
 
 
-def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path) -> None:
+def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path):
     said = tmp_path / "said"
     run = played(tmp_path, cache_dir, "--page", said=said)
     note = json.loads((tmp_path / "gateway/gateway.json").read_text())
@@ -103,15 +99,13 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path
         os.kill(note["pid"], signal.SIGTERM)
 
 
-def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(
-    tmp_path: Path, cache_dir: Path
-) -> None:
+def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path: Path, cache_dir: Path):
     with gateway(tmp_path, cache_dir, "--runs", str(tmp_path / "others")) as served:
         run = played(tmp_path, cache_dir, "--page")
         assert served.ask(f"/v1/missions/{run.name}").json["state"]["ending"] == "goal"
 
 
-def test_the_state_is_drawn_as_the_documents_say(past: tuple[Gateway, str]) -> None:
+def test_the_state_is_drawn_as_the_documents_say(past: tuple[Gateway, str]):
     served, name = past
     assert served.ask(f"/v1/missions/{name}/trace").json["draws"] is True
     drawn = served.ask(f"/v1/missions/{name}/decisions/1/picture")
@@ -121,7 +115,7 @@ def test_the_state_is_drawn_as_the_documents_say(past: tuple[Gateway, str]) -> N
     assert served.ask(f"/v1/missions/{name}/decisions/999/picture").json["code"] == "AOS902"
 
 
-def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]) -> None:
+def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]):
     served, name = past
     found = served.ask(f"/v1/missions/{name}/documents").json
     texts = {file["name"]: file["text"].splitlines() for file in found["files"]}
@@ -132,7 +126,7 @@ def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]) 
         assert 1 <= model["first"] <= model["last"] <= len(texts[model["file"]]) + 1
 
 
-def test_a_past_mission_is_streamed_from_a_record_on_with_its_end(past: tuple[Gateway, str]) -> None:
+def test_a_past_mission_is_streamed_from_a_record_on_with_its_end(past: tuple[Gateway, str]):
     served, name = past
     count = served.ask(f"/v1/missions/{name}/trace").json["next"]
     with served.events(f"/v1/events?mission={name}", last=f"{name}:{count - 2}") as events:
@@ -144,7 +138,7 @@ def test_a_past_mission_is_streamed_from_a_record_on_with_its_end(past: tuple[Ga
     ]
 
 
-def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, str], root: Path) -> None:
+def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, str], root: Path):
     served, name = past
     example = [sys.executable, root / "docs/examples/follow_events.py", f"http://127.0.0.1:{served.port}"]
     with_token = os.environ | {"TOKEN": served.token}
@@ -165,7 +159,7 @@ def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, 
     assert served.ask("/v1/runs/latest").json["run"] == name
 
 
-def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]) -> None:
+def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]):
     served, name = past
     services = {each["service"] for each in served.ask(f"/v1/runs/{name}/services").json["services"]}
     assert {"router", "registry", "middleware", "solver"} <= services
@@ -190,9 +184,7 @@ def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]) -> None:
         ("/v1/nothing", 404, "AOS902"),
     ],
 )
-def test_what_cannot_be_answered_is_a_problem(
-    past: tuple[Gateway, str], path: str, status: int, code: str
-) -> None:
+def test_what_cannot_be_answered_is_a_problem(past: tuple[Gateway, str], path: str, status: int, code: str):
     served, name = past
     answer = served.ask(path.format(name=name))
     assert answer.headers["content-type"] == "application/problem+json"
@@ -200,9 +192,7 @@ def test_what_cannot_be_answered_is_a_problem(
     assert answer.json["type"] == f"urn:aos:{code}"
 
 
-def test_misspelt_fields_other_methods_and_large_bodies_are_told_and_start_nothing(
-    past: tuple[Gateway, str],
-) -> None:
+def test_misspelt_fields_other_methods_and_large_bodies_are_told_and_start_nothing(past: tuple[Gateway, str]):
     served, name = past
     for path, body in (
         ("/v1/runs", {"project": "errand", "modell": True}),
@@ -218,7 +208,7 @@ def test_misspelt_fields_other_methods_and_large_bodies_are_told_and_start_nothi
     assert (answer.status, answer.json["code"]) == (413, "AOS901")
 
 
-def test_a_mission_that_is_over_is_neither_stopped_nor_steered(past: tuple[Gateway, str]) -> None:
+def test_a_mission_that_is_over_is_neither_stopped_nor_steered(past: tuple[Gateway, str]):
     served, name = past
     for answer in (
         served.post(f"/v1/missions/{name}/stop"),
@@ -229,7 +219,7 @@ def test_a_mission_that_is_over_is_neither_stopped_nor_steered(past: tuple[Gatew
     assert served.ask(f"/v1/missions/{name}/documents?revision={2**40}").status == 400
 
 
-def test_strangers_are_refused(past: tuple[Gateway, str]) -> None:
+def test_strangers_are_refused(past: tuple[Gateway, str]):
     served, name = past
     refusals = [
         served.ask("/v1/runs", headers={"host": "evil.example"}),
@@ -248,7 +238,7 @@ def test_strangers_are_refused(past: tuple[Gateway, str]) -> None:
     assert refusals[-1].headers["www-authenticate"] == "Bearer"
 
 
-def test_openapi_describes_every_operation_with_schemas_that_are_there(past: tuple[Gateway, str]) -> None:
+def test_openapi_describes_every_operation_with_schemas_that_are_there(past: tuple[Gateway, str]):
     served, _ = past
     document = served.ask("/v1/openapi.json").json
     assert document["openapi"] == "3.1.0"
@@ -271,7 +261,7 @@ def test_openapi_describes_every_operation_with_schemas_that_are_there(past: tup
     assert all(one["security"] == [{"token": []}] for one in writes)
 
 
-def test_a_bundle_is_checked_with_the_place_of_each_finding(past: tuple[Gateway, str], root: Path) -> None:
+def test_a_bundle_is_checked_with_the_place_of_each_finding(past: tuple[Gateway, str], root: Path):
     served, _ = past
     good = served.ask("/v1/checks?name=errand.zip", "POST", archive(root / ERRAND)).json
     assert (good["is_accepted"], good["project"]) == (True, "errand")
@@ -281,7 +271,7 @@ def test_a_bundle_is_checked_with_the_place_of_each_finding(past: tuple[Gateway,
     assert any(found["span"]["file"] == "errand.ef" and found["span"]["line"] for found in bad["diagnostics"])
 
 
-def test_an_upload_that_is_no_bundle_is_refused_and_nothing_is_kept(past: tuple[Gateway, str]) -> None:
+def test_an_upload_that_is_no_bundle_is_refused_and_nothing_is_kept(past: tuple[Gateway, str]):
     served, _ = past
     before = served.ask("/v1/projects").json
     for name, body in (
@@ -297,7 +287,7 @@ def test_an_upload_that_is_no_bundle_is_refused_and_nothing_is_kept(past: tuple[
 
 def test_a_mission_is_started_from_an_uploaded_bundle_and_ends_as_one_from_a_terminal(
     past: tuple[Gateway, str], root: Path
-) -> None:
+):
     served, _ = past
     kept = served.ask("/v1/projects?name=errand.zip", "POST", archive(root / ERRAND))
     assert kept.status == 201
@@ -310,9 +300,7 @@ def test_a_mission_is_started_from_an_uploaded_bundle_and_ends_as_one_from_a_ter
     assert end["ending"] == "goal"
 
 
-def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(
-    past: tuple[Gateway, str], tmp_path: Path
-) -> None:
+def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(past: tuple[Gateway, str], tmp_path: Path):
     served, _ = past
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text("aos: 1\nrobot: r\nbundles: [nothing]\n")
@@ -323,7 +311,7 @@ def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(
 
 def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_stop_it(
     living: tuple[Gateway, Path], cache_dir: Path
-) -> None:
+):
     served, run = living
     path, stream = f"/v1/missions/{run.name}", f"/v1/events?mission={run.name}"
     turns = run.parents[1] / "turns"
@@ -362,7 +350,7 @@ def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_s
 
 def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(
     tmp_path: Path, cache_dir: Path
-) -> None:
+):
     with worn_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
         path = f"/v1/runs/{run.name}/missions"
         assert served.ask(f"/v1/missions/{run.name}-1").json["parameters"] == {"room": "hall"}

@@ -22,25 +22,25 @@ async def start(script: str, limits: Limits | None = None) -> Child:
     ("script", "status"),
     [("exit 0", 0), ("exit 3", 3), ("kill -SEGV $$", -signal.SIGSEGV), ("kill -KILL $$", -signal.SIGKILL)],
 )
-async def test_the_guard_ends_as_its_command_ends(script: str, status: int) -> None:
+async def test_the_guard_ends_as_its_command_ends(script: str, status: int):
     child = await start(script)
     assert await child.wait() == status
 
 
-async def test_input_and_output_are_the_commands(tmp_path: Path) -> None:
+async def test_input_and_output_are_the_commands(tmp_path: Path):
     child = await start("read line; echo got $line; echo oops >&2")
     child.stdin.write(b"hello\n")
     assert (await child.stdout.readline(), await child.stderr.readline()) == (b"got hello\n", b"oops\n")
     await child.wait()
 
 
-async def test_a_command_that_does_not_exist_is_named() -> None:
+async def test_a_command_that_does_not_exist_is_named():
     child = await Child.start(guarded(["no-such-compiler"]), stderr=PIPE)
     assert await child.wait() == 127
     assert b"cannot start no-such-compiler: No such file" in await child.stderr.read()
 
 
-async def test_a_nicer_command_is_nicer_than_the_processes_of_every_session() -> None:
+async def test_a_nicer_command_is_nicer_than_the_processes_of_every_session():
     command = f"{sys.executable} -c 'import os; print(os.nice(0))'; cat /proc/self/autogroup 2>/dev/null"
     child = await start(command, Limits(niceness=7))
     nice, *session = (await child.stdout.read()).decode().splitlines()
@@ -49,7 +49,7 @@ async def test_a_nicer_command_is_nicer_than_the_processes_of_every_session() ->
     await child.wait()
 
 
-async def test_what_a_command_leaves_running_is_ended_with_it() -> None:
+async def test_what_a_command_leaves_running_is_ended_with_it():
     child = await start(SLEEPERS.format(tail="read line"))
     await child.stdout.readline()
     below = descendants(child.pid)
@@ -59,7 +59,7 @@ async def test_what_a_command_leaves_running_is_ended_with_it() -> None:
     await until_ended(below)
 
 
-async def test_stopping_the_guard_ends_everything_below_it() -> None:
+async def test_stopping_the_guard_ends_everything_below_it():
     child = await start(SLEEPERS.format(tail="wait"))
     await child.stdout.readline()
     below = descendants(child.pid)
@@ -67,7 +67,7 @@ async def test_stopping_the_guard_ends_everything_below_it() -> None:
     await until_ended(below)
 
 
-async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace() -> None:
+async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace():
     child = await start("trap '' TERM; echo up; while true; do sleep 1000; done", Limits(grace_s=0.1))
     await child.stdout.readline()
     below = descendants(child.pid)
@@ -87,7 +87,7 @@ asyncio.run(main())
 """
 
 
-async def test_grandchildren_end_when_the_parent_is_killed_though_the_keeper_is_frozen() -> None:
+async def test_grandchildren_end_when_the_parent_is_killed_though_the_keeper_is_frozen():
     parent = await Child.start([sys.executable, "-c", START_GUARDED], stdout=PIPE)
     await parent.stdout.readline()
     below = descendants(parent.pid)
@@ -98,7 +98,7 @@ async def test_grandchildren_end_when_the_parent_is_killed_though_the_keeper_is_
     await until_ended(below)
 
 
-async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed() -> None:
+async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed():
     child = await start(SLEEPERS.format(tail="wait"))
     await child.stdout.readline()
     below = descendants(child.pid)
@@ -117,9 +117,7 @@ async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed()
     ],
     ids=["memory", "processor time", "file size"],
 )
-async def test_limits_hold(
-    limits: Limits, code: str, status: int, written: dict[str, int], tmp_path: Path
-) -> None:
+async def test_limits_hold(limits: Limits, code: str, status: int, written: dict[str, int], tmp_path: Path):
     child = await Child.start(guarded([sys.executable, "-c", code], limits), cwd=tmp_path, stderr=PIPE)
     assert await child.wait() == status
     assert sizes(tmp_path) == written

@@ -63,13 +63,13 @@ def add_reading(folder: Path) -> Path:
     return folder
 
 
-def test_gymnasiums_own_checks_pass(kettle: Path) -> None:
+def test_gymnasiums_own_checks_pass(kettle: Path):
     environment = AosEnv(kettle, max_episode_steps=20)
     check_env(environment, skip_render_check=True)
     environment.close()
 
 
-def test_an_episode_ends_at_the_goal_and_tells_it_in_words(kettle: Path) -> None:
+def test_an_episode_ends_at_the_goal_and_tells_it_in_words(kettle: Path):
     environment = AosEnv(kettle)
     observation, _ = environment.reset(seed=1)
     assert observation == 0
@@ -85,7 +85,7 @@ def test_an_episode_ends_at_the_goal_and_tells_it_in_words(kettle: Path) -> None
     environment.close()
 
 
-def test_many_worlds_start_anew_when_they_are_over_and_repeat_with_their_seed(kettle: Path) -> None:
+def test_many_worlds_start_anew_when_they_are_over_and_repeat_with_their_seed(kettle: Path):
     def story(seed: int) -> list[np.ndarray]:
         first, _ = worlds.reset(seed=seed)
         values_of_story = [first]
@@ -107,7 +107,7 @@ def test_many_worlds_start_anew_when_they_are_over_and_repeat_with_their_seed(ke
     worlds.close()
 
 
-def test_text_observations_are_bytes(kettle: Path) -> None:
+def test_text_observations_are_bytes(kettle: Path):
     environment = AosEnv(add_reading(kettle), max_episode_steps=20)
     check_env(environment, skip_render_check=True)
     environment.reset(seed=1)
@@ -117,7 +117,7 @@ def test_text_observations_are_bytes(kettle: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore:.*A Box observation space m.* value is -?infinity")
-def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
+def test_numbers_beside_a_response_have_columns(kettle: Path):
     """An array has as many columns as there is room for; what a response does not report is marked."""
     write_texts(SENSING, kettle)
     environment = AosEnv(kettle, max_episode_steps=20, array_room=3)
@@ -141,7 +141,7 @@ def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
     worlds.close()
 
 
-def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> None:
+def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path):
     command = [Path(sys.executable).parent / "aos", "gym", str(kettle), "--steps", "100", "--worlds", "10"]
     text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=COMMAND_S).stdout
     assert "actions       Discrete(1): heat" in text
@@ -150,9 +150,7 @@ def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> 
     subprocess.run([sys.executable, "-c", program], check=True, timeout=COMMAND_S)
 
 
-def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(
-    bundles: Path, tmp_path: Path
-) -> None:
+def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(bundles: Path, tmp_path: Path):
     deploy, bundle = tmp_path / "errand.yaml", bundles / "errand"
     deploy.write_text(f"aos: 1\nrobot: errand\nbundles: [{bundle}]\nmission: {{set: {{target: bob}}}}\n")
     for environment in (AosEnv(bundle, mission_values={"target": "bob"}), AosEnv(deploy)):
@@ -165,7 +163,7 @@ def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(
     ("action", "message"),
     [(-1, "no action -1: they are numbered from 0 to 0"), (1, "no action 1"), (0.5, "1 whole numbers")],
 )
-def test_an_action_that_there_is_not_is_refused(kettle: Path, action: float, message: str) -> None:
+def test_an_action_that_there_is_not_is_refused(kettle: Path, action: float, message: str):
     world = AosEnv(kettle)
     world.reset(seed=1)
     with pytest.raises(InvalidAction, match=message):
@@ -175,7 +173,7 @@ def test_an_action_that_there_is_not_is_refused(kettle: Path, action: float, mes
         world.step(0)
 
 
-def test_a_vector_takes_an_action_and_a_seed_for_each_world(kettle: Path) -> None:
+def test_a_vector_takes_an_action_and_a_seed_for_each_world(kettle: Path):
     worlds = AosVectorEnv(kettle, num_envs=2, max_episode_steps=1)
     with pytest.raises(ValueError, match="2 seeds are needed, one for each world, and not 3"):
         worlds.reset(seed=[1, 2, 3])
@@ -189,14 +187,14 @@ def test_a_vector_takes_an_action_and_a_seed_for_each_world(kettle: Path) -> Non
     worlds.close()
 
 
-def test_no_worlds_and_no_steps_are_refused(kettle: Path) -> None:
+def test_no_worlds_and_no_steps_are_refused(kettle: Path):
     with pytest.raises(ValueError, match="num_envs needs to be at least 1"):
         AosVectorEnv(kettle, num_envs=0)
     with pytest.raises(ValueError, match="max_episode_steps needs to be at least 1"):
         AosEnv(kettle, max_episode_steps=0)
 
 
-def test_a_traceback_tells_every_mistake_of_what_was_set(bundles: Path) -> None:
+def test_a_traceback_tells_every_mistake_of_what_was_set(bundles: Path):
     with pytest.raises(DeployError) as told:
         AosEnv(bundles / "bench" / "tiger", mission_values={"drnik": 1})
     shown = "".join(traceback.format_exception(told.value))
@@ -204,7 +202,7 @@ def test_a_traceback_tells_every_mistake_of_what_was_set(bundles: Path) -> None:
     assert "drnik" in shown
 
 
-def test_what_the_option_sets_wrongly_is_told_at_the_option(bundles: Path) -> None:
+def test_what_the_option_sets_wrongly_is_told_at_the_option(bundles: Path):
     command = [
         Path(sys.executable).parent / "aos",
         "gym",

@@ -70,7 +70,7 @@ def _push(bundle: Path, runs: Path) -> subprocess.CompletedProcess[str]:
 @pytest.mark.physics
 def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
     root: Path, deploy_file: Path, tmp_path: Path, picked: Path
-) -> None:
+):
     runs = tmp_path / "runs"
     broken = tmp_path / "broken"
     broken.mkdir()

@@ -6,7 +6,7 @@ from gateway import gateway, played
 from http_fuzz import fuzz
 
 
-def test_no_request_is_answered_by_a_servers_error(tmp_path: Path, cache_dir: Path) -> None:
+def test_no_request_is_answered_by_a_servers_error(tmp_path: Path, cache_dir: Path):
     run = played(tmp_path, cache_dir)
     with gateway(tmp_path, cache_dir) as served:
         found = fuzz(served, run.name, 1)

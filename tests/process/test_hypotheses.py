@@ -54,13 +54,13 @@ async def lost(engine: Engine, action: str, times: int = 1, ran: float = 0.5) ->
     return summary
 
 
-async def test_unobserved_ends_in_a_row_have_one_cause(lamps: Engine) -> None:
+async def test_unobserved_ends_in_a_row_have_one_cause(lamps: Engine):
     for count in range(1, 6):
         summary = await lost(lamps, "red")
         assert probability(summary, "red") == pytest.approx(0.5 * (1 - 0.5**count))
 
 
-async def test_what_is_observed_between_weighs_the_causes(lamps: Engine) -> None:
+async def test_what_is_observed_between_weighs_the_causes(lamps: Engine):
     await lost(lamps, "red")
     summary = (await lamps.update("see", "light")).summary
     # It ran and worked (1/4), it ran and did not work (1/4), or it did not run (1/2).
@@ -71,7 +71,7 @@ async def test_what_is_observed_between_weighs_the_causes(lamps: Engine) -> None
     assert never == pytest.approx(1 - ran_on - ran_off)
 
 
-async def test_an_observed_end_closes_the_row_of_its_skill_alone(lamps: Engine) -> None:
+async def test_an_observed_end_closes_the_row_of_its_skill_alone(lamps: Engine):
     await lost(lamps, "red")
     await lost(lamps, "blue")
     await lamps.update("red", "dark")
@@ -82,7 +82,7 @@ async def test_an_observed_end_closes_the_row_of_its_skill_alone(lamps: Engine) 
     assert probability(await lost(lamps, "blue"), "blue") == pytest.approx(0.5 * 0.75)
 
 
-async def test_the_cautious_belief_has_nothing_that_was_not_observed(lamps: Engine) -> None:
+async def test_the_cautious_belief_has_nothing_that_was_not_observed(lamps: Engine):
     assert (await lamps.summary()).cautious is None
     await lamps.update("blue", "done")
     summary = await lost(lamps, "red", times=3)
@@ -94,12 +94,12 @@ async def test_the_cautious_belief_has_nothing_that_was_not_observed(lamps: Engi
     assert update.probability == pytest.approx(0.4375 + 0.5625 / 2)
 
 
-async def test_an_end_that_changes_nothing_is_believed_to_have_changed_nothing(lamps: Engine) -> None:
+async def test_an_end_that_changes_nothing_is_believed_to_have_changed_nothing(lamps: Engine):
     before = await lamps.summary()
     assert await lost(lamps, "see", times=3) == before
 
 
-async def test_a_report_that_was_nonsense_refutes_nothing(lamps: Engine) -> None:
+async def test_a_report_that_was_nonsense_refutes_nothing(lamps: Engine):
     await lamps.update("red", "done")
     await lost(lamps, "blue", ran=0.999)
     for _ in range(4):
@@ -110,7 +110,7 @@ async def test_a_report_that_was_nonsense_refutes_nothing(lamps: Engine) -> None
         assert update.summary.cautious.goal_probability == 0
 
 
-async def test_what_only_the_cautious_belief_explains_is_believed(lamps: Engine) -> None:
+async def test_what_only_the_cautious_belief_explains_is_believed(lamps: Engine):
     summary = await lost(lamps, "press", ran=1.0)
     assert probability(summary, "red") == 1
     update = await lamps.update("check", "dark")
@@ -127,7 +127,7 @@ async def believed(engine: Engine) -> list[BeliefSummary]:
     return summaries
 
 
-async def test_hypotheses_outlive_the_engine(lamps: Engine) -> None:
+async def test_hypotheses_outlive_the_engine(lamps: Engine):
     await lost(lamps, "red")
     await lost(lamps, "blue", times=2)
     wanted = await lamps.export_beliefs()
@@ -137,7 +137,7 @@ async def test_hypotheses_outlive_the_engine(lamps: Engine) -> None:
     assert await lamps.export_beliefs() == wanted
 
 
-async def test_hypotheses_move_to_another_engine(cache_dir: Path) -> None:
+async def test_hypotheses_move_to_another_engine(cache_dir: Path):
     built = await built_text(LAMPS, cache_dir)
     async with engine_of(built) as old, engine_of(built) as new:
         await lost(old, "red")
@@ -150,7 +150,7 @@ async def test_hypotheses_move_to_another_engine(cache_dir: Path) -> None:
 @pytest.mark.parametrize("cautious", [False, True])
 async def test_a_search_may_do_without_a_skill_and_start_from_the_cautious_belief(
     lamps: Engine, cautious: bool
-) -> None:
+):
     await lamps.update("blue", "done")
     await lost(lamps, "red", ran=0.9)
     everything = await lamps.plan(seed=1, simulations=2000, planner="pomcp")

@@ -56,20 +56,20 @@ async def _mission(
     )
 
 
-async def test_the_step_limit_and_each_record_tell_that_nothing_happened(cache_dir: Path) -> None:
+async def test_the_step_limit_and_each_record_tell_that_nothing_happened(cache_dir: Path):
     state, around = await _mission("", MissionLimits(step_limit=7), cache_dir)
     assert state.ending == "step_limit"
     assert state.remark == f"the step limit of 7 is reached; the last 7 decisions {_SAID}"
     assert "which changes nothing and tells nothing" in around.decisions[0].why
 
 
-async def test_a_mission_that_may_stop_for_nothing_gives_up(cache_dir: Path) -> None:
+async def test_a_mission_that_may_stop_for_nothing_gives_up(cache_dir: Path):
     state, _around = await _mission("", MissionLimits(step_limit=9, stop_below_value=0), cache_dir)
     assert (state.ending, state.step) == ("nothing_worthwhile", 4)
     assert state.remark == f"the last 5 decisions {_SAID}"
 
 
-async def test_who_waits_for_what_happens_by_itself_is_not_idle(cache_dir: Path) -> None:
+async def test_who_waits_for_what_happens_by_itself_is_not_idle(cache_dir: Path):
     opens = "if (!state.is_open) state_.is_open = AOS.Bernoulli(0.3);"
     state, around = await _mission(opens, MissionLimits(step_limit=7, stop_below_value=0), cache_dir)
     assert state.ending == "step_limit"

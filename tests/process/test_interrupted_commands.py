@@ -28,7 +28,7 @@ DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 
 def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
     bundles: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     async def third_interrupted(*arguments: Any, **options: Any) -> SimulatedRun:
         if arguments[1].seed == 3:
             os.kill(os.getpid(), signal.SIGINT)
@@ -44,7 +44,7 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
 
 
 @pytest.mark.parametrize("program", ["aos", "aos-up"])
-def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path: Path, program: str) -> None:
+def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path: Path, program: str):
     (tmp_path / "typer.py").write_text("import sys\nprint('imports', flush=True)\nsys.stdin.read()\n")
     with subprocess.Popen(
         [Path(sys.executable).parent / program, "--help"],
@@ -64,7 +64,7 @@ def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path: Path, progra
 @pytest.mark.parametrize("keeps", [False, True], ids=["passing", "kept"])
 def test_ctrl_c_tells_after_how_many_missions_of_a_test(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keeps: bool
-) -> None:
+):
     play = ModelPlayer.play
 
     async def third_interrupted(player: ModelPlayer, seed: int) -> Trial:
@@ -83,7 +83,7 @@ def test_ctrl_c_tells_after_how_many_missions_of_a_test(
     assert done.stderr == f"aos: stopped in finer after 2 of its 5 missions; {after} from there\n"
 
 
-def test_ctrl_c_ends_a_calibration_while_it_computes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_ends_a_calibration_while_it_computes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     has_gone_on = False
 
     def interrupted(*arguments: Any) -> tuple[()]:

@@ -22,7 +22,7 @@ while True:
 """
 
 
-def test_every_row_that_was_acknowledged_survives_sigkill(tmp_path: Path) -> None:
+def test_every_row_that_was_acknowledged_survives_sigkill(tmp_path: Path):
     path = tmp_path / "journal.db"
     acknowledged = 0
     for kill_after in (1, 7, 30):

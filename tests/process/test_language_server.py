@@ -106,7 +106,7 @@ async def editor() -> AsyncIterator[Editor]:
 
 async def test_a_mistake_is_shown_at_its_word_and_goes_when_the_text_is_mended_unsaved(
     editor: Editor, bundle: Path
-) -> None:
+):
     skill = bundle / "press.sd"
     broken = SKILL.replace("state__.is_lit = AOS", "/* 💡 */ state__.is_let = AOS")
     skill.write_text(broken)
@@ -123,7 +123,7 @@ async def test_a_mistake_is_shown_at_its_word_and_goes_when_the_text_is_mended_u
     assert skill.read_text() == broken
 
 
-async def test_an_edit_in_one_file_is_checked_against_the_others(editor: Editor, bundle: Path) -> None:
+async def test_an_edit_in_one_file_is_checked_against_the_others(editor: Editor, bundle: Path):
     environment = bundle / "lamp.ef"
     editor.open(environment)
     editor.change(environment, ENVIRONMENT.replace("is_lit", "is_on"))
@@ -132,9 +132,7 @@ async def test_an_edit_in_one_file_is_checked_against_the_others(editor: Editor,
     assert {finding.range.start.line for finding in found} == {3, 4}
 
 
-async def test_words_are_coloured_explained_and_completed_and_sections_listed(
-    editor: Editor, bundle: Path
-) -> None:
+async def test_words_are_coloured_explained_and_completed_and_sections_listed(editor: Editor, bundle: Path):
     environment, skill = bundle / "lamp.ef", bundle / "press.sd"
     for path, text, expected in (
         (
@@ -200,7 +198,7 @@ def place(location: types.Location) -> tuple[str, int, int]:
 
 async def test_names_lead_to_their_declaration_and_all_their_uses_and_are_renamed_in_all_files(
     editor: Editor, bundle: Path
-) -> None:
+):
     skill, environment = bundle / "press.sd", bundle / "lamp.ef"
     editor.open(skill)
     asked = at(skill, SKILL, "is_lit")
@@ -252,7 +250,7 @@ async def test_names_lead_to_their_declaration_and_all_their_uses_and_are_rename
     assert (bundle / "press.am").read_text() == MAPPING
 
 
-def test_an_editor_that_closes_the_server_gets_exit_code_0() -> None:
+def test_an_editor_that_closes_the_server_gets_exit_code_0():
     asked = [{"id": 1, "method": "initialize", "params": {"capabilities": {}}}]
     asked += [{"id": 2, "method": "shutdown"}, {"method": "exit"}]
     texts = [json.dumps({"jsonrpc": "2.0", **each}) for each in asked]
@@ -271,7 +269,7 @@ def words_of(data: Sequence[int], lines: list[str]) -> set[tuple[str, str]]:
     return words
 
 
-async def test_a_hint_that_knows_the_mend_is_a_quick_fix(editor: Editor, bundle: Path) -> None:
+async def test_a_hint_that_knows_the_mend_is_a_quick_fix(editor: Editor, bundle: Path):
     skill = bundle / "press.sd"
     broken = SKILL.replace("state__.is_lit =", "state__.is_let =")
     skill.write_text(broken)
@@ -291,7 +289,7 @@ async def test_a_hint_that_knows_the_mend_is_a_quick_fix(editor: Editor, bundle:
     assert [*action.edit.changes[skill.as_uri()]] == [types.TextEdit(found.range, "is_lit")]
 
 
-async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: Path, tmp_path: Path) -> None:
+async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: Path, tmp_path: Path):
     stray = tmp_path / "package.json"
     stray.write_text("{}")
     editor.open(stray)

@@ -60,7 +60,7 @@ async def engine(cache_dir: Path) -> AsyncIterator[Engine]:
         yield engine
 
 
-async def test_a_killed_engine_comes_back_with_a_large_belief(engine: Engine) -> None:
+async def test_a_killed_engine_comes_back_with_a_large_belief(engine: Engine):
     before = (await engine.update("read", "yes")).summary
     for _ in range(2):
         await kill_engine(engine.pid)
@@ -70,7 +70,7 @@ async def test_a_killed_engine_comes_back_with_a_large_belief(engine: Engine) ->
         before = (await engine.update("read", "no")).summary
 
 
-async def test_a_correction_keeps_what_is_known_of_the_error(engine: Engine) -> None:
+async def test_a_correction_keeps_what_is_known_of_the_error(engine: Engine):
     before = await engine.summary()
     update = await engine.update("read", "yes", {"number": "7"})
     assert update.remark == ""
@@ -81,7 +81,7 @@ async def test_a_correction_keeps_what_is_known_of_the_error(engine: Engine) -> 
 
 async def test_a_belief_goes_over_in_pieces_to_documents_with_other_constants(
     engine: Engine, cache_dir: Path
-) -> None:
+):
     before = (await engine.update("read", "yes")).summary
     belief = await engine.export_belief()
     assert sum(len(state) for _, state in belief.particles) > ANSWER_LIMIT_BYTES
@@ -97,7 +97,7 @@ async def test_a_belief_goes_over_in_pieces_to_documents_with_other_constants(
     assert (back.states, back.error_bound) == (before.states, before.error_bound)
 
 
-async def test_of_many_values_the_likeliest_are_told_and_the_rest_summed_up(engine: Engine) -> None:
+async def test_of_many_values_the_likeliest_are_told_and_the_rest_summed_up(engine: Engine):
     marginals = {marginal.variable: marginal for marginal in (await engine.summary()).marginals}
     codes = marginals["code"]
     assert len(codes.values) == 16

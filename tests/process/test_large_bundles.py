@@ -19,12 +19,12 @@ def marginal(belief: BeliefSummary, name: str) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("files", [many_variables(VARIABLES), long_array(ELEMENTS)], ids=["many", "long"])
-def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]) -> None:
+def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]):
     found = load_files(encoded(files)).diagnostics
     assert {finding.code for finding in found} <= {"AOS139"}  # There is no goal.
 
 
-async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path) -> None:
+async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path):
     async with engine_of_text(many_variables(VARIABLES), cache_dir) as engine:
         belief = (await engine.update("act(at=2)", "one")).summary
         again = (await engine.update("act(at=1)", "one")).summary
@@ -39,7 +39,7 @@ async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path) -> 
     assert taken_over == again
 
 
-async def test_a_long_array_is_believed_element_by_element(cache_dir: Path) -> None:
+async def test_a_long_array_is_believed_element_by_element(cache_dir: Path):
     async with engine_of_text(long_array(ELEMENTS, drawn=5), cache_dir) as engine:
         belief = (await engine.update("act(at=1)", "one")).summary
         plan = await engine.plan(simulations=50, seed=1, planner="pomcp")

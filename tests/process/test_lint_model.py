@@ -93,7 +93,7 @@ def _place(span: dict[str, Any]) -> str:
 
 def test_a_fault_of_model_code_names_its_document_line(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     """A compiler that does not check divisions derives that `left` is 1; others: test_fault_statements."""
     code = "int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;"
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
@@ -120,7 +120,7 @@ REACHED = [
 )
 def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, code: str, error_code: str
-) -> None:
+):
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     severity, place, _ = linted(hall(code), exit_code=1)[error_code]
     assert (severity, place) == ("error", "walk.sd:5")
@@ -128,7 +128,7 @@ def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
 
 def test_steps_that_take_long_and_end_are_a_warning(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     # Each turn needs the one before, so that no compiler makes several at once.
     slow = "int s = 0; for (int i = 0; i < 200000000; i++) s = (5 * s + (i ^ state.place)) % 7;\n"
@@ -139,21 +139,21 @@ def test_steps_that_take_long_and_end_are_a_warning(
 
 def test_steps_that_wait_for_a_processor_are_not_slow(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     waiting = "timespec pause{0, 300'000'000}; nanosleep(&pause, nullptr);\n"
     assert linted(hall(waiting + STEP)) == {}
 
 
 @pytest.mark.parametrize("draw", ["", "state__.place += AOS.SampleUniform(0, 1) > 2;\n"])
-def test_a_loop_that_no_draw_ends_is_a_warning(hall: Callable[..., Path], draw: str) -> None:
+def test_a_loop_that_no_draw_ends_is_a_warning(hall: Callable[..., Path], draw: str):
     loop = "while (state.place > 0) { if (AOS.Bernoulli(0.5) && state.place > 1) break; }"
     severity, place, hint = linted(hall(draw + STEP + loop))["AOS211"]
     assert (severity, place) == ("warning", f"walk.sd:{5 + bool(draw)}")
     assert hint.startswith("Such a step ends the mission as a failure")
 
 
-def test_a_loop_that_chance_ends_is_no_error(hall: Callable[..., Path]) -> None:
+def test_a_loop_that_chance_ends_is_no_error(hall: Callable[..., Path]):
     loop = "while (AOS.Bernoulli(0.5) || AOS.Bernoulli(0.999)) {}"
     assert "AOS211" not in linted(hall(STEP + loop))
 
@@ -175,7 +175,7 @@ state__.place = sum(sum, std::integral_constant<int, 16>{}, std::integral_consta
 """A hundred thousand functions, none of them deep."""
 
 
-def test_templates_that_recurse_deeply_are_refused_at_their_line(hall: Callable[..., Path]) -> None:
+def test_templates_that_recurse_deeply_are_refused_at_their_line(hall: Callable[..., Path]):
     # Gcc tells where the function calls itself, clang where it begins.
     line = 6 if asyncio.run(find_compiler()).family == "gcc" else 4
     assert linted(hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == f"walk.sd:{line}"
@@ -183,7 +183,7 @@ def test_templates_that_recurse_deeply_are_refused_at_their_line(hall: Callable[
 
 def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setattr(building, "MODEL_CPU_S", 1.0)
     monkeypatch.setattr(building, "ENGINE_SHARE", 0.0)
     folder = hall(BRANCHING)
@@ -192,7 +192,7 @@ def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
 
 def test_a_model_whose_goal_and_doors_can_be_reached_is_clean_and_its_documents_are_lowered_once(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     calls: Counter[str] = Counter()
 
     def counted(module: ModuleType, name: str) -> None:
@@ -212,15 +212,13 @@ def test_a_model_whose_goal_and_doors_can_be_reached_is_clean_and_its_documents_
     assert calls == {"load_files": 1, "lower": 1, "emit": 1}
 
 
-def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_extent(
-    hall: Callable[..., Path],
-) -> None:
+def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_extent(hall: Callable[..., Path]):
     found = linted(hall("state__.place = (state.place + 1) % 5;", goal="7", door="6"))
     extent = "Looked at all that can be reached, 5 states, up to 4 actions from the start"
     assert found == {"AOS132": ("warning", "hall.ef:10", extent), "AOS131": ("warning", "open.sd:4", extent)}
 
 
-def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(hall: Callable[..., Path]) -> None:
+def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(hall: Callable[..., Path]):
     found = linted(hall("state__.place = state.place + 1;", goal="-1", door="-1"))
     assert found.keys() == {"AOS132"}
     severity, place, hint = found["AOS132"]
@@ -228,14 +226,12 @@ def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(hall: 
     assert hint.startswith("Looked at 1")
 
 
-def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(hall: Callable[..., Path]) -> None:
+def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(hall: Callable[..., Path]):
     widens = "state__.place = state.place * 400 + AOS.SampleDiscrete(vector<double>(400, 0.0025));"
     assert linted(hall(widens, goal="64000000", door="-1")) == {}
 
 
-def test_an_initial_belief_that_cannot_be_enumerated_is_no_reason_for_remarks(
-    hall: Callable[..., Path],
-) -> None:
+def test_an_initial_belief_that_cannot_be_enumerated_is_no_reason_for_remarks(hall: Callable[..., Path]):
     folder = hall("state__.place = state.place;", goal="-1", door="-1")
     environment = folder / "hall.ef"
     drawn = "state.place = AOS.SampleNormal(0, 1) > 0;"

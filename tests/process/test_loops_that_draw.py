@@ -69,7 +69,7 @@ __moduleResponse = yes;
 """
 
 
-async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir: Path) -> None:
+async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir: Path):
     files = {"loops.ef": ENVIRONMENT}
     for name, (loop, _) in LOOPS.items():
         files |= {f"{name}.sd": SKILL.format(loop=loop)}
@@ -133,7 +133,7 @@ __moduleResponse = placed;
 """
 
 
-async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_dir: Path) -> None:
+async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_dir: Path):
     files = {"slots.ef": SLOTS, "place.sd": PLACE}
     async with engine_of_text(files, cache_dir) as engine:
         # The reward before the loop is not earned.
@@ -149,7 +149,7 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
         assert "state.is_full[Left]=true, state.is_full[Right]=true" in loop.state
 
 
-async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision(cache_dir: Path) -> None:
+async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision(cache_dir: Path):
     files = {"slots.ef": SLOTS, "place.sd": PLACE}
     async with engine_of_text(files, cache_dir) as engine:
         chooser = Chooser(
@@ -161,7 +161,7 @@ async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decisi
     assert [why.count("place.sd:9:1: this loop never ends in") for why in whys] == [1, 0]
 
 
-async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path) -> None:
+async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path):
     files = {"loops.ef": ENVIRONMENT, "turn.sd": ENDLESS}
     with pytest.raises(ModelError) as raised:
         async with engine_of_text(files, cache_dir) as engine:

@@ -64,7 +64,7 @@ async def works(evaluator: Evaluator) -> bool:
     return await evaluator.begin({}) == {}
 
 
-async def test_an_activation_goes_through_the_worker(evaluator: Start) -> None:
+async def test_an_activation_goes_through_the_worker(evaluator: Start):
     mapping = evaluator(
         HEAD
         + """\
@@ -93,7 +93,7 @@ return abs(goal_x - __input.data)
     assert observed.local_variables == {"goal_x": "2.0", "success": "true", "distance": "0.5"}
 
 
-async def test_an_exception_names_the_documents_line_and_the_worker_goes_on(evaluator: Start) -> None:
+async def test_an_exception_names_the_documents_line_and_the_worker_goes_on(evaluator: Start):
     mapping = evaluator(RESULT + "value = 1\nvalue = __input.sucess\n")
     fault = await fault_of(mapping, {"success": True})
     pid = mapping.pid
@@ -106,7 +106,7 @@ async def test_an_exception_names_the_documents_line_and_the_worker_goes_on(eval
 
 
 @pytest.mark.parametrize("code", ["while True:\n    pass", "len(str(7 ** 10 ** 8))"])
-async def test_code_that_does_not_finish_is_stopped_at_its_line(evaluator: Start, code: str) -> None:
+async def test_code_that_does_not_finish_is_stopped_at_its_line(evaluator: Start, code: str):
     mapping = evaluator(RESULT + f"{code}\nvalue = 1\n", evaluation_s=1.0)
     fault = await fault_of(mapping)
     assert fault.code == "AOS403"
@@ -115,7 +115,7 @@ async def test_code_that_does_not_finish_is_stopped_at_its_line(evaluator: Start
     assert await works(mapping)
 
 
-async def test_a_topics_endless_loop_is_stopped_at_its_line(evaluator: Start) -> None:
+async def test_a_topics_endless_loop_is_stopped_at_its_line(evaluator: Start):
     mapping = evaluator(
         HEAD + "local_variable: level\ntopic: /level\nmessage_type: Int\ncode:\nwhile __input.x:\n    pass\n",
         evaluation_s=1.0,
@@ -128,7 +128,7 @@ async def test_a_topics_endless_loop_is_stopped_at_its_line(evaluator: Start) ->
     assert fault.value.diagnostics[0].span.line in (8, 9)
 
 
-async def test_a_crash_names_the_documents_line(evaluator: Start) -> None:
+async def test_a_crash_names_the_documents_line(evaluator: Start):
     mapping = evaluator(RESULT + "import ctypes\nctypes.string_at(0)\nvalue = 1\n")
     fault = await fault_of(mapping)
     assert fault.code == "AOS401"
@@ -138,16 +138,14 @@ async def test_a_crash_names_the_documents_line(evaluator: Start) -> None:
 
 
 @pytest.mark.parametrize("code", ["os._exit(0)", "os.kill(os.getpid(), 9)", "os.closerange(3, 64)"])
-async def test_code_that_ends_its_process_is_a_fault_and_a_new_worker_is_started(
-    evaluator: Start, code: str
-) -> None:
+async def test_code_that_ends_its_process_is_a_fault_and_a_new_worker_is_started(evaluator: Start, code: str):
     mapping = evaluator(RESULT + f"import os\n{code}\nvalue = 1\n")
     fault = await fault_of(mapping)
     assert fault.code == "AOS401"
     assert await works(mapping)
 
 
-async def test_a_killed_worker_is_replaced_for_the_next_activation(evaluator: Start) -> None:
+async def test_a_killed_worker_is_replaced_for_the_next_activation(evaluator: Start):
     mapping = evaluator(RESULT + "value = 1\n")
     await mapping.begin({})
     assert mapping.pid is not None
@@ -161,7 +159,7 @@ async def test_a_killed_worker_is_replaced_for_the_next_activation(evaluator: St
     assert (await mapping.finish({})).response == "done"
 
 
-async def test_a_frozen_worker_is_no_fault_of_the_code_and_is_replaced(evaluator: Start) -> None:
+async def test_a_frozen_worker_is_no_fault_of_the_code_and_is_replaced(evaluator: Start):
     mapping = evaluator(RESULT + "value = 1\n", evaluation_s=3.0)
     await mapping.begin({})
     assert mapping.pid is not None
@@ -173,14 +171,14 @@ async def test_a_frozen_worker_is_no_fault_of_the_code_and_is_replaced(evaluator
     await mapping.finish({})
 
 
-async def test_memory_beyond_the_limit_is_an_exception(evaluator: Start) -> None:
+async def test_memory_beyond_the_limit_is_an_exception(evaluator: Start):
     mapping = evaluator(RESULT + "value = 'a' * (1 << 30)\n", address_space_bytes=512 * 1024**2)
     fault = await fault_of(mapping)
     assert "MemoryError" in str(fault)
     assert fault.diagnostics[0].span.line == RESULT_LINE
 
 
-async def test_a_module_that_cannot_be_loaded_names_the_import(evaluator: Start) -> None:
+async def test_a_module_that_cannot_be_loaded_names_the_import(evaluator: Start):
     mapping = evaluator(HEAD.replace("path:", "imports: import: no_such_module_at_all\npath:"))
     with pytest.raises(MappingFault, match="No module named 'no_such_module_at_all'") as fault:
         await mapping.start()
@@ -188,16 +186,14 @@ async def test_a_module_that_cannot_be_loaded_names_the_import(evaluator: Start)
     assert mapping.pid is None
 
 
-async def test_what_cannot_be_sent_is_refused_with_its_type(evaluator: Start) -> None:
+async def test_what_cannot_be_sent_is_refused_with_its_type(evaluator: Start):
     mapping = evaluator(HEAD + "parameter: a\ncode:\nobject()\n")
     assert "a value of type object is no plain data" in str(await fault_of(mapping))
     mapping = evaluator(HEAD + "parameter: a\ncode:\n2 ** 80\n")
     assert (await fault_of(mapping)).code == "AOS401"
 
 
-async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(
-    evaluator: Start, tmp_path: Path
-) -> None:
+async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(evaluator: Start, tmp_path: Path):
     code = "import os, sys\nprint('from print')\nsys.stdout.write('from write ')\n"
     code += "os.write(1, b'from descriptor')\nvalue = sys.stdin.read()\n"
     mapping = evaluator(RESULT + code)
@@ -207,7 +203,7 @@ async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(
     assert printed == "from print\nfrom write from descriptor"
 
 
-async def test_a_flood_of_prints_is_cut_off_and_harms_nothing(evaluator: Start, tmp_path: Path) -> None:
+async def test_a_flood_of_prints_is_cut_off_and_harms_nothing(evaluator: Start, tmp_path: Path):
     mapping = evaluator(RESULT + "print('x' * 700_000)\nprint('y' * 700_000)\nprint('z')\nvalue = 1\n")
     await mapping.begin({})
     assert (await mapping.finish({})).response == "done"
@@ -216,7 +212,7 @@ async def test_a_flood_of_prints_is_cut_off_and_harms_nothing(evaluator: Start, 
     assert printed.endswith("(the rest is left out)\n")
 
 
-async def test_a_cancelled_evaluation_leaves_no_answer_for_the_next(evaluator: Start) -> None:
+async def test_a_cancelled_evaluation_leaves_no_answer_for_the_next(evaluator: Start):
     mapping = evaluator(RESULT + "import time\ntime.sleep(__input.s)\nvalue = 1\n")
     await mapping.begin({})
     with pytest.raises(TimeoutError):
@@ -226,7 +222,7 @@ async def test_a_cancelled_evaluation_leaves_no_answer_for_the_next(evaluator: S
     assert (await mapping.finish({"s": 0})).response == "done"
 
 
-async def test_mapping_code_starts_no_process(evaluator: Start, tmp_path: Path) -> None:
+async def test_mapping_code_starts_no_process(evaluator: Start, tmp_path: Path):
     code = "import subprocess\nvalue = subprocess.Popen(['sleep', '600'], start_new_session=True).pid\n"
     mapping = evaluator(RESULT + code)
     await mapping.begin({})
@@ -234,7 +230,7 @@ async def test_mapping_code_starts_no_process(evaluator: Start, tmp_path: Path) 
         await mapping.finish({})
 
 
-def test_a_worker_whose_middleware_was_killed_ends_without_a_word() -> None:
+def test_a_worker_whose_middleware_was_killed_ends_without_a_word():
     heard_by_nobody, answers = os.pipe()
     os.close(heard_by_nobody)
     worker = subprocess.run(
@@ -258,7 +254,7 @@ def test_a_worker_whose_middleware_was_killed_ends_without_a_word() -> None:
 )
 async def test_code_that_answers_in_the_place_of_its_worker_is_a_fault_of_the_mapping(
     evaluator: Start, answer: str
-) -> None:
+):
     code = f"""import os
 frame = {answer}
 for pipe in range(3, 16):

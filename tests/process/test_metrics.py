@@ -31,7 +31,7 @@ def resumed(run: Path, cache_dir: Path) -> Iterator[None]:
         yield
 
 
-def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cache_dir: Path) -> None:
+def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cache_dir: Path):
     write_long_run(tmp_path / "runs", 2)
     with gateway(tmp_path, cache_dir) as served:
         assert served.ask("/metrics").status == 404
@@ -65,7 +65,7 @@ def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cac
         assert 'aos_missions_running{robot="tiger"}' not in over
 
 
-def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path, cache_dir: Path) -> None:
+def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path, cache_dir: Path):
     with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir, "--metrics") as served:
         assert samples(served)['aos_missions_running{robot="tiger"}'] == 1
         os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
@@ -81,7 +81,7 @@ def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path
 
 def test_a_run_that_was_taken_up_and_stopped_between_two_questions_is_counted_once(
     tmp_path: Path, cache_dir: Path
-) -> None:
+):
     killed, cancelled = (
         f'aos_missions_total{{robot="tiger",ending="{end}"}}' for end in ("killed", "cancelled")
     )

@@ -28,7 +28,7 @@ async def finer(bundles: Path, cache_dir: Path) -> BuiltModel:
     return await built_bundle(bundles / "armadillo-finer", cache_dir)
 
 
-async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(finer: BuiltModel) -> None:
+async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(finer: BuiltModel):
     _, around = await run_mission(finer, timed_out, limits=MissionLimits(step_limit=1))
     decision, outcome = around.records
     assert decision.action == "navigate(destination=easy_table)"
@@ -43,7 +43,7 @@ async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(fine
     ]
 
 
-async def test_a_robot_that_never_answers_ends_the_mission_with_what_to_look_at(finer: BuiltModel) -> None:
+async def test_a_robot_that_never_answers_ends_the_mission_with_what_to_look_at(finer: BuiltModel):
     state, _ = await run_mission(finer, timed_out)
     assert (state.phase, state.ending) == ("ended", "skills_failed")
     assert state.remark.startswith("nothing is left that is worth doing: ")
@@ -53,7 +53,7 @@ async def test_a_robot_that_never_answers_ends_the_mission_with_what_to_look_at(
     )
 
 
-async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) -> None:
+async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return timed_out(request) if request.id.step == 1 else observed(request, ANSWERS[request.skill])
 
@@ -69,7 +69,7 @@ async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) ->
     assert set(statuses[1:]) == {"observed"}
 
 
-async def test_an_update_that_takes_longer_than_a_decision_tells_why(finer: BuiltModel) -> None:
+async def test_an_update_that_takes_longer_than_a_decision_tells_why(finer: BuiltModel):
     search = Search(simulations=1, seed=1, time_s=1e-9)
     _, around = await run_mission(finer, good, search=search, limits=MissionLimits(step_limit=1))
     over, _, counts = around.records[-1].remark.partition(", more than a decision's 1e-09 s: ")
@@ -85,7 +85,7 @@ def statuses(around: Surroundings) -> list[str]:
     return [record.outcome.status for record in around.records if record.outcome]
 
 
-async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_says(finer: BuiltModel) -> None:
+async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_says(finer: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return jammed(request) if request.skill == "pick" and request.id.step < 4 else good(request)
 
@@ -98,7 +98,7 @@ async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_say
     assert state.ending == "goal"
 
 
-async def test_a_skill_that_may_not_fail_ends_the_mission_and_is_named(finer: BuiltModel) -> None:
+async def test_a_skill_that_may_not_fail_ends_the_mission_and_is_named(finer: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return jammed(request) if request.skill == "pick" else good(request)
 
@@ -111,7 +111,7 @@ async def test_a_skill_that_may_not_fail_ends_the_mission_and_is_named(finer: Bu
     )
 
 
-async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel) -> None:
+async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel):
     def robot(request: Activate) -> Outcome:
         return jammed(request) if request.id.step == 2 else good(request)
 
@@ -124,7 +124,7 @@ async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel) -
     assert state.ending == "goal"
 
 
-async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltModel) -> None:
+async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltModel):
     def robot(request: Activate) -> Outcome:
         fault = Fault("AOS505", "nobody is there")
         return Outcome(request.id, request.skill, "refused", fault=fault)
@@ -134,7 +134,7 @@ async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltMo
     assert outcome.belief.marginals == decision.belief.marginals
 
 
-async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: BuiltModel) -> None:
+async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: BuiltModel):
     around = Surroundings(good)
     around.unavailable = {"navigate": "its adapter has left"}
     await run_mission(finer, good, limits=MissionLimits(step_limit=2), around=around)
@@ -194,9 +194,7 @@ def done(request: Activate) -> Outcome:
     return observed(request, "done")
 
 
-async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can_run(
-    field: BuiltModel,
-) -> None:
+async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can_run(field: BuiltModel):
     around = Surroundings(done)
     around.unavailable = {"flood": "its adapter has left"}
     state, _ = await run_mission(field, done, limits=MissionLimits(step_limit=20), around=around)
@@ -206,9 +204,7 @@ async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can
     assert state.ending == "goal"
 
 
-async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_is_chosen(
-    field: BuiltModel,
-) -> None:
+async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_is_chosen(field: BuiltModel):
     def robot(request: Activate) -> Outcome:
         if len(waits) == 0 and request.skill == "drive":
             around.unavailable = {"flood": "its adapter has left"}
@@ -230,9 +226,7 @@ async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_
     assert [made.is_dropped for made in around.decisions[1].searches] == [True, False]
 
 
-async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for_any_more(
-    field: BuiltModel,
-) -> None:
+async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for_any_more(field: BuiltModel):
     around = Surroundings(done)
     around.unavailable = {"flood": "its adapter has left"}
     around.announced = dict.fromkeys(FIELD_SKILLS, 1)
@@ -247,7 +241,7 @@ async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for
 
 async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(
     field: BuiltModel, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     async def until_changed(timeout_s: float) -> None:
         around.mission.steer(Steer("stop", by="ana"))
         await asyncio.Event().wait()  # Only a stop ends it.
@@ -261,7 +255,7 @@ async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(
     assert state.ending == "cancelled"
 
 
-async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over(cache_dir: Path) -> None:
+async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over(cache_dir: Path):
     spray = "state__.is_sprayed = true;"
     skills = {"inspect": "__reward = 0;", "spray": spray}
     environment = FIELD.replace("field", "row").replace("is_watered", "is_sprayed")
@@ -280,7 +274,7 @@ async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_
 
 async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_no_step_is_spent(
     field: BuiltModel,
-) -> None:
+):
     def come_back() -> None:
         around.unavailable = {}
 
@@ -294,7 +288,7 @@ async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_n
     assert skills[:8] == [*["drive"] * 7, "flood"]
 
 
-async def test_a_mission_does_not_hold_for_ever(finer: BuiltModel) -> None:
+async def test_a_mission_does_not_hold_for_ever(finer: BuiltModel):
     around = Surroundings(good)
     around.unavailable = dict.fromkeys(ANSWERS, "its adapter has left")
     state, _ = await run_mission(finer, good, around=around, hold_s=0.01)

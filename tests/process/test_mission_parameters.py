@@ -48,7 +48,7 @@ def with_constant(bundle: Path, person: str) -> dict[str, str]:
     return files
 
 
-async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Path, cache_dir: Path) -> None:
+async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Path, cache_dir: Path):
     built = await built_bundle(bundles / "errand", cache_dir)
     async with engine_of(built) as engine:
         pids = set()
@@ -69,7 +69,7 @@ async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Pa
 
 async def test_an_engine_that_is_killed_comes_back_with_its_values_and_its_belief(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     built = await built_bundle(bundles / "errand", cache_dir)
     async with engine_of(msgspec.structs.replace(built, mission_values={"target": "bob"})) as engine:
         await engine.update("look", "nobody")
@@ -130,7 +130,7 @@ if (state.dock.near == soda) __reward += 1000;
 )
 async def test_defaults_and_initial_values_follow_from_what_is_set(
     cache_dir: Path, options: list[str], value: float
-) -> None:
+):
     values = tuple(map(mission_value_of_option, options))
     project = msgspec.structs.replace(text_project(PARTS), mission_values=values)
     built = await build_project(project, cache_dir)
@@ -161,7 +161,7 @@ def errand(bundles: Path, **replaced: str) -> Project:
 
 async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     shelf = Shelf(cache_dir)
     await shelf.make(ProjectRevision(1, "", errand(bundles)))
     running = await shelf.first()
@@ -181,7 +181,7 @@ async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values
 
 async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_seen(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     shelf = Shelf(cache_dir, "target=bob")
     await shelf.make(ProjectRevision(1, "", errand(bundles)))
     running = await shelf.first()
@@ -206,7 +206,7 @@ async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_s
     assert newest.model.engine.description.mission_parameters == {"target": "bob"}
 
 
-async def test_documents_without_the_value_that_was_set_are_refused(bundles: Path, cache_dir: Path) -> None:
+async def test_documents_without_the_value_that_was_set_are_refused(bundles: Path, cache_dir: Path):
     shelf = Shelf(cache_dir, "target=bob")
     await shelf.make(ProjectRevision(1, "", errand(bundles)))
     running = await shelf.first()
@@ -216,7 +216,7 @@ async def test_documents_without_the_value_that_was_set_are_refused(bundles: Pat
     await shelf.close()
 
 
-async def test_values_are_for_all_bundles_of_a_start_together(bundles: Path, cache_dir: Path) -> None:
+async def test_values_are_for_all_bundles_of_a_start_together(bundles: Path, cache_dir: Path):
     shelf = Shelf(cache_dir, "whom=bob")
     try:
         assert await shelf.check(errand(bundles), None) == ()
@@ -229,7 +229,7 @@ async def test_values_are_for_all_bundles_of_a_start_together(bundles: Path, cac
         await shelf.close()
 
 
-def test_commands_take_values_and_a_policy_is_for_its_own(bundles: Path, tmp_path: Path) -> None:
+def test_commands_take_values_and_a_policy_is_for_its_own(bundles: Path, tmp_path: Path):
     bundle, policy = str(bundles / "errand"), str(tmp_path / "bob.policy")
 
     def run(*arguments: str) -> object:
@@ -272,7 +272,7 @@ tests:
 def test_missions_of_a_test_file_have_its_values_or_the_commands(
     root: Path, tmp_path: Path,
     options: tuple[str, ...], person: str, status: int,
-) -> None:  # fmt: skip
+):  # fmt: skip
     file = tmp_path / "missions.yaml"
     file.write_text(MISSIONS.format(deploy=root / "deploy" / "errand.yaml", person=person))
     assert aos("test", file, *options).exit_code == status
@@ -291,7 +291,7 @@ def give(call, to):
 
 def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_its_command(
     root: Path, tmp_path: Path
-) -> None:
+):
     (tmp_path / "robot.py").write_text(SLOW_GIVE)
     text = (root / "deploy" / "errand.yaml").read_text()
     text = text.replace("[bundles/errand]", f"[{root}/deploy/bundles/errand]")

@@ -26,7 +26,7 @@ tests:
 """
 
 
-def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path) -> None:
+def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path):
     missions, junit = tmp_path / "missions.yaml", tmp_path / "junit.xml"
     missions.write_text(MISSIONS)
 
@@ -81,7 +81,7 @@ LOSSY_CLAIMS = {
 }
 
 
-def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(tmp_path: Path) -> None:
+def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(tmp_path: Path):
     (tmp_path / "robot.yaml").write_text(LOSSY_ROBOT)
     tests = [
         LOSSY_TEST.format(name=fault.replace(".", "-"), fault=fault, claim=claim)

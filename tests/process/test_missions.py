@@ -152,7 +152,7 @@ def stays(root: Path, tmp_path: Path) -> Iterator[System]:
         yield system
 
 
-async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> None:
+async def test_missions_follow_one_another_and_are_told_apart(stays: System):
     stays.be_slow(True)
     first = stays.until("mission", phase="acting")["mission"]
     name = stays.run.name
@@ -203,7 +203,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> 
 
 async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_has_the_same_belief(
     root: Path, stays: System
-) -> None:
+):
     stays.until("mission", phase="ended")
     kill(stays.record["pids"]["solver"])
     stays.until("service", service="solver", state="ready")
@@ -232,7 +232,7 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
     assert check_run(run).violations == []
 
 
-def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays(stays: System) -> None:
+def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays(stays: System):
     stays.be_slow(True)
     stays.until("mission", phase="acting", step=1)
     removed = stays.aos("bundle", "rm", "tiger", "listen")
@@ -249,7 +249,7 @@ def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays
     assert stays.interrupt() == 0
 
 
-async def test_the_next_mission_has_other_parameters_and_newer_documents(root: Path, tmp_path: Path) -> None:
+async def test_the_next_mission_has_other_parameters_and_newer_documents(root: Path, tmp_path: Path):
     files = {path.name: path.read_bytes() for path in (root / "deploy/bundles/errand").iterdir()}
     files["look.sd"] = files["look.sd"].replace(b"__reward = -1;", b"__reward = -2;")
     with up(root, tmp_path, "errand.yaml") as system:

@@ -106,7 +106,7 @@ class Slowed:
 
 async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_lost_nor_left_running(
     cache_dir: Path,
-) -> None:
+):
     async with workshop(cache_dir) as made:
         running = await running_lamp(made)
         belief = await running.engine.export_belief()
@@ -129,7 +129,7 @@ async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_l
         assert (await newest.engine.export_belief()).particles == belief.particles
 
 
-async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cache_dir: Path) -> None:
+async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cache_dir: Path):
     async with workshop(cache_dir) as made:
         for revision in (1, 2):
             await made.shelf.make(lamp(revision))
@@ -139,7 +139,7 @@ async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cach
         assert made.living == made.engines[1:]
 
 
-async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for(cache_dir: Path) -> None:
+async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for(cache_dir: Path):
     async with workshop(cache_dir) as made:
         made.mapped.remove(2)
         running = await running_lamp(made)
@@ -149,7 +149,7 @@ async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for(cac
         assert (await made.taken(running)).revision == 2
 
 
-async def test_a_revision_that_cannot_import_the_belief_replays_the_mission_instead(cache_dir: Path) -> None:
+async def test_a_revision_that_cannot_import_the_belief_replays_the_mission_instead(cache_dir: Path):
     async with workshop(cache_dir) as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
@@ -170,9 +170,7 @@ async def refuse(_: ExportedBeliefs) -> BeliefSummary:
     raise ModelError("the state does not fit")
 
 
-async def test_a_shelf_that_ends_while_a_revision_waits_for_its_place_leaves_no_engine(
-    cache_dir: Path,
-) -> None:
+async def test_a_shelf_that_ends_while_a_revision_waits_for_its_place_leaves_no_engine(cache_dir: Path):
     async with workshop(cache_dir) as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))

@@ -97,7 +97,7 @@ def assert_is(summary: BeliefSummary, belief: Belief, *, within: float = 1e-12) 
 # --- beliefs ---
 
 
-async def test_the_belief_is_the_posterior_of_the_step_and_of_what_the_monitor_says(engine: Engine) -> None:
+async def test_the_belief_is_the_posterior_of_the_step_and_of_what_the_monitor_says(engine: Engine):
     draws = random.Random(6)
     for _ in range(20):
         truth: Belief = {("Full", False): 1.0}
@@ -111,13 +111,13 @@ async def test_the_belief_is_the_posterior_of_the_step_and_of_what_the_monitor_s
             assert_is(update.summary, truth)
 
 
-async def test_a_state_that_has_ended_is_monitored_and_stays_as_it_is(engine: Engine) -> None:
+async def test_a_state_that_has_ended_is_monitored_and_stays_as_it_is(engine: Engine):
     truth = after_monitor(after_step({("Full", False): 1.0}, "go", "arrived"), "low")
     evidence = Evidence("go", "go", "arrived", monitors={"battery": "low"})
     assert_is((await updated(engine, evidence, 0.01)).summary, truth)
 
 
-async def test_the_monitor_counts_also_after_a_skill_that_did_not_run_or_may_have_run(engine: Engine) -> None:
+async def test_the_monitor_counts_also_after_a_skill_that_did_not_run_or_may_have_run(engine: Engine):
     await updated(engine, Evidence("go", "go", "halted"), 0.01)
     before = after_step({("Full", False): 1.0}, "go", "halted")
     failed = Evidence("go", "go", ran_probability=0.0, monitors={"battery": "low"})
@@ -131,7 +131,7 @@ async def test_the_monitor_counts_also_after_a_skill_that_did_not_run_or_may_hav
     assert_is((await updated(engine, lost, 0.01)).summary, after_monitor(mixed, "fine"))
 
 
-async def test_a_drawn_belief_agrees_with_the_exact_one(engine: Engine) -> None:
+async def test_a_drawn_belief_agrees_with_the_exact_one(engine: Engine):
     await engine.draw_belief()
     truth: Belief = {("Full", False): 1.0}
     for said in ("fine", "low", "low", "fine"):
@@ -140,7 +140,7 @@ async def test_a_drawn_belief_agrees_with_the_exact_one(engine: Engine) -> None:
         assert_is(update.summary, truth, within=0.05)
 
 
-async def test_what_the_model_does_not_know_says_nothing_and_is_told(engine: Engine) -> None:
+async def test_what_the_model_does_not_know_says_nothing_and_is_told(engine: Engine):
     evidence = Evidence("go", "go", "halted", monitors={"battery": "empty", "person": "near"})
     update = await updated(engine, evidence, 0.01)
     assert_is(update.summary, after_step({("Full", False): 1.0}, "go", "halted"))
@@ -149,7 +149,7 @@ async def test_what_the_model_does_not_know_says_nothing_and_is_told(engine: Eng
     )
 
 
-async def test_nobody_plans_with_a_monitor(engine: Engine) -> None:
+async def test_nobody_plans_with_a_monitor(engine: Engine):
     assert [action.name for action in engine.description.actions] == ["charge", "go"]
     assert engine.description.monitors == ("battery",)
 
@@ -163,7 +163,7 @@ def robot(request: Activate) -> Outcome:
     return Outcome(request.id, request.skill, "observed", response, monitors={"battery": said})
 
 
-async def test_the_journal_gives_the_belief_again(battery: BuiltModel) -> None:
+async def test_the_journal_gives_the_belief_again(battery: BuiltModel):
     state, around = await run_mission(
         battery, robot, limits=MissionLimits(step_limit=5), search=Search(simulations=200, seed=1)
     )
@@ -190,7 +190,7 @@ async def test_the_journal_gives_the_belief_again(battery: BuiltModel) -> None:
     assert [update.summary for update in updates] == [record.belief for record in around.outcomes]
 
 
-async def test_a_simulated_world_says_what_the_model_says_of_its_state(battery: BuiltModel) -> None:
+async def test_a_simulated_world_says_what_the_model_says_of_its_state(battery: BuiltModel):
     async with engine_of(battery) as engine:
         said = []
         for seed in range(1, 201):

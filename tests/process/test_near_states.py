@@ -95,7 +95,7 @@ async def decide(engine: Engine, horizon: int) -> Plan:
 
 async def test_a_count_that_matters_to_nothing_moves_no_bound(
     bundles: Path, cache_dir: Path, counted_tiger: BuiltModel
-) -> None:
+):
     plain = await built_bundle(bundles / "bench" / "tiger", cache_dir)
     async with engine_of(plain) as engine, engine_of(counted_tiger) as counted:
         exact = {value.action: value.q for value in (await engine.exact_values(6)).actions}
@@ -108,7 +108,7 @@ async def test_a_count_that_matters_to_nothing_moves_no_bound(
         assert exact[plan.best.action] == pytest.approx(max(exact.values()))
 
 
-async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: BuiltModel) -> None:
+async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: BuiltModel):
     async with engine_of(counted_tiger) as engine:
         first = await decide(engine, 6)
         for sound in ["tiger_left", "tiger_right"] * 15:
@@ -119,7 +119,7 @@ async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: Bui
         assert plan.best.at_least == pytest.approx(first.best.at_least, abs=0.2)
 
 
-async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path) -> None:
+async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path):
     built = await built_text(VACUUM, cache_dir)
     search = Search(simulations=3_000, seed=1)
     async with engine_of(built) as engine:
@@ -133,7 +133,7 @@ async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path)
 
 async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_the_only_reward(
     cache_dir: Path,
-) -> None:
+):
     """The states that lead to a reward are found one by one, and not in one pass for each step of the way."""
     files = {
         "count.ef": "project: count\nhorizon: 2\ndiscount: 0.9\nstate_variable: int count\n"

@@ -26,7 +26,7 @@ def run(line: str) -> Result:
     return aos(*line.split())
 
 
-def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal() -> None:
+def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal():
     made = run("new project fetch")
     assert made.exit_code == 0
     assert "wrote fetch/fetch.ef\n" in made.output
@@ -42,7 +42,7 @@ def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal()
     assert json.loads(played.stdout)["summary"]["goal_rate"] == 1.0
 
 
-def test_a_project_in_json_says_the_same_as_one_in_sdl() -> None:
+def test_a_project_in_json_says_the_same_as_one_in_sdl():
     assert run("new project fetch").exit_code == 0
     assert run("new project fetch --dialect json --in json").exit_code == 0
     assert run("new skill wipe --in fetch").exit_code == 0
@@ -53,7 +53,7 @@ def test_a_project_in_json_says_the_same_as_one_in_sdl() -> None:
     assert without_origins(json_bundle.project) == without_origins(sdl.project)
 
 
-def test_nothing_is_overwritten() -> None:
+def test_nothing_is_overwritten():
     run("new project fetch")
     Path("fetch/look.sd").write_text("mine")
     again = run("new project fetch")
@@ -62,28 +62,28 @@ def test_nothing_is_overwritten() -> None:
 
 
 @pytest.mark.parametrize("name", ["Fetch", "../fetch", "2do", "a-b", 65 * "n"])
-def test_a_name_that_documents_cannot_have_is_refused(name: str) -> None:
+def test_a_name_that_documents_cannot_have_is_refused(name: str):
     assert "is no name for a project" in str(run(f"new project {name}").exception)
     assert not list(Path().iterdir())
 
 
-def test_a_skill_has_no_name_of_cpp() -> None:
+def test_a_skill_has_no_name_of_cpp():
     run("new project fetch")
     assert "means something else in C++" in str(run("new skill double --in fetch").exception)
     assert not Path("fetch/double.sd").exists()
 
 
-def test_a_reader_that_has_gone_leaves_a_whole_project(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_reader_that_has_gone_leaves_a_whole_project(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(typer, "echo", lambda text: 1 / 0)
     run("new project fetch")
     assert len(list(Path("fetch").iterdir())) == 5
 
 
-def test_a_skill_needs_a_bundle() -> None:
+def test_a_skill_needs_a_bundle():
     assert "aos new project" in str(run("new skill wipe").exception)
 
 
-def test_a_new_skill_belongs_to_the_bundles_project() -> None:
+def test_a_new_skill_belongs_to_the_bundles_project():
     run("new project fetch")
     run("new skill wipe --in fetch")
     project = load_bundle(Path("fetch")).project
@@ -92,7 +92,7 @@ def test_a_new_skill_belongs_to_the_bundles_project() -> None:
 
 
 @pytest.mark.parametrize("name", deploy_files())
-def test_every_example_is_whole_where_it_is_written(name: str) -> None:
+def test_every_example_is_whole_where_it_is_written(name: str):
     written = run(f"new example {name}")
     assert written.exit_code == 0, written.output
     assert f"aos plan {name}/{name}.yaml --exact" in written.output  # A bundle may be a part of the whole.
@@ -102,17 +102,17 @@ def test_every_example_is_whole_where_it_is_written(name: str) -> None:
     assert deployment.world is None or deployment.world.resolve().is_relative_to(here)
 
 
-def test_an_example_is_written_once() -> None:
+def test_an_example_is_written_once():
     run("new example errand --in once")
     assert "once is not empty. Nothing was written" in str(run("new example errand --in once").exception)
 
 
-def test_an_unknown_example_is_told_with_the_nearest() -> None:
+def test_an_unknown_example_is_told_with_the_nearest():
     assert "Did you mean `armadillo`?" in str(getattr(run("new example armadilo").exception, "hint", ""))
 
 
 @pytest.mark.parametrize(("kind", "plans_in_time"), [("class", True), ("command", True), ("model", False)])
-def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_time: bool) -> None:
+def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_time: bool):
     run("new project fetch")
     written = run(f"new adapter {kind} --in fetch")
     assert written.exit_code == 0, written.output
@@ -123,7 +123,7 @@ def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_
 
 def test_a_written_program_tells_a_late_skill_and_a_result_that_cannot_be_sent_from_a_failure(
     monkeypatch: pytest.MonkeyPatch,
-) -> None:
+):
     run("new project fetch")
     run("new adapter command --in fetch")
     monkeypatch.setenv("AOS_ROBOT", "fetch")

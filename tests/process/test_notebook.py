@@ -35,9 +35,7 @@ print(json.dumps([len(names["behind_left"]), names["state"].held_by != "", names
 """Runs each cell as a task of its own in one loop, as IPython does."""
 
 
-def test_the_notebook_starts_follows_steers_studies_and_plots(
-    root: Path, tmp_path: Path, cache_dir: Path
-) -> None:
+def test_the_notebook_starts_follows_steers_studies_and_plots(root: Path, tmp_path: Path, cache_dir: Path):
     (tmp_path / "deploy").symlink_to(root / "deploy")
     (tmp_path / "docs").mkdir()
     done = subprocess.run(
@@ -59,7 +57,7 @@ def test_the_notebook_starts_follows_steers_studies_and_plots(
     assert json.loads(summary.read_text())["ending"] == "cancelled"
 
 
-async def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(tmp_path: Path) -> None:
+async def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(tmp_path: Path):
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text("aos: 1\nrobot: r\nbundles: [nothing]\n")
     with pytest.raises(DeployError, match=r"wrong\.yaml:3:") as raised:

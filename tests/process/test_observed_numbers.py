@@ -129,7 +129,7 @@ EXACT = gauge(
 """Skills whose numbers leave beliefs exact."""
 
 
-async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path) -> None:
+async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path):
     """The noise depends on the state, so that both the mean and the deviation tell."""
     async with engine_of_text(EXACT, cache_dir) as engine:
         belief = dict(enumerate(PRIOR))
@@ -144,9 +144,7 @@ async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(c
 
 
 @pytest.mark.parametrize(("kind", "beeps"), [(0, True), (1, False), (-1, None)])
-async def test_several_numbers_and_a_response_count_together(
-    kind: int, beeps: bool | None, cache_dir: Path
-) -> None:
+async def test_several_numbers_and_a_response_count_together(kind: int, beeps: bool | None, cache_dir: Path):
     """Discrete draws by their probability; also whether a number is reported tells something."""
     likelihood = {}
     for level in range(3):
@@ -167,7 +165,7 @@ async def test_several_numbers_and_a_response_count_together(
         assert prediction == pytest.approx(sum(p * (1 - 0.1 * level) for level, p in expected.items()))
 
 
-async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache_dir: Path) -> None:
+async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache_dir: Path):
     beams = [0.4, 1.7, 1.2, 4.4]
     async with engine_of_text(EXACT, cache_dir) as engine:
         update = await engine.update("scan", "read", numbers={"beams": beams, "hits": [True, False]})
@@ -177,7 +175,7 @@ async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache
         assert await levels(engine) == pytest.approx({1: 1.0})
 
 
-async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(cache_dir: Path) -> None:
+async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(cache_dir: Path):
     """Their density is far below what a double can hold."""
     beams = [8.0 + 0.01 * i for i in range(100)]
     logs = [
@@ -193,7 +191,7 @@ async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(c
         assert await levels(engine) == pytest.approx({2: 1.0})
 
 
-async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Path) -> None:
+async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Path):
     """Both the state and what is reported are continuous, so particles are weighed by the density."""
     files = documents(
         "state__.place = state.place + AOS.SampleNormal(0.3, 0.4);\n"
@@ -231,7 +229,7 @@ async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.flo
     return weights, bits.view(np.float64)
 
 
-async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path) -> None:
+async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path):
     async with engine_of_text(EXACT, cache_dir) as engine:
         missing = await engine.update("poke", "read", {"depth": "null", "code": '"read"'}, {})
         assert not missing.is_impossible
@@ -258,7 +256,7 @@ DEPTH_AND_BEAM = documents(
 )
 
 
-async def test_simulated_worlds_give_numbers_that_their_belief_learns_from(cache_dir: Path) -> None:
+async def test_simulated_worlds_give_numbers_that_their_belief_learns_from(cache_dir: Path):
     async with engine_of_text(DEPTH_AND_BEAM, cache_dir) as engine:
         limits = MissionLimits(goal_probability=0.9, step_limit=12)
         run = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
@@ -295,7 +293,7 @@ FAULTY = gauge(
 
 
 @pytest.mark.parametrize("skill", FAULTS)
-async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str, cache_dir: Path) -> None:
+async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str, cache_dir: Path):
     _, why, line = FAULTS[skill]
     async with engine_of_text(FAULTY, cache_dir) as engine:
         with pytest.raises(ModelError, match=why) as raised:
@@ -305,7 +303,7 @@ async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str
     assert (diagnostic.span.file, diagnostic.span.line) == (f"{skill}.sd", line)
 
 
-async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path) -> None:
+async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path):
     async with engine_of_text(DEPTH_AND_BEAM, cache_dir) as engine:
         with pytest.raises(ModelError, match="what is observed are numbers") as raised:
             await engine.exact_values()
@@ -314,7 +312,7 @@ async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path)
             await engine.list_states(1000)
 
 
-async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_dir: Path) -> None:
+async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_dir: Path):
     files = documents(
         "__moduleResponse = read;\n"
         "for (int i = 0; i < 9; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 1.5);\n",
@@ -326,7 +324,7 @@ async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_di
         assert "SARSOP cannot be used: 9 numbers are observed at once" in plan.why
 
 
-async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution(cache_dir: Path) -> None:
+async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution(cache_dir: Path):
     """The place that drifts has those of the normal distribution, for its belief is drawn."""
     look = ("__moduleResponse = read;\n", mapping())
     tenths = (

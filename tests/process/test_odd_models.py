@@ -54,7 +54,7 @@ NOTHING = {"odd.ef": CROWDED["odd.ef"], "dig.sd": CROWDED["dig.sd"].replace("cel
 """No action at all."""
 
 
-async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir: Path) -> None:
+async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir: Path):
     async with engine_of_text(CROWDED, cache_dir) as engine:
         assert len(engine.description.actions) == 1000
         plan = await engine.plan(simulations=20_000, seed=1, threads=2, planner="pomcp")
@@ -77,7 +77,7 @@ __moduleResponse = gone;
 }
 
 
-async def test_a_short_question_is_answered_after_one_that_went_over_the_limit(cache_dir: Path) -> None:
+async def test_a_short_question_is_answered_after_one_that_went_over_the_limit(cache_dir: Path):
     async with engine_of_text(MANY, cache_dir) as engine:
         with pytest.raises(IntractableError):
             await engine.exact_values(3)
@@ -85,7 +85,7 @@ async def test_a_short_question_is_answered_after_one_that_went_over_the_limit(c
     assert value.q == pytest.approx(0.5)
 
 
-async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path) -> None:
+async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path):
     async with engine_of_text(SINGLE, cache_dir) as engine:
         plan = await engine.plan(simulations=5_000, seed=1, planner="pomcp")
         assert plan.best.q == pytest.approx(1 + 0.9 + 0.81 + 0.729 + 0.6561, abs=0.3)
@@ -95,7 +95,7 @@ async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache
     assert marginals["is_hot"] == {"true": pytest.approx(1)}
 
 
-async def test_a_model_without_an_action_is_refused(cache_dir: Path) -> None:
+async def test_a_model_without_an_action_is_refused(cache_dir: Path):
     with pytest.raises(DocumentError) as error:
         async with engine_of_text(NOTHING, cache_dir):
             pass

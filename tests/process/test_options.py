@@ -18,7 +18,7 @@ from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 
-async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path) -> None:
+async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path):
     """Parcels sent where most of them belong lose 1.0 each, so that 14 of them lose 6 in all."""
     built = await built_text(parcels(14), cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other:
@@ -35,7 +35,7 @@ async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path) 
     assert run.discounted_return > 10
 
 
-async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it(cache_dir: Path) -> None:
+async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it(cache_dir: Path):
     async with engine_of_text(open_field(9), cache_dir) as engine:
         search = Search(simulations=10_000, seed=2)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
@@ -43,7 +43,7 @@ async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it
     assert run.actions[-1] == "stop"
 
 
-async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_dir: Path) -> None:
+async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_dir: Path):
     """A lift breaks at any step, whatever the robot does, and all ways to a reward change its place."""
     async with engine_of_text(delivery(6), cache_dir) as engine:
         plan = await engine.plan(simulations=4000, seed=1, planner="auto")
@@ -55,7 +55,7 @@ async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_d
     assert run.discounted_return > 10
 
 
-async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> None:
+async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path):
     """Also before it is known what a step costs: without time no way is found by which options decide."""
     built = await built_text(delivery(6), cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other:
@@ -66,7 +66,7 @@ async def test_a_budget_in_time_ends_a_decision_of_options(cache_dir: Path) -> N
     assert unhurried.simulations > 100
 
 
-async def test_a_mission_of_one_decision_is_told_the_mean_reward_of_each_action(cache_dir: Path) -> None:
+async def test_a_mission_of_one_decision_is_told_the_mean_reward_of_each_action(cache_dir: Path):
     """Nothing follows a look, and what is seen by it is worth nothing."""
     writer = BundleWriter(
         "reach",
@@ -93,7 +93,7 @@ state.x = AOS.SampleUniform(0, 4);
     assert plan.best.action == "reach(where=1)"
 
 
-async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir: Path) -> None:
+async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir: Path):
     """A lock opens when five dials are right, and nothing is earned before. Random actions return -24."""
     async with engine_of_text(lock(5), cache_dir) as engine:
         search = Search(simulations=10_000, seed=1)
@@ -102,7 +102,7 @@ async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir
     assert run.discounted_return > 5
 
 
-async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path) -> None:
+async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path):
     """Twelve sites are hardly worth a probe. Without the rule the robot probes and drives for ever."""
     async with engine_of_text(survey(12), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
@@ -111,7 +111,7 @@ async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path) -> No
     assert run.discounted_return > -9
 
 
-async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads(cache_dir: Path) -> None:
+async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads(cache_dir: Path):
     """A robot without detours reads what it knows, up to the last step, since nothing else costs less."""
     async with engine_of_text(gauges(8), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
@@ -121,7 +121,7 @@ async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads(cache_dir:
     assert len(run.actions) < 60
 
 
-async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> None:
+async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path):
     """A robot that leaves at once returns 0, a rule by hand 6.4."""
     async with engine_of_text(questions(18), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=30)
@@ -130,7 +130,7 @@ async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path) -> 
     assert fmean(run.discounted_return for run in runs) > 2
 
 
-async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_dir: Path) -> None:
+async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_dir: Path):
     """A rule by hand returns 69, and whoever waits for 60 steps -18."""
     async with engine_of_text(towers(8), cache_dir) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
@@ -138,7 +138,7 @@ async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_
     assert run.discounted_return > 50
 
 
-async def test_a_robot_whose_battery_ends_is_not_led_by_what_intruders_pay(cache_dir: Path) -> None:
+async def test_a_robot_whose_battery_ends_is_not_led_by_what_intruders_pay(cache_dir: Path):
     """Intruders come by themselves, and cost more than they pay. No way leads through the dock."""
     patrol = BundleWriter(
         "patrol",

@@ -69,25 +69,25 @@ def left_behind(folder: Path) -> list[str]:
     return [command for command in found if "fetch_robot" in command or "sleep 1000" in command]
 
 
-def test_our_services_may_be_ready_before_it_is_known_how_to_dial_the_other_host(tmp_path: Path) -> None:
+def test_our_services_may_be_ready_before_it_is_known_how_to_dial_the_other_host(tmp_path: Path):
     status, said = up(slow_stand_in(tmp_path), f"[{sys.executable}, fetch_robot.py]", tmp_path)
     assert status == 0, said
 
 
-def test_a_program_that_ends_over_there_is_started_again(tmp_path: Path) -> None:
+def test_a_program_that_ends_over_there_is_started_again(tmp_path: Path):
     script = FIRST_TIME_BAD.replace("python3", sys.executable)
     status, said = up(stand_in(tmp_path), f'[sh, -c, "{script}"]', tmp_path)
     assert status == 0, said
     assert "robot starting: start 2" in said
 
 
-def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path: Path) -> None:
+def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path: Path):
     status, said = up(ssh, "[arm_driver]", tmp_path)
     assert status == 3
     assert f"robot on robot@arm: there is no program arm_driver in {tmp_path} or on the PATH" in said
 
 
-def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path) -> None:
+def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path):
     text = "ssh: connect to host arm port 22: Connection refused"
     status, said = up(refusing_ssh(tmp_path, text), "[arm_driver]", tmp_path)
     assert status == 3
@@ -97,7 +97,7 @@ def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path) -> None:
 
 def test_programs_on_another_host_run_a_mission_are_ready_by_what_they_print_and_end_with_the_run(
     ssh: str, tmp_path: Path
-) -> None:
+):
     (tmp_path / "fetch_robot_sim.sh").write_text("echo over there is $AOS_ROBOT; sleep 1000 & wait\n")
     with Path("fetch.yaml").open("a") as deploy:
         deploy.write(

@@ -50,7 +50,7 @@ def free_port() -> int:
         return int(server.getsockname()[1])
 
 
-async def test_the_adapters_start_when_the_programs_are_ready_and_stop_before_them(system: System) -> None:
+async def test_the_adapters_start_when_the_programs_are_ready_and_stop_before_them(system: System):
     script = "read line <go; echo navigation is up; sleep 1000"
     nav = own("sh", "-c", script, folder=system.folder, ready=ReadyPart(line="^nav.* up$"))
     os.mkfifo(system.folder / "go")
@@ -70,7 +70,7 @@ async def test_the_adapters_start_when_the_programs_are_ready_and_stop_before_th
     assert "navigation is up" in system.run.log("nav").read_text()
 
 
-async def test_programs_are_seen_to_be_ready_each_by_its_sign(system: System) -> None:
+async def test_programs_are_seen_to_be_ready_each_by_its_sign(system: System):
     port = free_port()
     kinds: dict[str, tuple[list[str], ReadyPart | None]] = {
         "port": ([sys.executable, "-c", SERVES_A_PORT, str(port)], ReadyPart(port=port)),
@@ -95,7 +95,7 @@ async def test_programs_are_seen_to_be_ready_each_by_its_sign(system: System) ->
         assert changes.index((before, "ready")) < changes.index((after, "starting"))
 
 
-async def test_a_set_up_program_ends_before_the_adapters_start(system: System) -> None:
+async def test_a_set_up_program_ends_before_the_adapters_start(system: System):
     setup = own("sh", "-c", "echo homed", name="homing", ready=ReadyPart(exit=0))
     async with asyncio.timeout(HANG_S), system.up(setup, ADAPTER):
         await system.until("robot", "ready")
@@ -110,14 +110,14 @@ async def failing(system: System, *programs: Program) -> AosError:
     return error
 
 
-async def test_a_set_up_program_that_fails_ends_the_run(system: System) -> None:
+async def test_a_set_up_program_that_fails_ends_the_run(system: System):
     setup = own("sh", "-c", "echo no motor; exit 3", name="homing", ready=ReadyPart(exit=0))
     error = await failing(system, setup, ADAPTER)
     assert (error.code, error.message) == ("AOS802", "homing ended with exit status 3, and is to end with 0")
     assert "no motor" in error.hint
 
 
-async def test_a_program_that_is_not_ready_in_time_is_told_with_what_was_awaited(system: System) -> None:
+async def test_a_program_that_is_not_ready_in_time_is_told_with_what_was_awaited(system: System):
     nav = own("sh", "-c", "echo waiting for the map; sleep 1000", ready=ReadyPart(line="up"), start_s=0.5)
     error = await failing(system, nav, ADAPTER)
     assert error.code == "AOS802"
@@ -125,7 +125,7 @@ async def test_a_program_that_is_not_ready_in_time_is_told_with_what_was_awaited
     assert "waiting for the map" in error.hint
 
 
-async def test_a_port_that_somebody_else_serves_is_told(system: System) -> None:
+async def test_a_port_that_somebody_else_serves_is_told(system: System):
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
         error = await failing(system, own("sleep", "1000", ready=ReadyPart(port=port)), ADAPTER)
@@ -133,7 +133,7 @@ async def test_a_port_that_somebody_else_serves_is_told(system: System) -> None:
     assert "an earlier run" in error.hint
 
 
-async def test_a_program_that_goes_into_the_background_is_told_to_stay(system: System) -> None:
+async def test_a_program_that_goes_into_the_background_is_told_to_stay(system: System):
     error = await failing(system, own("sh", "-c", "sleep 1000 &", ready=ReadyPart(line="up")), ADAPTER)
     assert error.message == "nav ended unexpectedly: exit status 0"
     assert "keep it in the foreground" in error.hint
@@ -145,7 +145,7 @@ async def test_a_program_that_goes_into_the_background_is_told_to_stay(system: S
 )
 async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
     system: System, on_exit: str, then: str
-) -> None:
+):
     endless = ("sh", "-c", "echo up; sleep 1000")
     nav = own(*endless, ready=ReadyPart(line="up"), on_exit=on_exit, is_restarted=on_exit == "restart")
 
@@ -177,7 +177,7 @@ TREE = f"setsid sh -c '{DEAF}' & echo up; {DEAF}"
 
 
 @pytest.mark.parametrize("how", ["stopped", "at once"])
-async def test_all_that_a_program_has_started_ends_with_the_run(system: System, how: str) -> None:
+async def test_all_that_a_program_has_started_ends_with_the_run(system: System, how: str):
     nav = own("sh", "-c", TREE, ready=ReadyPart(line="up"), stop_s=0.3 if how == "stopped" else HANG_S)
     async with asyncio.timeout(HANG_S), system.up(nav) as supervisor:
         await system.until("nav", "ready")
@@ -201,7 +201,7 @@ while True:
 """
 
 
-async def test_a_program_that_catches_sigterm_has_its_time_to_end(system: System) -> None:
+async def test_a_program_that_catches_sigterm_has_its_time_to_end(system: System):
     nav = own(sys.executable, "-c", PUTS_DOWN, ready=ReadyPart(line="up"), stop_s=HANG_S)
     async with asyncio.timeout(HANG_S), system.up(nav):
         await system.until("nav", "ready")
@@ -265,9 +265,7 @@ KILLS_THE_MIDDLEWARE = """    CAME.acquire()
     for share"""
 
 
-def test_a_robot_finds_its_simulator_and_joins_a_call_that_comes_again_from_a_new_middleware(
-    project: Path,
-) -> None:
+def test_a_robot_finds_its_simulator_and_joins_a_call_that_comes_again_from_a_new_middleware(project: Path):
     robot = project / "fetch_robot.py"
     text = robot.read_text().replace("    for share", KILLS_THE_MIDDLEWARE)
     text = text.replace("def run(", "CAME = threading.Semaphore(0)\ndef run(")
@@ -292,7 +290,7 @@ LEAVES_AND_COMES = """    LOOKS.append(path)
     for share"""
 
 
-def test_a_skill_that_leaves_in_mid_mission_and_comes_again_is_told_once_each(project: Path) -> None:
+def test_a_skill_that_leaves_in_mid_mission_and_comes_again_is_told_once_each(project: Path):
     for name, old, new in (
         ("fetch_robot.py", "    for share", LEAVES_AND_COMES),
         ("fetch_robot.py", "def run(", "LOOKS = []\ndef run("),
@@ -327,7 +325,7 @@ def test_a_skill_that_leaves_in_mid_mission_and_comes_again_is_told_once_each(pr
         assert told in f"{done.output}{done.exception}"
 
 
-def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path) -> None:
+def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path):
     robot = project / "fetch_robot.py"
     robot.write_text(robot.read_text().replace("    for share", "    time.sleep(1000)\n    for share"))
     deploy = project / "fetch.yaml"
@@ -338,9 +336,7 @@ def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path) 
     assert "/look may still be moving: it does not say that it has stopped (the robot still" in done.stdout
 
 
-def test_without_an_output_a_mission_runs_and_nothing_beside_a_robot_that_documents_play(
-    project: Path,
-) -> None:
+def test_without_an_output_a_mission_runs_and_nothing_beside_a_robot_that_documents_play(project: Path):
     words = ["sh", "-c", 'exec "$@" >&-', "sh", BIN / "aos-up", "fetch.yaml", "--model"]
     done = subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
     assert done.returncode == 0, done.stderr
@@ -350,7 +346,7 @@ def test_without_an_output_a_mission_runs_and_nothing_beside_a_robot_that_docume
     assert not (project / "port").exists()
 
 
-def test_a_closed_terminal_ends_the_mission_in_order(project: Path) -> None:
+def test_a_closed_terminal_ends_the_mission_in_order(project: Path):
     robot = project / "fetch_robot.py"
     waits = '    open("moves", "x").close()\n    STOP.wait()\n    for share'
     robot.write_text(robot.read_text().replace("    for share", waits))
@@ -366,9 +362,7 @@ def test_a_closed_terminal_ends_the_mission_in_order(project: Path) -> None:
     assert json.loads(Path("runs/latest/summary.json").read_text())["ending"] == "cancelled"
 
 
-def test_on_a_full_disk_not_everything_is_said_to_be_kept(
-    project: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_on_a_full_disk_not_everything_is_said_to_be_kept(project: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("AOS_FAILPOINT", "journal.decision.before:full:1")
     done = up("--model")
     assert done.returncode == 3, done.stdout + done.stderr
@@ -376,7 +370,7 @@ def test_on_a_full_disk_not_everything_is_said_to_be_kept(
     assert "AOS701" in done.stderr
 
 
-def test_documents_that_cannot_be_played_are_told_at_once(project: Path) -> None:
+def test_documents_that_cannot_be_played_are_told_at_once(project: Path):
     document = project / "fetch" / "fetch.ef"
     document.write_text(
         document.read_text().replace("initial_belief:", "initial_belief:\nstd::vector<int>{}.at(3);")
@@ -386,7 +380,7 @@ def test_documents_that_cannot_be_played_are_told_at_once(project: Path) -> None
     assert "fetch.ef:" in done.stderr
 
 
-def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) -> None:
+def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path):
     robot = project / "fetch_robot.py"
     text = robot.read_text()
     hanging = "tell(f\"progress/{path.strip('/')}\""
@@ -405,7 +399,7 @@ def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) ->
     assert [(end["name"], end["how"]) for end in summary["process_ends"]] == [("sim", "exit status 5")]
 
 
-def test_an_interface_that_the_robot_defines_otherwise_ends_the_start_at_once(project: Path) -> None:
+def test_an_interface_that_the_robot_defines_otherwise_ends_the_start_at_once(project: Path):
     robot = project / "fetch_robot.py"
     lack = 'token = f"aos/{ROBOT}/lack/{ADAPTER}/AOS509%3A it is no Trigger/{short}"'
     declare = "declared.append(session.liveliness().declare_token(token))"
@@ -421,7 +415,7 @@ def test_an_interface_that_the_robot_defines_otherwise_ends_the_start_at_once(pr
     assert time.monotonic() - started_s < 30, "the time that a program may take to serve its paths"
 
 
-def test_two_processes_that_serve_one_path_are_told_at_the_start_each_with_its_process(project: Path) -> None:
+def test_two_processes_that_serve_one_path_are_told_at_the_start_each_with_its_process(project: Path):
     twice = "python fetch_robot.py & exec python fetch_robot.py"
     (project / "twice.sh").write_text(twice.replace("python", sys.executable))
     deploy = project / "fetch.yaml"

@@ -80,7 +80,7 @@ def worn(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[
 
 def test_slider_and_keys_move_all_views_and_the_address(
     browser: Browser, past: tuple[Gateway, str], cache_dir: Path
-) -> None:
+):
     served, name = past
     steps = served.ask(f"/v1/missions/{name}/trace").json["steps"]
     page = opened(browser, served)
@@ -122,7 +122,7 @@ def late(browser: Browser, served: Gateway, run: Path, view: str = "") -> Page:
 
 def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     browser: Browser, living: tuple[Gateway, Path]
-) -> None:
+):
     served, run = living
     page = late(browser, served, run)
     expect(page.locator(".connection")).to_have_text("Live")
@@ -152,7 +152,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
 
 def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_killed_run_is_told(
     browser: Browser, living: tuple[Gateway, Path], tmp_path: Path, cache_dir: Path
-) -> None:
+):
     served, run = living
     page = opened(browser, served)
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/{run.name}")
@@ -172,7 +172,7 @@ def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_k
         expect(page.locator(".connection")).to_contain_text("Recorded")
 
 
-def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gateway, str], root: Path) -> None:
+def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gateway, str], root: Path):
     served, _ = past
     page = opened(browser, served)
     bundle = shutil.make_archive(str(Path(served.folder) / "errand"), "zip", root / "deploy/bundles/errand")
@@ -185,7 +185,7 @@ def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gatewa
 
 def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
     browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
-) -> None:
+):
     served, name = worn
     rows = served.ask(f"/v1/missions/{name}/trace").json["steps"]
     first = next(row for row in rows if "drift" in row)
@@ -206,7 +206,7 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
 
 def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_shown(
     browser: Browser, living: tuple[Gateway, Path]
-) -> None:
+):
     served, run = living
     address = f"http://127.0.0.1:{served.port}/#/missions/{run.name}"
     page = late(browser, served, run, "/system")
@@ -234,7 +234,7 @@ def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_
 
 def test_the_next_mission_is_begun_where_one_has_ended(
     browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
-) -> None:
+):
     served, name = worn
     page = opened(browser, served, 390, "dark")
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
@@ -259,7 +259,7 @@ def test_the_next_mission_is_begun_where_one_has_ended(
 @pytest.mark.parametrize(("width", "theme"), [(390, "dark"), (1440, "light")])
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
     browser: Browser, past: tuple[Gateway, str], width: int, theme: str, cache_dir: Path
-) -> None:
+):
     served, name = past
     action = served.ask(f"/v1/missions/{name}/trace").json["steps"][1]["action"]
     page = opened(browser, served, width, theme)
@@ -277,7 +277,7 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
 
 def test_a_number_of_many_values_is_shown_by_its_median_and_range(
     browser: Browser, past: tuple[Gateway, str], cache_dir: Path
-) -> None:
+):
     served, _ = past
     depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
     name = write_long_run(served.folder / "runs", 5, depth)
@@ -294,7 +294,7 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
 
 def test_long_names_are_told_whole_and_widen_no_screen(
     browser: Browser, past: tuple[Gateway, str], cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     served, _ = past
     long = "where_the_robot_that_carries_the_longest_of_all_names_stands_at_the_moment"
     actions = tuple(
@@ -318,7 +318,7 @@ def test_long_names_are_told_whole_and_widen_no_screen(
         page.close()
 
 
-def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[Gateway, str]) -> None:
+def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[Gateway, str]):
     served, _ = past
     name = write_long_run(served.folder / "runs", 1000)
     page = opened(browser, served)
@@ -333,7 +333,7 @@ def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[G
 
 def test_a_mission_whose_model_is_compiled_says_so_in_the_answer_the_stream_and_the_page(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     compiler = tmp_path / "c++"
     compiler.write_text('#!/bin/sh\ncase "$*" in *version*) exec c++ "$@";; esac\nexec sleep 1000\n')
     compiler.chmod(0o755)

@@ -23,7 +23,7 @@ COMMANDS = (
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_piped_command_says_nothing_beside_its_result(
     command: tuple[str, ...], bundles: Path, cache_dir: Path
-) -> None:
+):
     bundle = bundles / "bench" / "tiger"
     asyncio.run(built_bundle(bundle, cache_dir))
     done = subprocess.run(
@@ -37,7 +37,7 @@ def test_a_piped_command_says_nothing_beside_its_result(
     assert done.stderr == ""
 
 
-def test_an_output_that_cannot_be_written_is_told_in_one_line() -> None:
+def test_an_output_that_cannot_be_written_is_told_in_one_line():
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [AOS, "schema", "deploy"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=COMMAND_S
@@ -47,7 +47,7 @@ def test_an_output_that_cannot_be_written_is_told_in_one_line() -> None:
 
 
 @pytest.mark.parametrize("command", [("schema", "deploy"), ("doctor",)])
-def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str, ...]) -> None:
+def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str, ...]):
     with subprocess.Popen([AOS, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as done:
         assert done.stdout is not None
         done.stdout.close()
@@ -55,7 +55,7 @@ def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str,
     assert (done.returncode, said) == (-signal.SIGPIPE, b"")
 
 
-def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path):
     (tmp_path / "file").touch()
     command = [AOS, "experiment", "run", "armadillo", "--out", tmp_path / "file" / "out"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
@@ -66,14 +66,14 @@ def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     "command", [("calibrate", ".", ".", "--write"), ("test", "missions.yaml", "--junit")]
 )
-def test_a_file_in_no_folder_is_told_before_the_work_begins(command: tuple[str, ...], tmp_path: Path) -> None:
+def test_a_file_in_no_folder_is_told_before_the_work_begins(command: tuple[str, ...], tmp_path: Path):
     target = tmp_path / "none" / "it.pomdp"
     done = subprocess.run([AOS, *command, target], capture_output=True, text=True, timeout=COMMAND_S)
     assert (done.returncode, done.stdout) == (2, "")
     assert f"Invalid value for '{command[-1]}': there is no folder {target.parent}" in done.stderr
 
 
-def test_an_experiment_of_no_missions_is_refused() -> None:
+def test_an_experiment_of_no_missions_is_refused():
     command = [AOS, "experiment", "run", "armadillo", "--seeds", "0"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
     assert done.returncode == 2

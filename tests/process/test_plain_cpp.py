@@ -170,7 +170,7 @@ __moduleResponse = done;
 """
 
 
-async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path) -> None:
+async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path):
     files = {"odd.ef": ENVIRONMENT}
     for name, (code, _) in CODE.items():
         files[f"{name}.sd"] = SKILL.format(code=code)
@@ -216,7 +216,7 @@ __moduleResponse = said;
 """
 
 
-async def test_a_name_is_the_enums_value_where_no_response_can_stand(cache_dir: Path) -> None:
+async def test_a_name_is_the_enums_value_where_no_response_can_stand(cache_dir: Path):
     pull = mapping_text(
         "open: is_open", "closed: True", project="door", skill="pull", reports={"is_open": "bool"}
     )

@@ -87,7 +87,7 @@ async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:
     return [run.ending for run in runs]
 
 
-async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path) -> None:
+async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path):
     """It listens as long as that is worth it."""
     best = value_of_listening()
     async with engine_of_text(DOCUMENTS_OF_DOORS, cache_dir) as engine:
@@ -98,7 +98,7 @@ async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path) -> None:
         assert (await endings_of_doors(engine, "pomcp")).count(Ending.GOAL) >= 27
 
 
-async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_cells(cache_dir: Path) -> None:
+async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_cells(cache_dir: Path):
     """The robot can earn what is earned over cells. Cells lose little here; there is no upper bound."""
     best = value_of_listening()
     async with engine_of_text(DOCUMENTS_OF_DOORS, cache_dir) as engine:

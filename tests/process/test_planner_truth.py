@@ -109,9 +109,7 @@ async def _enter(engine: Engine, world: int) -> None:
 
 
 @pytest.mark.parametrize("world", range(WORLDS))
-async def test_random_worlds_have_the_values_that_an_independent_program_gives(
-    world: int, chance: Engine
-) -> None:
+async def test_random_worlds_have_the_values_that_an_independent_program_gives(world: int, chance: Engine):
     await _enter(chance, world)
     truth = CHANCE.values(world, np.full(STATES, 1 / STATES), HORIZON)
     exact = [value.q for value in (await chance.exact_values()).actions]
@@ -121,7 +119,7 @@ async def test_random_worlds_have_the_values_that_an_independent_program_gives(
     assert max(truth) - truth[plan.index] < 0.03
 
 
-async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) -> None:
+async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel):
     async with engine_of(tiger) as engine:
         exact = {value.action: value.q for value in (await engine.exact_values(4)).actions}
         plan = await engine.plan(simulations=200_000, seed=2, horizon=4, planner="pomcp")
@@ -129,7 +127,7 @@ async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) 
     assert exact[plan.best.action] == max(exact.values())
 
 
-async def test_threads_that_share_a_budget_repeat_to_the_bit(tiger: BuiltModel) -> None:
+async def test_threads_that_share_a_budget_repeat_to_the_bit(tiger: BuiltModel):
     async def decide() -> Plan:
         async with engine_of(tiger) as engine:
             await engine.plan(simulations=5_001, seed=4, threads=3, planner="pomcp")
@@ -142,7 +140,7 @@ async def test_threads_that_share_a_budget_repeat_to_the_bit(tiger: BuiltModel) 
     assert first.known_simulations == again.known_simulations > 0
 
 
-async def test_threads_decide_as_one_thread_does(chance: Engine) -> None:
+async def test_threads_decide_as_one_thread_does(chance: Engine):
     await _enter(chance, 0)
     alone = await chance.plan(simulations=100_000, seed=1, planner="pomcp")
     await _enter(chance, 0)
@@ -151,9 +149,7 @@ async def test_threads_decide_as_one_thread_does(chance: Engine) -> None:
     assert together.best.q == pytest.approx(alone.best.q, abs=0.03)
 
 
-async def test_pondering_while_acting_leaves_a_warm_start_and_stops_when_it_is_asked(
-    tiger: BuiltModel,
-) -> None:
+async def test_pondering_while_acting_leaves_a_warm_start_and_stops_when_it_is_asked(tiger: BuiltModel):
     async with engine_of(tiger) as engine:
         await engine.plan(simulations=100, seed=1, planner="pomcp")
         await engine.update("listen", "tiger_left")

@@ -112,7 +112,7 @@ async def _decide(engine: Engine, simulations: int = 20_000, seed: int = 1) -> P
 @pytest.mark.parametrize("heard", [(), ("tiger_left",), ("tiger_left", "tiger_left")])
 async def test_what_is_proven_of_values_is_true_and_tight_for_the_best_one(
     heard: tuple[str, ...], tiger: BuiltModel
-) -> None:
+):
     async with engine_of(tiger) as engine:
         for sound in heard:
             await engine.update("listen", sound)
@@ -130,7 +130,7 @@ async def test_what_is_proven_of_values_is_true_and_tight_for_the_best_one(
         assert action.at_least <= action.q <= action.at_most
 
 
-async def test_the_same_simulations_repeat_to_the_bit_and_need_no_seed(tag: BuiltModel) -> None:
+async def test_the_same_simulations_repeat_to_the_bit_and_need_no_seed(tag: BuiltModel):
     plans = []
     for seed in (1, 2):
         async with engine_of(tag) as engine:
@@ -139,7 +139,7 @@ async def test_the_same_simulations_repeat_to_the_bit_and_need_no_seed(tag: Buil
     assert 10_000 <= plans[0].simulations == plans[1].simulations  # Trials have half of the budget at least.
 
 
-async def test_a_later_decision_knows_what_an_earlier_one_has_found_out(tag: BuiltModel) -> None:
+async def test_a_later_decision_knows_what_an_earlier_one_has_found_out(tag: BuiltModel):
     async with engine_of(tag) as engine:
         first = await _decide(engine, simulations=40_000)
         again = await _decide(engine, simulations=1)
@@ -154,14 +154,14 @@ async def test_a_later_decision_knows_what_an_earlier_one_has_found_out(tag: Bui
     assert kept >= known > lost + 5
 
 
-async def test_an_opponent_that_flees_is_tagged(tag: BuiltModel) -> None:
+async def test_an_opponent_that_flees_is_tagged(tag: BuiltModel):
     search = Search(simulations=5_000, seed=2, planner="sarsop")
     limits = MissionLimits(goal_probability=0.999, step_limit=90)
     async with engine_of(tag) as engine:
         assert (await simulate_mission(engine, search, limits)).ending == "goal"
 
 
-async def test_a_belief_that_no_observation_leads_to_is_reckoned_with(tag: BuiltModel) -> None:
+async def test_a_belief_that_no_observation_leads_to_is_reckoned_with(tag: BuiltModel):
     async with engine_of(tag) as engine:
         await _decide(engine, simulations=1)
         # The robot always knows where it is, but for this.
@@ -171,7 +171,7 @@ async def test_a_belief_that_no_observation_leads_to_is_reckoned_with(tag: Built
     assert -20 < plan.best.at_least < 10
 
 
-async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag: BuiltModel) -> None:
+async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag: BuiltModel):
     async with engine_of(tag) as engine:
         plan = await _decide(engine, simulations=1)
         await engine.ponder(plan.index, seed=1, time_s=0.2)
@@ -179,7 +179,7 @@ async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag:
     assert warm.known_simulations > plan.simulations
 
 
-async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: Path) -> None:
+async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: Path):
     async with engine_of_text(TICKET, cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="sarsop")
         exact = await engine.exact_values()
@@ -198,7 +198,7 @@ async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: P
 )
 async def test_auto_goes_by_whether_the_states_can_be_listed(
     length: int, simulations: int, planner: str, why: str, cache_dir: Path
-) -> None:
+):
     larger = {name: text.replace("150", str(length)) for name, text in FIELD.items()}
     async with engine_of_text(larger, cache_dir) as engine:
         plan = await engine.plan(simulations=simulations, seed=1, planner="auto")
@@ -217,14 +217,14 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
 )
 async def test_auto_chooses_by_states_and_budget_and_says_so(
     problem: str, planner: str, why: str, bundles: Path, cache_dir: Path
-) -> None:
+):
     async with engine_of_bundle(bundles / problem, cache_dir) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
     assert why in plan.why
 
 
-async def test_few_missions_make_no_value_less_certain_than_what_is_proven(cache_dir: Path) -> None:
+async def test_few_missions_make_no_value_less_certain_than_what_is_proven(cache_dir: Path):
     async with engine_of_text(TURNS, cache_dir) as engine:
         best = (await engine.plan(simulations=1_000, seed=1, planner="sarsop")).best
     assert best.at_least is not None

@@ -11,7 +11,7 @@ from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 
-async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo(cache_dir: Path) -> None:
+async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo(cache_dir: Path):
     """A drone without a price of information flies to and fro: -5.1 in these worlds and two more."""
     async with engine_of_text(photo(12), cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")

@@ -18,7 +18,7 @@ from aos_solver.child.engine import Engine
 
 async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(
     bundles: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+):
     emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
     found: list[BuiltModel] = []
     kinds: tuple[BuildKind, ...] = ("quick", "thorough")
@@ -38,7 +38,7 @@ async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_i
 
 async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known(
     bundles: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     limits: list[int | None] = []
 
     async def compiled(*_: object, cpu_s: int | None = None, **__: object) -> tuple[str, int]:
@@ -53,7 +53,7 @@ async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known
     assert set(limits) == {None}
 
 
-def test_documents_that_come_back_are_not_emitted_again(bundles: Path) -> None:
+def test_documents_that_come_back_are_not_emitted_again(bundles: Path):
     first, again = (emitted_model(bundle_project(bundles / "armadillo-finer")) for _ in range(2))
     assert again is first
 

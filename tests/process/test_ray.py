@@ -46,7 +46,7 @@ def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None 
 @needs_ray
 def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(
     root: Path, tmp_path: Path
-) -> None:
+):
     here = play(root, tmp_path / "here", range(1, 7), HERE)
     there = play(root, tmp_path / "there", range(1, 5), ray_cluster.OWN)
     assert there == here[:4]
@@ -60,16 +60,14 @@ def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_tw
 
 
 @needs_ray
-def test_a_machine_with_another_aos_is_refused(
-    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_machine_with_another_aos_is_refused(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(ray_cluster, "_sources_of", lambda folders: ("9.9", "f" * 64))
     with pytest.raises(DeployError, match=r"has another AOS: .* there, 9\.9 with sources ffffffff here"):
         play(root, tmp_path, range(1, 2), ray_cluster.OWN)
 
 
 @needs_ray
-def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Path, tmp_path: Path) -> None:
+def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Path, tmp_path: Path):
     with pytest.raises(DeployError) as caught:
         play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")
     assert caught.value.code == "AOS809"
@@ -88,7 +86,7 @@ class HeadWithFaults:
             raise ConnectionAbortedError("Initialization failure from server:\n\nno process came up")
 
 
-def test_a_head_whose_process_for_this_client_did_not_come_up_is_asked_once_more() -> None:
+def test_a_head_whose_process_for_this_client_did_not_come_up_is_asked_once_more():
     ray_cluster._connect(HeadWithFaults(1), "ray://127.0.0.1:9")
     with pytest.raises(DeployError) as caught:
         ray_cluster._connect(HeadWithFaults(2), "ray://127.0.0.1:9")
@@ -97,7 +95,7 @@ def test_a_head_whose_process_for_this_client_did_not_come_up_is_asked_once_more
 
 def test_without_ray_the_command_says_how_to_install_it(
     root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(DeployError, match=r"aos-autonomy\[ray\]") as caught:
         play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")
@@ -111,9 +109,7 @@ def test_without_ray_the_command_says_how_to_install_it(
         (["--on", "ray", "--system-seeds", "1"], "missions of the whole system are run here"),
     ],
 )
-def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(
-    options: list[str], text: str
-) -> None:
+def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(options: list[str], text: str):
     done = aos("experiment", "run", "armadillo", *options)
     assert done.exit_code == 2
     assert text in " ".join(done.stderr.split())

@@ -55,7 +55,7 @@ WORTH = {"7 full": 100 * 0.99**CELLS, "8 empty": 0.0, "9 full": 100 * 0.99**CELL
 @pytest.mark.parametrize("planner", ["sarsop", "pomcp"])
 async def test_a_listing_of_as_many_other_states_is_not_taken_for_the_last_one(
     cache_dir: Path, planner: Planner
-) -> None:
+):
     built = await built_text(VAULT, cache_dir)
     async with engine_of(built) as engine:
         for response, worth in WORTH.items():

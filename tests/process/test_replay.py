@@ -48,7 +48,7 @@ async def kill_at_step_2(engine: Engine, step: int) -> None:
 )
 async def test_decisions_repeat_in_values_counts_and_beliefs(
     bundles: Path, cache_dir: Path, bundle: str, budget: dict[str, object]
-) -> None:
+):
     played = await play(files_of(bundles / bundle), cache_dir, steps=4, **budget)
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
@@ -58,7 +58,7 @@ async def test_decisions_repeat_in_values_counts_and_beliefs(
 
 async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happened(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     files = files_of(bundles / "armadillo-finer")
     other = files | {"pick.sd": files["pick.sd"].replace(b"__reward = -2", b"__reward = -3")}
     assert other != files
@@ -80,7 +80,7 @@ async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happe
 
 async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_need(
     bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     """The hold comes when the third search has begun; without a grace it is given up."""
     monkeypatch.setattr(abandoning, "GRACE_S", 0.0)
 
@@ -106,7 +106,7 @@ async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_nee
     assert all(row.has_values for row in found if row.decides)
 
 
-async def test_the_first_difference_is_named_with_its_cause(bundles: Path, cache_dir: Path) -> None:
+async def test_the_first_difference_is_named_with_its_cause(bundles: Path, cache_dir: Path):
     played = await play(files_of(bundles / "armadillo-finer"), cache_dir, steps=3)
     place, row = next((n, r) for n, r in enumerate(played.rows) if r.kind == "decision")
     record = msgspec.json.decode(row.payload, type=DecisionRecord)
@@ -121,7 +121,7 @@ async def test_the_first_difference_is_named_with_its_cause(bundles: Path, cache
     assert differing.cause == "belief, budget and seed are the same"
 
 
-async def test_a_budget_in_time_is_compared_by_its_beliefs(bundles: Path, cache_dir: Path) -> None:
+async def test_a_budget_in_time_is_compared_by_its_beliefs(bundles: Path, cache_dir: Path):
     played = await play(
         files_of(bundles / "armadillo-finer"), cache_dir, steps=3, planner="pomcp", time_s=0.02
     )
@@ -131,7 +131,7 @@ async def test_a_budget_in_time_is_compared_by_its_beliefs(bundles: Path, cache_
     assert all("0.02 s" in row.without for row in found if row.decides)
 
 
-async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path, cache_dir: Path) -> None:
+async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path, cache_dir: Path):
     played = await play(files_of(bundles / "armadillo-finer"), cache_dir, steps=2)
     rows = list(played.mission.of_kind(BeliefRow))
     assert [row.step for row in rows] == [0, 1, 2]
@@ -145,7 +145,7 @@ async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path,
     assert [b.particles for b in believed.beliefs] == [b.particles for b in rows[1].beliefs]
 
 
-async def test_a_prediction_changes_no_particle(bundles: Path, cache_dir: Path) -> None:
+async def test_a_prediction_changes_no_particle(bundles: Path, cache_dir: Path):
     played = await play(files_of(bundles / "bench" / "laser-normal"), cache_dir, steps=2, simulations=100)
     replay = played.replay()
     try:

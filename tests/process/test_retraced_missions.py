@@ -135,7 +135,7 @@ def write_run(rows: Rows, run: Path, cache_dir: Path) -> None:
 
 async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbed_twin(
     cache_dir: Path, tmp_path: Path
-) -> None:
+):
     rows = await whole(cache_dir)
     adopted = [said for _, said in rows if isinstance(said, ModelAdopted)]
     assert [row.by for row in adopted] == ["import", "projection"]
@@ -152,7 +152,7 @@ async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbe
 
 async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_ones(
     cache_dir: Path, tmp_path: Path
-) -> None:
+):
     rows = await whole(cache_dir)
     first = next(number for number, (_, said) in enumerate(rows) if isinstance(said, ModelAdopted))
     journal = await taken_up(rows[:first], 2, tmp_path, cache_dir)
@@ -160,9 +160,7 @@ async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_
     assert memory_of(journal).stretches[-1].by == "import"
 
 
-async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(
-    cache_dir: Path, tmp_path: Path
-) -> None:
+async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(cache_dir: Path, tmp_path: Path):
     async def gone(_: int) -> Project:
         raise StorageError("the catalogue has no revision 1", code="AOS702")
 
@@ -172,7 +170,7 @@ async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(
         assert await earlier_models(memory_of(rows), running, gone, of_before, lambda text: None) == ()
 
 
-def test_a_replay_needs_no_model_before_it() -> None:
+def test_a_replay_needs_no_model_before_it():
     stretches: tuple[Stretch, ...] = ()
     rows = [
         (MissionBegun("m", 1, 1, 1, "a"), 0),
@@ -192,5 +190,5 @@ def test_a_replay_needs_no_model_before_it() -> None:
 
 
 @pytest.mark.parametrize("digest", ["a", "b"])
-def test_a_mission_without_a_model_before_has_nothing_to_retrace(digest: str) -> None:
+def test_a_mission_without_a_model_before_has_nothing_to_retrace(digest: str):
     assert models_before((), digest, 0) == ()

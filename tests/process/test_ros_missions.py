@@ -82,7 +82,7 @@ def up(arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
     master: str, corpus: Path, root: Path, tmp_path: Path
-) -> None:
+):
     for name, text in ORIGINAL_INTERFACES.items():
         path = tmp_path / "interfaces" / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -105,7 +105,7 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(
     corpus: Path, root: Path, tmp_path: Path
-) -> None:
+):
     (tmp_path / "deploy.yaml").write_text(original_on_our_robot(root, corpus))
     with up([str(tmp_path / "deploy.yaml")]) as mission:
         events = list(events_of(mission))
@@ -136,7 +136,7 @@ def assert_whole_mission(events: list[dict[str, Any]], run: Path) -> None:
 
 def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a_program_of_others(
     root: Path, tmp_path: Path
-) -> None:
+):
     pytest.importorskip("zenoh_ros2_sdk", reason="needs the package zenoh-ros2-sdk")
     page = (root / "docs" / "ros.md").read_text(encoding="utf-8")
     serve, drive = re.findall(r"^\.venv/bin/aos-up (.*)$", page, re.MULTILINE)

@@ -140,7 +140,7 @@ def mission(place: Place) -> Iterator[Path]:
         assert up.end() == (130, "")
 
 
-def test_a_second_start_is_refused_and_latest_stays(place: Place, mission: Path) -> None:
+def test_a_second_start_is_refused_and_latest_stays(place: Place, mission: Path):
     with place.up() as second:
         code, error = second.ended()
     assert code == 3
@@ -150,7 +150,7 @@ def test_a_second_start_is_refused_and_latest_stays(place: Place, mission: Path)
 
 
 @pytest.mark.parametrize("is_elsewhere", [False, True], ids=["here", "elsewhere"])
-def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path: Path, is_elsewhere: bool) -> None:
+def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path: Path, is_elsewhere: bool):
     folder = tmp_path if is_elsewhere else place.folder
     decided = place.run("decisions", "--no-follow", "--json", folder=folder)
     assert json.loads(decided.stdout.splitlines()[0])["step"] == 1, decided.stderr
@@ -159,7 +159,7 @@ def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path: Path, 
     assert (Path(listed["directory"]).name, listed["ending"]) == (mission.name, "running")
 
 
-def test_a_living_mission_is_never_pruned(place: Place, mission: Path) -> None:
+def test_a_living_mission_is_never_pruned(place: Place, mission: Path):
     printed = place.run(
         "runs", "--runs", str(mission.parent), "prune", "--keep", "0", "--json", folder=Path("/")
     )
@@ -167,9 +167,7 @@ def test_a_living_mission_is_never_pruned(place: Place, mission: Path) -> None:
     assert mission.is_dir()
 
 
-def test_of_two_living_missions_one_has_to_be_named(
-    root: Path, place: Place, mission: Path, tmp_path: Path
-) -> None:
+def test_of_two_living_missions_one_has_to_be_named(root: Path, place: Place, mission: Path, tmp_path: Path):
     (tmp_path / "other").mkdir()
     running = Path(place.environment["AOS_RUNNING_DIR"])
     other = Place(root, tmp_path / "other", "tcp/127.0.0.1:0", running)
@@ -184,7 +182,7 @@ def test_of_two_living_missions_one_has_to_be_named(
         assert up.end() == (130, "")
 
 
-def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path) -> None:
+def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path):
     place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", tmp_path)
     with place.up() as one, place.up() as other:
         decided = {start: start.has_decided() for start in (one, other)}
@@ -192,7 +190,7 @@ def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path) -> None:
     assert codes == {True: 130, False: 3}
 
 
-def test_a_mission_that_was_killed_does_not_run(place: Place, tmp_path: Path) -> None:
+def test_a_mission_that_was_killed_does_not_run(place: Place, tmp_path: Path):
     killed = RunDirectory(tmp_path / "20260101T000000Z-tiger")
     killed.path.mkdir()
     # The process id is one that is there: in a new container it soon belongs to somebody else.
@@ -203,7 +201,7 @@ def test_a_mission_that_was_killed_does_not_run(place: Place, tmp_path: Path) ->
     assert listed["ending"] == "killed"
 
 
-def test_an_endpoint_is_held_by_one_start_at_a_time() -> None:
+def test_an_endpoint_is_held_by_one_start_at_a_time():
     with ExitStack() as first:
         endpoint = first.enter_context(hold_endpoint("tcp/127.0.0.1:0"))
         with pytest.raises(BusError, match="another AOS runs there"):
@@ -212,7 +210,7 @@ def test_an_endpoint_is_held_by_one_start_at_a_time() -> None:
         assert again == endpoint
 
 
-def test_an_endpoint_where_another_program_listens_is_refused() -> None:
+def test_an_endpoint_where_another_program_listens_is_refused():
     with socket.create_server(("127.0.0.1", 0)) as server:
         endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
         with pytest.raises(BusError, match="Address already in use"), hold_endpoint(endpoint):

@@ -47,7 +47,7 @@ def reaching() -> dict[str, str]:
 @pytest.mark.parametrize("skill", REACHING)
 async def test_a_model_that_reaches_out_ends_and_its_line_is_told(
     skill: str, reaching: dict[str, str], cache_dir: Path
-) -> None:
+):
     built = await built_text(reaching, cache_dir)
     async with engine_of(built) as engine:
         actions = [action.name for action in engine.description.actions]
@@ -59,7 +59,7 @@ async def test_a_model_that_reaches_out_ends_and_its_line_is_told(
 
 
 @needs_sandbox
-async def test_a_secret_does_not_come_into_a_program(cache_dir: Path, tmp_path: Path) -> None:
+async def test_a_secret_does_not_come_into_a_program(cache_dir: Path, tmp_path: Path):
     secret = tmp_path / "secret"
     secret.write_text("canary")
     with pytest.raises(ModelError) as caught:
@@ -69,11 +69,11 @@ async def test_a_secret_does_not_come_into_a_program(cache_dir: Path, tmp_path: 
 
 
 @needs_sandbox
-def test_the_trial_of_the_sandbox_finds_nothing_that_a_confined_program_can_do() -> None:
+def test_the_trial_of_the_sandbox_finds_nothing_that_a_confined_program_can_do():
     assert what_a_confined_program_can() == ""
 
 
-def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Path) -> None:
+def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Path):
     write_texts(lamp(""), tmp_path)
     script = Path(__file__).parents[1] / "without_landlock.py"
     aos = str(Path(sys.executable).with_name("aos"))

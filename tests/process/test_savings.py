@@ -17,9 +17,7 @@ _FEW_SIMULATIONS = 500
 _MISSIONS = 3
 
 
-async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missions_return(
-    cache_dir: Path,
-) -> None:
+async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missions_return(cache_dir: Path):
     """Over 60 steps rests return -82 on average, and a round trip by hand -17."""
     built = await built_text(greenhouse(5), cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other, engine_of(built) as third:
@@ -43,9 +41,7 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
     assert abs(told.q - mean) < 3 * told.stderr
 
 
-async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once(
-    cache_dir: Path,
-) -> None:
+async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once(cache_dir: Path):
     async with engine_of_text(cleaning(7), cache_dir) as engine:
         search = Search(simulations=_SIMULATIONS, seed=1)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=30))

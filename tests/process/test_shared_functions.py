@@ -58,7 +58,7 @@ __reward = -1;
 }
 
 
-async def test_values_are_exact_and_the_same(cache_dir: Path) -> None:
+async def test_values_are_exact_and_the_same(cache_dir: Path):
     values = []
     for files in (WRITTEN_OUT, SHARED):
         async with engine_of_text(files, cache_dir) as engine:

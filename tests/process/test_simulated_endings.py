@@ -45,7 +45,7 @@ __reward = -1;
 LIMITS = MissionLimits(goal_probability=0.9, step_limit=3)
 
 
-async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: Path) -> None:
+async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: Path):
     async with engine_of_text(TABLE, cache_dir) as engine:
         runs = [
             await simulate_mission(engine, Search(simulations=200, seed=seed), LIMITS)
@@ -59,7 +59,7 @@ async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: P
     assert 1 <= len(spilt) <= 20
 
 
-async def test_a_belief_tells_each_ending_apart(cache_dir: Path) -> None:
+async def test_a_belief_tells_each_ending_apart(cache_dir: Path):
     async with engine_of_text(TABLE, cache_dir) as engine:
         served = (await engine.update("serve", "done")).summary
         await engine.reset_belief()
@@ -70,7 +70,7 @@ async def test_a_belief_tells_each_ending_apart(cache_dir: Path) -> None:
     assert (kept.goal_probability, kept.failure_probability, kept.over_probability) == (0, 0, 1)
 
 
-async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path) -> None:
+async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path):
     keep = {name: text for name, text in TABLE.items() if not name.startswith("serve")}
     async with engine_of_text(keep, cache_dir) as engine:
         run = await simulate_mission(engine, Search(simulations=100, seed=1), LIMITS)
@@ -78,7 +78,7 @@ async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path
     assert run.total == -1
 
 
-def test_goals_are_counted_by_the_world(tmp_path: Path) -> None:
+def test_goals_are_counted_by_the_world(tmp_path: Path):
     write_texts(TABLE, tmp_path)
     command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]
     done = aos(*command, "--json")

@@ -87,7 +87,7 @@ def mission(folder: Path) -> Iterator[Running]:
         process.communicate(timeout=HANG_S)
 
 
-def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running, folder: Path) -> None:
+def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running, folder: Path):
     held = mission.until(event="mission", phase="holding")
     assert "look: failed, AOS510: /look failed: RuntimeError: the lens is dirty" in held["remark"]
 

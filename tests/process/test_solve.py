@@ -55,7 +55,7 @@ def saved(found: Enumeration, digest: str, solution: Solution) -> Policy:
     return Policy(header, solution.vectors)
 
 
-async def test_bounds_only_come_nearer(problems: Path, cache_dir: Path) -> None:
+async def test_bounds_only_come_nearer(problems: Path, cache_dir: Path):
     bounds: list[Bounds] = []
     model = read_problem(problems / "rover.pomdpx")
     solution = await solve(model, QUICK, cache_dir=cache_dir, on_progress=bounds.append)
@@ -107,7 +107,7 @@ def value_on_a_grid(model: ExplicitModel, points: int = 801) -> float:
 
 
 @pytest.mark.parametrize("seed", range(5))
-async def test_random_models_have_the_value_that_value_iteration_finds(seed: int, cache_dir: Path) -> None:
+async def test_random_models_have_the_value_that_value_iteration_finds(seed: int, cache_dir: Path):
     """Observations here depend on the state that is left, too. A grid over-estimates a little."""
     model = random_model(seed)
     bounds = (await solve(model, QUICK, cache_dir=cache_dir)).bounds
@@ -122,14 +122,14 @@ async def test_random_models_have_the_value_that_value_iteration_finds(seed: int
 )
 async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
     published: Path, cache_dir: Path, name: str, cpu_s: float, lower: float
-) -> None:
+):
     """The time of computing is four times as long: machines differ."""
     model = read_problem(published / f"{name}.pomdpx")
     solution = await solve(model, SolvingLimits(cpu_s=cpu_s), cache_dir=cache_dir)
     assert solution.bounds.lower >= lower
 
 
-async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path, cache_dir: Path) -> None:
+async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path, cache_dir: Path):
     """The graph is evaluated exactly and by other code, so the bound is true."""
     model = read_problem(published / "TagAvoid.pomdpx")
     solution = await solve(model, SolvingLimits(cpu_s=0.5), cache_dir=cache_dir)
@@ -137,9 +137,7 @@ async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path, c
     assert solution.bounds.lower - 0.05 <= graph.value <= solution.bounds.upper
 
 
-async def test_variables_that_change_nothing_are_left_out(
-    root: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+async def test_variables_that_change_nothing_are_left_out(root: Path, cache_dir: Path, tmp_path: Path):
     folder = root / "tests" / "data" / "bundles" / "tiger"
     files = {path.name: path.read_text() for path in folder.iterdir()}
     files["tiger.ef"] += "\nstate_variable: int listened\n\nstate_variable: bool heard []\n"
@@ -166,7 +164,7 @@ async def test_variables_that_change_nothing_are_left_out(
 
 async def test_a_policy_decides_online_and_returns_what_it_promises(
     bundles: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+):
     built = await built_bundle(bundles / "armadillo-finer", cache_dir)
     async with engine_of(built) as engine:
         found = await enumerate_model(engine)
@@ -188,7 +186,7 @@ async def test_a_policy_decides_online_and_returns_what_it_promises(
 
 async def test_a_policy_for_other_documents_is_refused(
     root: Path, bundles: Path, cache_dir: Path, tmp_path: Path
-) -> None:
+):
     folder = root / "tests" / "data" / "bundles" / "tiger"
     found = await enumerated(folder, cache_dir)
     solution = await solve(found.model, QUICK, cache_dir=cache_dir)
@@ -203,14 +201,14 @@ async def test_a_policy_for_other_documents_is_refused(
     assert plan.planner != "policy"
 
 
-def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_no_policy_is_refused(tmp_path: Path):
     (tmp_path / "x.policy").write_text("{}\n")
     with pytest.raises(PlanningError, match="is no policy of this version") as caught:
         Policy.load(tmp_path / "x.policy")
     assert caught.value.code == "AOS321"
 
 
-def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path) -> None:
+def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path):
     path = tmp_path / "x.policy"
     header = PolicyHeader(
         model="m", model_digest="d", discount=0.5, lower=1.0, upper=2.0, actions=("go",), states=("here",)
@@ -225,7 +223,7 @@ def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path) -> None:
             Policy.load(path)
 
 
-async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path) -> None:
+async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path):
     skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = state__.level;\n__moduleResponse = high;\n"
     environment = "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: {kind} level\n"
     for kind, step, reason in (
@@ -239,14 +237,14 @@ async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cac
         assert caught.value.code == "AOS220"
 
 
-async def test_a_discount_of_one_is_refused(problems: Path, cache_dir: Path) -> None:
+async def test_a_discount_of_one_is_refused(problems: Path, cache_dir: Path):
     model = msgspec.structs.replace(read_problem(problems / "tiger.pomdp"), discount=1.0)
     with pytest.raises(PlanningError, match=r"--discount 0\.99") as caught:
         await solve(model, QUICK, cache_dir=cache_dir)
     assert caught.value.code == "AOS320"
 
 
-async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path, cache_dir: Path) -> None:
+async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path, cache_dir: Path):
     model = read_problem(problems / "tiger.pomdp")
     large = msgspec.structs.replace(model, rewards=model.rewards * 1e306)
     with pytest.raises(PlanningError, match="too large"):
@@ -256,7 +254,7 @@ async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path, cache
 @pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
 async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
     problems: Path, cache_dir: Path, value: float, actions: set[int]
-) -> None:
+):
     model = with_stopping(read_problem(problems / "tiger.pomdp"), value)
     solution = await solve(model, QUICK, cache_dir=cache_dir)
     graph = policy_graph(model, solution.vectors)
@@ -264,7 +262,7 @@ async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
     assert graph.value == pytest.approx(max(value, 19.3714), abs=1e-3)
 
 
-async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path, cache_dir: Path) -> None:
+async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path, cache_dir: Path):
     stop = asyncio.Event()
     endless = SolvingLimits(precision=0, cpu_s=1000)
     model = random_model(3)
@@ -279,7 +277,7 @@ def tiger_graph(problems: Path, cache_dir: Path) -> PolicyGraph:
     return policy_graph(model, asyncio.run(solve(model, QUICK, cache_dir=cache_dir)).vectors)
 
 
-def test_the_graph_of_tiger_is_the_well_known_one(tiger_graph: PolicyGraph) -> None:
+def test_the_graph_of_tiger_is_the_well_known_one(tiger_graph: PolicyGraph):
     """Listen until one side was heard twice more often than the other."""
     assert tiger_graph.is_whole
     assert len(tiger_graph.nodes) == 5
@@ -305,9 +303,7 @@ int main(void) {
 """
 
 
-def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(
-    tiger_graph: PolicyGraph, tmp_path: Path
-) -> None:
+def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(tiger_graph: PolicyGraph, tmp_path: Path):
     header = c_header(tiger_graph, "Tiger")
     assert re.findall(r"#include .*", header) == ["#include <stdint.h>"]
     (tmp_path / "tiger.h").write_text(header)
@@ -334,7 +330,7 @@ def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(
     assert [int(line) for line in walked.stdout.split()] == expected
 
 
-async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result(cache_dir: Path) -> None:
+async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result(cache_dir: Path):
     always = Ragged(np.array([0, 1], np.int64), np.zeros(1, np.int64), np.ones(1))
     no_number = ExplicitModel(
         name="no number", discount=0.9, states=("here",), actions=("wait",), observations=("none",),

@@ -23,7 +23,7 @@ def bundle(root: Path) -> Path:
     return root / "tests" / "data" / "bundles" / "tiger"
 
 
-def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_path: Path) -> None:
+def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_path: Path):
     names = [tmp_path / name for name in ("t.pomdpx", "t.policy", "t.dot", "t.h")]
     options = ["--export", "--out", "--graph", "--c-header"]
     wanted = [part for pair in zip(options, names, strict=True) for part in pair]
@@ -41,7 +41,7 @@ def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_pat
     assert "t_start[1]" in (tmp_path / "t.h").read_text()
 
 
-def test_people_see_the_bounds_come_nearer(tiger: Path) -> None:
+def test_people_see_the_bounds_come_nearer(tiger: Path):
     result = aos("solve", tiger)
     lines = result.stdout.splitlines()
     assert lines[0].endswith("tiger.pomdp: 2 states, 3 actions, 2 observations, discount 0.95")
@@ -49,7 +49,7 @@ def test_people_see_the_bounds_come_nearer(tiger: Path) -> None:
     assert lines[-1].startswith("the policy gives at least 19.371")
 
 
-def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path) -> None:
+def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path):
     saved = tmp_path / "tiger.policy"
     assert aos("solve", bundle, "--out", saved).exit_code == 0
     decided = json.loads(aos("plan", bundle, "--policy", saved, "--json").stdout)
@@ -61,7 +61,7 @@ def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path) 
     assert all(run["actions"][0] == "listen" for run in campaign["runs"])
 
 
-def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path: Path) -> None:
+def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path: Path):
     result = aos("solve", tiger, "--export", tmp_path / "tiger.txt")
     assert result.exit_code == 2
     assert "needs to end in .pomdp or .pomdpx" in result.output
@@ -79,7 +79,7 @@ def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path: Path) -
 
 def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
     tiger: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     assert "/dev/full cannot be written: No space" in aos("solve", tiger, "--out", "/dev/full").output
     reading, writing = os.pipe()
     with os.fdopen(reading), os.fdopen(writing, "w"):
@@ -93,7 +93,7 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
 @pytest.mark.parametrize(("problem", "runs"), [("tiger.pomdp", 100), ("rover.pomdpx", 500)])
 def test_missions_of_a_problem_file_return_what_its_policy_promises(
     tiger: Path, tmp_path: Path, problem: str, runs: int
-) -> None:
+):
     policy, path = tmp_path / "a.policy", tiger.with_name(problem)
     bounds = json.loads(aos("solve", path, "--out", policy, "--json").stdout)
     simulated = aos("simulate", path, "--policy", policy, "--runs", str(runs), "--json")
@@ -102,7 +102,7 @@ def test_missions_of_a_problem_file_return_what_its_policy_promises(
     assert bounds["lower"] - room < summary["mean_discounted_return"] < bounds["upper"] + room
 
 
-def test_missions_of_a_problem_file_need_a_policy_of_that_file(tiger: Path, tmp_path: Path) -> None:
+def test_missions_of_a_problem_file_need_a_policy_of_that_file(tiger: Path, tmp_path: Path):
     assert "aos solve" in aos("simulate", tiger).output
     policy = tmp_path / "a.policy"
     aos("solve", tiger.with_name("costs.pomdp"), "--out", policy)
@@ -114,7 +114,7 @@ def test_missions_of_a_problem_file_need_a_policy_of_that_file(tiger: Path, tmp_
 
 def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_printed(
     tiger: Path, bundle: Path
-) -> None:
+):
     # With so few states allowed listing them would be refused, too.
     for arguments in ((tiger,), (bundle, "--states", "1")):
         refused = aos("solve", *arguments, "--discount", "1")
@@ -122,7 +122,7 @@ def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_p
         assert (refused.exception.code, refused.stdout) == ("AOS320", "")
 
 
-def test_a_deploy_file_names_a_policy(tmp_path: Path) -> None:
+def test_a_deploy_file_names_a_policy(tmp_path: Path):
     (tmp_path / "rover").mkdir()
     head = "aos: 1\nrobot: rover\nbundles: [rover]\n"
     (tmp_path / "a.policy").write_text("")

@@ -12,7 +12,7 @@ from aos_deploy.export.kept_missions import kept_missions
 
 def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_its_end(
     tmp_path: Path, cache_dir: Path
-) -> None:
+):
     text = (ROOT / "deploy/errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/")
     with collector() as got:
         (tmp_path / "errand.yaml").write_text(f"{text}\nspans: {{otlp: '{got.address}'}}\n")

@@ -70,7 +70,7 @@ async def told(engine: Engine) -> NDArray[np.float64]:
     return np.array([[each.values.get(str(level), 0.0) for level in range(LEVELS)] for each in marginals])
 
 
-async def test_marginals_of_many_machines_stay_close_to_the_exact_ones(cache_dir: Path) -> None:
+async def test_marginals_of_many_machines_stay_close_to_the_exact_ones(cache_dir: Path):
     distances = []
     async with engine_of_text(FILES, cache_dir) as engine:
         workshop = Workshop(1)
@@ -83,7 +83,7 @@ async def test_marginals_of_many_machines_stay_close_to_the_exact_ones(cache_dir
     assert np.mean(distances) < 0.014
 
 
-async def test_such_a_belief_is_the_same_after_a_kill(cache_dir: Path) -> None:
+async def test_such_a_belief_is_the_same_after_a_kill(cache_dir: Path):
     digests = []
     built = await built_text(FILES, cache_dir)
     for is_killed in (False, True):
@@ -99,7 +99,7 @@ async def test_such_a_belief_is_the_same_after_a_kill(cache_dir: Path) -> None:
     assert digests[0] == digests[1] != ""
 
 
-async def test_a_hand_that_is_dealt_in_a_step_outlasts_its_states(cache_dir: Path) -> None:
+async def test_a_hand_that_is_dealt_in_a_step_outlasts_its_states(cache_dir: Path):
     cards = 30
     environment = f"""project: cards
 horizon: 5

@@ -27,7 +27,7 @@ async def one_busy_processor() -> AsyncIterator[None]:
 
 
 @pytest.mark.usefixtures("one_busy_processor")
-async def test_the_time_in_which_a_child_waits_for_a_processor_does_not_count() -> None:
+async def test_the_time_in_which_a_child_waits_for_a_processor_does_not_count():
     # Beside a program of niceness 0 it has a tenth of the processor, so that it needs twice the deadline.
     child = await Child.start(guarded([sys.executable, "-c", BURN], Limits(niceness=10)), stdout=PIPE)
     assert await child.in_time(child.stdout.readline(), 0.7) == b"burnt\n"
@@ -35,7 +35,7 @@ async def test_the_time_in_which_a_child_waits_for_a_processor_does_not_count() 
 
 
 @pytest.mark.usefixtures("one_busy_processor")
-async def test_a_child_that_wants_no_processor_has_its_deadline_and_no_more() -> None:
+async def test_a_child_that_wants_no_processor_has_its_deadline_and_no_more():
     child = await Child.start(["sleep", "1000"], stdout=PIPE)
     with pytest.raises(TimeoutError):
         await child.in_time(child.stdout.readline(), 0.3)

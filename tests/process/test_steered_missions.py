@@ -96,7 +96,7 @@ def in_turn(*answers: Callable[[], None]) -> Callable[[], None]:
     return lambda: next(left)()
 
 
-async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tiger: BuiltModel) -> None:
+async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tiger: BuiltModel):
     around = Steered()
     around.on_act = lambda request: around.steer("hold") if request.id.step == 2 else None
     held: list[MissionState] = []
@@ -117,7 +117,7 @@ async def test_a_mission_is_held_at_the_next_decision_and_goes_step_by_step(tige
     assert violations(around) == []
 
 
-async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(tiger: BuiltModel) -> None:
+async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(tiger: BuiltModel):
     around = Steered()
     wishes = in_turn(lambda: None, lambda: around.steer("hold"), lambda: None, *[lambda: None] * 9)
     told: list[MissionState] = []
@@ -140,9 +140,7 @@ async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(
     assert [search.is_dropped for search in around.decisions[1].searches] == [True, False]
 
 
-async def test_a_search_without_end_is_given_up_by_a_hold_and_by_an_action_of_the_operator(
-    tiger: BuiltModel,
-) -> None:
+async def test_a_search_without_end_is_given_up_by_a_hold_and_by_an_action_of_the_operator(tiger: BuiltModel):
     around = Steered()
     wishes = in_turn(lambda: around.steer("act", "listen"), lambda: around.steer("hold"))
 
@@ -158,7 +156,7 @@ async def test_a_search_without_end_is_given_up_by_a_hold_and_by_an_action_of_th
     assert around.decisions[0].searches == ()
 
 
-async def test_an_action_of_the_operator_is_observed_like_any_other(tiger: BuiltModel) -> None:
+async def test_an_action_of_the_operator_is_observed_like_any_other(tiger: BuiltModel):
     around = Steered()
     around.on_act = lambda request: around.steer("act", OPEN_LEFT) if request.id.step == 1 else None
     await run(tiger, around, step_limit=2)
@@ -172,7 +170,7 @@ async def test_an_action_of_the_operator_is_observed_like_any_other(tiger: Built
     assert observation.belief.marginals[0].values == pytest.approx({"Left": 0.5, "Right": 0.5})
 
 
-async def test_what_is_left_out_is_neither_decided_for_nor_looked_ahead_to(tiger: BuiltModel) -> None:
+async def test_what_is_left_out_is_neither_decided_for_nor_looked_ahead_to(tiger: BuiltModel):
     around = Steered(hears_right)
     around.on_act = lambda request: (
         around.steer("leave_out", name=OPEN_RIGHT) if request.id.step == 1 else None
@@ -196,7 +194,7 @@ def _index(engine: Engine, action: str) -> int:
     return [each.name for each in engine.description.actions].index(action)
 
 
-async def test_a_mission_without_anything_left_holds_until_something_is_taken_back(tiger: BuiltModel) -> None:
+async def test_a_mission_without_anything_left_holds_until_something_is_taken_back(tiger: BuiltModel):
     around = Steered()
 
     def leave_all_out(request: Activate) -> None:
@@ -217,7 +215,7 @@ async def test_a_mission_without_anything_left_holds_until_something_is_taken_ba
     assert violations(around) == []
 
 
-async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_dir: Path) -> None:
+async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_dir: Path):
     project = load_bundle(bundles / "bench" / "tiger").project
     assert project is not None
     never = "open && state.tiger_behind == Left"
@@ -247,7 +245,7 @@ async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_
     assert f"never {never}: 0.1 is left of 0.1, and it risks 0." in said[0].message
 
 
-async def test_a_script_ends_at_a_skill_that_fails_and_nothing_is_tried_again(tiger: BuiltModel) -> None:
+async def test_a_script_ends_at_a_skill_that_fails_and_nothing_is_tried_again(tiger: BuiltModel):
     def breaks_once(request: Activate) -> Outcome:
         return jammed(request) if request.id.step == 2 else hears_left(request)
 
@@ -263,7 +261,7 @@ async def test_a_script_ends_at_a_skill_that_fails_and_nothing_is_tried_again(ti
     assert around.chosen[2][1] == "planner"
 
 
-async def test_stop_ends_a_search_that_would_take_minutes(tiger: BuiltModel) -> None:
+async def test_stop_ends_a_search_that_would_take_minutes(tiger: BuiltModel):
     around = Steered()
     loop = asyncio.get_running_loop()
 
@@ -277,7 +275,7 @@ async def test_stop_ends_a_search_that_would_take_minutes(tiger: BuiltModel) -> 
     assert (state.ending, state.remark, around.decisions) == ("cancelled", "stopped by ana", [])
 
 
-async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltModel) -> None:
+async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltModel):
     """Whoever asks goes on asking until the mission has heard it, as a client does."""
 
     def operated(memory: MissionMemory) -> Steered:
@@ -315,7 +313,7 @@ async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltMod
 
 async def test_a_mission_that_could_not_reach_its_goal_without_a_skill_holds_and_does_not_give_up(
     cache_dir: Path,
-) -> None:
+):
     built = await built_text(counting("lamp", "press", steps="1", reward=-1), cache_dir)
     around = Steered(lambda request: observed(request, "done"))
     around.on_act = lambda request: around.steer("leave_out", name="press") if request.id.step == 1 else None

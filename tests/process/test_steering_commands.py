@@ -27,7 +27,7 @@ def followed(root: Path, run: Path) -> subprocess.CompletedProcess[str]:
 
 async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(
     root: Path, tmp_path: Path
-) -> None:
+):
     with up(root, tmp_path) as system:
         system.be_slow(True)
         name = system.until("mission", phase="acting")["mission"]
@@ -70,7 +70,7 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert len({row["by"] for row in rows}) == 1
 
 
-async def test_a_program_steers_and_stop_cancels_motion_at_once(root: Path, tmp_path: Path) -> None:
+async def test_a_program_steers_and_stop_cancels_motion_at_once(root: Path, tmp_path: Path):
     with up(root, tmp_path) as system:
         system.be_slow(True)
         system.until("mission", phase="acting")

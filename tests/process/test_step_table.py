@@ -51,7 +51,7 @@ __moduleResponse = AOS.Bernoulli(0.9) == (state__.face < 2) ? low : high;
     }
 
 
-async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path) -> None:
+async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path):
     first = sum(odds * worth for odds, worth in zip(FIRST_ODDS, WORTH, strict=True))
     thrown = sum(odds * worth for odds, worth in zip(ODDS, WORTH, strict=True))
     # The die has been thrown after half of the steps: what is left of the first face halves each time.
@@ -62,7 +62,7 @@ async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path) -> Non
         assert walked.mean_reward == pytest.approx(sum(means) / HORIZON, rel=0.01)
 
 
-async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> None:
+async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path):
     async with engine_of_text(documents(""), cache_dir) as engine:
         best = max((await engine.exact_values(HORIZON)).actions, key=lambda value: value.q)
         plan = await engine.plan(simulations=100_000, seed=1, planner="pomcp")
@@ -78,7 +78,7 @@ async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> N
     ],
     ids=["a draw without end", "states without end", "a fault that hardly ever happens"],
 )
-async def test_there_is_no_table_of(move: str, cache_dir: Path) -> None:
+async def test_there_is_no_table_of(move: str, cache_dir: Path):
     async with engine_of_text(documents(move), cache_dir) as engine:
         assert (await engine.rate(0.05, seed=1, stepping="table")).samples == 0
         assert (await engine.rate(0.05, seed=1)).samples > 0

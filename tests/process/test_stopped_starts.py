@@ -17,7 +17,7 @@ def compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 
 
-def test_the_only_mission_is_cancelled_while_its_model_compiles(root: Path, tmp_path: Path) -> None:
+def test_the_only_mission_is_cancelled_while_its_model_compiles(root: Path, tmp_path: Path):
     with up(root, tmp_path, "tiger.yaml") as system:
         system.until("mission", phase="compiling")
         answer = json.loads(system.aos("mission", "stop", "--json")[1])
@@ -33,7 +33,7 @@ def test_the_only_mission_is_cancelled_while_its_model_compiles(root: Path, tmp_
 
 def test_the_first_mission_of_a_system_that_stays_does_not_begin_and_the_next_one_may(
     root: Path, tmp_path: Path
-) -> None:
+):
     with up(root, tmp_path) as system:
         system.until("mission", phase="compiling")
         code, said, _ = system.aos("mission", "stop")

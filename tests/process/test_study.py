@@ -23,7 +23,7 @@ async def played(bundles: Path, cache_dir: Path) -> Played:
     return await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=2)
 
 
-async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played, cache_dir: Path) -> None:
+async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played, cache_dir: Path):
     study = Study(played, cache_dir, flips_s=math.inf)
     try:
         why = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
@@ -57,7 +57,7 @@ async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Play
 
 async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them(
     played: Played, bundles: Path, cache_dir: Path
-) -> None:
+):
     study = Study(played, cache_dir)
     try:
         chosen = played.mission.decision(1).action
@@ -80,7 +80,7 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         await study.close()
 
 
-async def test_what_cannot_be_supposed_is_told(played: Played, cache_dir: Path) -> None:
+async def test_what_cannot_be_supposed_is_told(played: Played, cache_dir: Path):
     study = Study(played, cache_dir)
     try:
         for query, code, said in (
@@ -102,7 +102,7 @@ async def test_what_cannot_be_supposed_is_told(played: Played, cache_dir: Path) 
 
 async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     played = await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=1)
     chosen = played.mission.decision(1)
     asked = msgspec.structs.replace(
@@ -131,7 +131,7 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
         await study.close()
 
 
-async def test_a_decision_whose_activation_brought_nothing_says_so(played: Played, cache_dir: Path) -> None:
+async def test_a_decision_whose_activation_brought_nothing_says_so(played: Played, cache_dir: Path):
     record = played.mission.outcome(1)
     assert record is not None
     assert record.outcome is not None
@@ -154,9 +154,7 @@ async def test_a_decision_whose_activation_brought_nothing_says_so(played: Playe
     assert "nothing was observed, its activation ended as unknown: the adapter was lost" in why.remark
 
 
-async def test_an_action_of_a_script_is_explained_where_values_are_searched(
-    bundles: Path, cache_dir: Path
-) -> None:
+async def test_an_action_of_a_script_is_explained_where_values_are_searched(bundles: Path, cache_dir: Path):
     played = await play(
         read_bundle_files(bundles / "bench" / "tiger")[0],
         cache_dir,
@@ -193,7 +191,7 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched(
 
 async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     files = read_bundle_files(bundles / "bench" / "tiger")[0]
     tolls = "for (int i = 0; i < 16; i++) __reward -= AOS.Bernoulli(0.25) ? 1 : 0;"
     files["listen.sd"] = files["listen.sd"].replace(b"__reward = -1;", f"__reward = -1;\n{tolls}".encode())

@@ -35,7 +35,7 @@ def programs() -> Callable[..., tuple[Program, ...]]:
 
 async def test_services_start_get_ready_and_stop_in_reverse_order(
     system: System, programs: Callable[..., tuple[Program, ...]]
-) -> None:
+):
     async with system.up(*programs()) as supervisor:
         await supervisor.until_ready()
         pids = list(supervisor.pids.values())
@@ -50,13 +50,13 @@ async def test_services_start_get_ready_and_stop_in_reverse_order(
     assert not has_listener(system.port)
 
 
-async def test_one_service_can_be_waited_for_before_the_others(system: System) -> None:
+async def test_one_service_can_be_waited_for_before_the_others(system: System):
     async with system.up(small("registry"), small("skills", "slow")) as supervisor:
         await supervisor.until_ready("registry")
         assert "skills" not in system.order("ready")
 
 
-async def test_a_service_that_is_not_ready_in_time_is_named_with_its_log(system: System) -> None:
+async def test_a_service_that_is_not_ready_in_time_is_named_with_its_log(system: System):
     error = await system.error(small("registry"), small("skills", "slow", start_s=5))
     assert isinstance(error, DeployError)
     assert error.code == "AOS802"
@@ -65,7 +65,7 @@ async def test_a_service_that_is_not_ready_in_time_is_named_with_its_log(system:
     assert str(system.run.log("skills")) in error.hint
 
 
-async def test_a_fault_at_the_start_comes_out_whole(system: System) -> None:
+async def test_a_fault_at_the_start_comes_out_whole(system: System):
     error = await system.error(small("registry"), small("skills", "faulty"))
     assert isinstance(error, DocumentError)
     assert str(error) == "AOS102: skills: the world is wrong. Mend it"
@@ -73,7 +73,7 @@ async def test_a_fault_at_the_start_comes_out_whole(system: System) -> None:
     assert "AOS102: the world is wrong. Mend it" in system.run.log("skills").read_text()
 
 
-async def test_a_defect_in_a_service_is_told_in_one_line(system: System) -> None:
+async def test_a_defect_in_a_service_is_told_in_one_line(system: System):
     error = await system.error(small("registry"), small("skills", "broken"))
     assert error.code == "AOS606"
     assert error.message == "skills: ended by a defect: RuntimeError: a defect"
@@ -81,13 +81,13 @@ async def test_a_defect_in_a_service_is_told_in_one_line(system: System) -> None
     assert "Traceback" in system.run.log("skills").read_text()
 
 
-async def test_a_service_on_a_full_disk_is_told_as_that_though_its_fault_has_no_space(system: System) -> None:
+async def test_a_service_on_a_full_disk_is_told_as_that_though_its_fault_has_no_space(system: System):
     error = await system.error(small("registry"), small("skills", "full"))
     assert str(error).startswith("AOS701: skills could not write or read its files. See that the disk of the")
     assert "database or disk is full" in error.hint
 
 
-async def test_a_program_that_cannot_run_is_told(system: System) -> None:
+async def test_a_program_that_cannot_run_is_told(system: System):
     error = await system.error(Program(name="skills", module="no_such_package"))
     assert error.code == "AOS802"
     assert "skills ended unexpectedly: exit status 1" in error.message
@@ -96,7 +96,7 @@ async def test_a_program_that_cannot_run_is_told(system: System) -> None:
 
 async def test_the_death_of_a_service_that_is_not_started_again_ends_the_system(
     system: System, programs: Callable[..., tuple[Program, ...]]
-) -> None:
+):
     error = await system.error(*programs(), victim="middleware")
     assert error.message == "middleware ended unexpectedly: killed by SIGKILL"
     assert error.code == "AOS804"
@@ -104,7 +104,7 @@ async def test_the_death_of_a_service_that_is_not_started_again_ends_the_system(
 
 
 @DEATHS
-async def test_a_service_that_dies_or_freezes_is_started_again(system: System, death: signal.Signals) -> None:
+async def test_a_service_that_dies_or_freezes_is_started_again(system: System, death: signal.Signals):
     async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
         await supervisor.until_ready()
         os.kill(supervisor.pids["solver"], death)
@@ -113,7 +113,7 @@ async def test_a_service_that_dies_or_freezes_is_started_again(system: System, d
     assert (end.name, end.how, end.then) == ("solver", "killed by SIGKILL", "it is started again")
 
 
-async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(system: System) -> None:
+async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(system: System):
     async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
         await supervisor.until_ready()
         pid = supervisor.pids["solver"]
@@ -123,7 +123,7 @@ async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(syste
         assert supervisor.pids["solver"] == pid, "the service was not started again"
 
 
-async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: System) -> None:
+async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: System):
     services = (small("solver", is_restarted=True), small("registry", is_restarted=True))
     async with asyncio.timeout(HANG_S), system.up(*services) as supervisor:
         await supervisor.until_ready()
@@ -136,7 +136,7 @@ async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: Sys
         assert {name for name, pid in supervisor.pids.items() if before[name] != pid} == {"router"}
 
 
-async def test_a_service_that_ends_again_and_again_ends_the_system_with_the_count(system: System) -> None:
+async def test_a_service_that_ends_again_and_again_ends_the_system_with_the_count(system: System):
     async def work() -> None:
         async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
             await supervisor.until_ready()
@@ -150,7 +150,7 @@ async def test_a_service_that_ends_again_and_again_ends_the_system_with_the_coun
     assert raised.value.code == "AOS804"
 
 
-async def test_cancelling_stops_everything_and_its_children(system: System) -> None:
+async def test_cancelling_stops_everything_and_its_children(system: System):
     up = asyncio.Event()
     pids: list[int] = []
 
@@ -172,7 +172,7 @@ async def test_cancelling_stops_everything_and_its_children(system: System) -> N
 
 
 @DEATHS
-async def test_a_command_that_starts_again_is_ready_again(system: System, death: signal.Signals) -> None:
+async def test_a_command_that_starts_again_is_ready_again(system: System, death: signal.Signals):
     async with (
         asyncio.timeout(HANG_S),
         system.up(command("python", "small_command.py", is_restarted=True)) as supervisor,
@@ -192,7 +192,7 @@ async def test_a_command_that_starts_again_is_ready_again(system: System, death:
 
 async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_told(
     system: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setenv("PATH", stand_in(tmp_path) + os.pathsep + os.environ["PATH"])
     script = f"echo $$ > {tmp_path}/pid; exec {sys.executable} small_command.py"
     program = msgspec.structs.replace(command("sh", "-c", script, is_restarted=True), host="robot@arm")
@@ -207,7 +207,7 @@ async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_
     assert [end.how for end in system.ends] == ["killed by SIGKILL"]
 
 
-async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System) -> None:
+async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System):
     error = await system.error(command("sh", "-c", "echo no camera; exit 4", is_restarted=True))
     assert system.order("ended") == ["robot"] * 5 + ["router"]
     assert error.code == "AOS802"
@@ -215,7 +215,7 @@ async def test_a_command_that_ends_before_it_serves_is_tried_again(system: Syste
     assert "no camera" in error.hint
 
 
-async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System) -> None:
+async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System):
     error = await system.error(command("./no_such_program", is_restarted=True))
     assert system.order("ended") == ["robot", "router"]
     assert error.code == "AOS802"

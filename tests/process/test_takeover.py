@@ -65,7 +65,7 @@ class SlowClock(SystemClock):
         return self._now_s
 
 
-async def test_the_same_state_is_imported(cache_dir: Path) -> None:
+async def test_the_same_state_is_imported(cache_dir: Path):
     past = past_of(looked("above"))
     takeover, engine = await taken(changed(look=("0.9", "0.8")), cache_dir, past, SystemClock())
     await engine.close()
@@ -74,7 +74,7 @@ async def test_the_same_state_is_imported(cache_dir: Path) -> None:
     assert marginal(takeover.belief.marginals, "cat")["Attic"] == pytest.approx(0.6)
 
 
-async def test_another_state_is_the_posterior_of_the_new_documents_given_the_past(cache_dir: Path) -> None:
+async def test_another_state_is_the_posterior_of_the_new_documents_given_the_past(cache_dir: Path):
     files = with_bell("state.has_bell = AOS.Bernoulli(0.5);")
     files["look.sd"] = files["look.sd"].replace("0.9", "(state.has_bell ? 1.0 : 0.5)")
     takeover, engine = await taken(files, cache_dir, past_of(looked("above")), SystemClock())
@@ -84,7 +84,7 @@ async def test_another_state_is_the_posterior_of_the_new_documents_given_the_pas
     assert takeover.row.moved == {"cat": pytest.approx(0.6 - 0.1875 / (0.1875 + 0.15))}
 
 
-async def test_what_the_new_documents_lack_lets_extrinsic_changes_alone_act(cache_dir: Path) -> None:
+async def test_what_the_new_documents_lack_lets_extrinsic_changes_alone_act(cache_dir: Path):
     past = past_of(
         Evidence("whistle", "whistle", "done"),
         looked("beside"),
@@ -101,7 +101,7 @@ async def test_what_the_new_documents_lack_lets_extrinsic_changes_alone_act(cach
     assert marginal(takeover.belief.marginals, "cat")["Attic"] == pytest.approx(0.25)
 
 
-async def test_an_impossible_past_is_met_by_projection_which_keeps_what_both_have(cache_dir: Path) -> None:
+async def test_an_impossible_past_is_met_by_projection_which_keeps_what_both_have(cache_dir: Path):
     files = with_bell("state.has_bell = AOS.Bernoulli(0.5);")
     files["look.sd"] = files["look.sd"].replace("state.cat == Attic ? 0.9 : 0.2", "0.0")
     takeover, engine = await taken(files, cache_dir, past_of(looked("above")), SystemClock())
@@ -123,7 +123,7 @@ async def test_an_impossible_past_is_met_by_projection_which_keeps_what_both_hav
     }
 
 
-async def test_what_a_monitor_said_may_be_impossible_too(cache_dir: Path) -> None:
+async def test_what_a_monitor_said_may_be_impossible_too(cache_dir: Path):
     files = with_bell("state.has_bell = false;")
     files["hall.ef"] += "monitor: purr\ncode:\n__moduleResponse = state.has_bell ? ringing : silent;\n"
     files["purr.am"] = PURR
@@ -134,7 +134,7 @@ async def test_what_a_monitor_said_may_be_impossible_too(cache_dir: Path) -> Non
     assert takeover.row.why == "what a monitor said after step 2 is impossible in the new documents"
 
 
-async def test_a_projected_variable_follows_those_that_never_change(cache_dir: Path) -> None:
+async def test_a_projected_variable_follows_those_that_never_change(cache_dir: Path):
     # Nothing but the initial belief sets `cat`, so the bell still hangs where it hung at the start.
     files = with_bell("")
     start = "state.cat = AOS.Bernoulli(0.25) ? Attic : Cellar;\n"
@@ -145,7 +145,7 @@ async def test_a_projected_variable_follows_those_that_never_change(cache_dir: P
     assert marginal(takeover.belief.marginals, "has_bell")["true"] == pytest.approx(0.6)
 
 
-async def test_a_variable_of_another_type_is_new(cache_dir: Path) -> None:
+async def test_a_variable_of_another_type_is_new(cache_dir: Path):
     files = changed(hall=("Attic, Cellar, Yard", "Cellar, Attic, Yard"))
     files["look.sd"] = files["look.sd"].replace("state.cat == Attic ? 0.9 : 0.2", "0.0")
     takeover, engine = await taken(files, cache_dir, past_of(looked("above")), SystemClock())
@@ -155,7 +155,7 @@ async def test_a_variable_of_another_type_is_new(cache_dir: Path) -> None:
     assert marginal(takeover.belief.marginals, "is_wet")["true"] == pytest.approx(0.1)
 
 
-async def test_a_replay_that_would_take_too_long_is_a_projection(cache_dir: Path) -> None:
+async def test_a_replay_that_would_take_too_long_is_a_projection(cache_dir: Path):
     past = past_of(*[looked("below")] * 20)
     files = with_bell("state.has_bell = true;")
     takeover, engine = await taken(files, cache_dir, past, SlowClock(1.0))
@@ -165,7 +165,7 @@ async def test_a_replay_that_would_take_too_long_is_a_projection(cache_dir: Path
     assert REPLAY_S < 20
 
 
-async def test_nothing_in_common_after_an_impossible_past_is_no_belief(cache_dir: Path) -> None:
+async def test_nothing_in_common_after_an_impossible_past_is_no_belief(cache_dir: Path):
     files = changed(hall=("is_wet", "is_dry"))
     files = {name: text.replace("cat", "dog") for name, text in files.items()}
     files["look.sd"] = files["look.sd"].replace("state.dog == Attic ? 0.9 : 0.2", "0.0")
@@ -174,7 +174,7 @@ async def test_nothing_in_common_after_an_impossible_past_is_no_belief(cache_dir
     assert caught.value.code == "AOS112"
 
 
-async def test_a_projection_keeps_what_nobody_observed_apart(cache_dir: Path) -> None:
+async def test_a_projection_keeps_what_nobody_observed_apart(cache_dir: Path):
     # With its time the skill may have run three times, or never: 1 - 0.9 ** 3 of one half.
     past = past_of(*[Evidence("look", "look", ran_probability=0.5)] * 3)
     files = with_bell("state.has_bell = AOS.Bernoulli(0.5);")
@@ -193,7 +193,7 @@ async def test_a_projection_keeps_what_nobody_observed_apart(cache_dir: Path) ->
         assert told == pytest.approx(marginal(before.summary.marginals, variable))
 
 
-async def test_a_projection_of_particles_keeps_their_weights(cache_dir: Path) -> None:
+async def test_a_projection_of_particles_keeps_their_weights(cache_dir: Path):
     past = past_of(*[looked("below")] * 3)
     files = with_bell("state.has_bell = AOS.Bernoulli(0.25);")
     engine = await Engine.start(await built_text(files, cache_dir), seed=1)
@@ -212,9 +212,7 @@ async def test_a_projection_of_particles_keeps_their_weights(cache_dir: Path) ->
     assert marginal(takeover.belief.marginals, "has_bell")["true"] == pytest.approx(0.25, abs=0.02)
 
 
-async def test_a_projection_keeps_what_has_counted_once_where_both_have_the_same_code(
-    cache_dir: Path,
-) -> None:
+async def test_a_projection_keeps_what_has_counted_once_where_both_have_the_same_code(cache_dir: Path):
     once = "reward_code:\nif (state.cat == Attic) {{ __reward = {}; __stopEvaluatingState = true; }}\n"
     files = with_bell("state.has_bell = false;")
     files["hall.ef"] += once.format(5) + once.format(7)
@@ -238,7 +236,7 @@ async def test_a_projection_keeps_what_has_counted_once_where_both_have_the_same
     assert {int(bits) & 2 for _, _, bits, values in after.rows if values.startswith("1 ")} == {0}
 
 
-def test_the_distance_of_marginals_is_half_of_what_their_values_differ_by() -> None:
+def test_the_distance_of_marginals_is_half_of_what_their_values_differ_by():
     before = (Marginal("a", {"x": 0.5, "y": 0.5}), Marginal("b[0]", {"1": 1.0}), Marginal("c", {"1": 1.0}))
     after = (Marginal("a", {"x": 0.75, "z": 0.25}), Marginal("b[0]", {"2": 1.0}), Marginal("c", {"2": 1.0}))
     assert distances(before, after, ("a", "b")) == {"a": 0.5, "b[0]": 1.0}

@@ -39,7 +39,7 @@ class Plugged(Surroundings):
         return None if successor is None else await successor.take_over(running, past)
 
 
-async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold(cache_dir: Path) -> None:
+async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold(cache_dir: Path):
     around = Plugged(hears_below)
     around.unavailable = {"look": "the camera is away"}
     async with engine_of_text(with_peek(HALL), cache_dir) as engine:
@@ -75,7 +75,7 @@ class Prepared(Search, frozen=True, kw_only=True):
         return Search(simulations=100, seed=1)
 
 
-async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_more(cache_dir: Path) -> None:
+async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_more(cache_dir: Path):
     around = Plugged(hears_below)
     terms = Terms(name="m", search=Prepared(simulations=1, seed=1), limits=MissionLimits(step_limit=1))
     async with engine_of_text(HALL, cache_dir) as before, engine_of_text(with_peek(HALL), cache_dir) as after:
@@ -85,7 +85,7 @@ async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_mo
     assert [record.skill for record in around.decisions] == ["peek"]
 
 
-async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_decided(cache_dir: Path) -> None:
+async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_decided(cache_dir: Path):
     around = Surroundings(hears_below)
     limits = MissionLimits(step_limit=2)
     await run_mission(await built_text(HALL, cache_dir), hears_below, limits=limits, around=around)
@@ -107,7 +107,7 @@ async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_dec
     assert marginal(rest.decisions[0].belief.marginals, "is_wet")["true"] == pytest.approx(0.1)
 
 
-def test_a_takeover_is_told_in_one_line() -> None:
+def test_a_takeover_is_told_in_one_line():
     row = ModelAdopted(3, "d", 2, "replay", 12, 1, {"cat": 0.25, "is_wet": 0.5})
     assert adopted_line(row) == (
         "revision 3 takes over from 2, its belief by replay of 12 steps, 1 of them counted for nothing; "

@@ -74,7 +74,7 @@ def beliefs(
 
 async def test_a_mission_cut_off_at_any_row_goes_on_with_the_belief_of_its_undisturbed_twin(
     tiger: BuiltModel,
-) -> None:
+):
     whole_calls: list[Activate] = []
     whole_state, whole = await played(tiger, MissionMemory(), whole_calls)
     whole_rows = rows_of(whole.journalled)
@@ -99,17 +99,17 @@ async def test_a_mission_cut_off_at_any_row_goes_on_with_the_belief_of_its_undis
         assert {call.epoch for call in calls} <= {memory.epoch} == {2}
 
 
-def test_an_empty_journal_folds_to_the_start() -> None:
+def test_an_empty_journal_folds_to_the_start():
     assert folded([]) == MissionMemory()
 
 
-def test_a_damaged_row_is_named() -> None:
+def test_a_damaged_row_is_named():
     with pytest.raises(StorageError, match="row 3, decision, cannot be read") as error:
         folded([JournalRow(3, 0, "decision", b"{")])
     assert error.value.code == "AOS702"
 
 
-def test_an_outcome_without_a_decision_is_no_journal() -> None:
+def test_an_outcome_without_a_decision_is_no_journal():
     outcome = observed(Activate(ActivationId("m", 1), "listen", {}, 1.0), "x")
     with pytest.raises(StorageError, match="row 1 of the journal, outcome, follows no decision"):
         folded(rows_of([("outcome", outcome)]))

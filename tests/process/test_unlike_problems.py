@@ -115,16 +115,16 @@ async def first_actions(files: dict[str, str], cache_dir: Path, simulations: int
     return [plan.best.action for plan in plans]
 
 
-async def test_a_rare_loss_counts_in_full_though_no_simulation_may_meet_it(cache_dir: Path) -> None:
+async def test_a_rare_loss_counts_in_full_though_no_simulation_may_meet_it(cache_dir: Path):
     for action in await first_actions(RARE_LOSS, cache_dir, 2000):
         assert "carefully=true" in action
 
 
-async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it(cache_dir: Path) -> None:
+async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it(cache_dir: Path):
     assert await first_actions(BOMBS, cache_dir, 20_000) == ["leave"] * 3
 
 
-async def test_one_draw_of_many_outcomes_leaves_many_effective_states(cache_dir: Path) -> None:
+async def test_one_draw_of_many_outcomes_leaves_many_effective_states(cache_dir: Path):
     built = await built_text(ALARMS, cache_dir)
     async with engine_of(built) as engine:
         await engine.reset_world(1)

@@ -41,9 +41,7 @@ def fully_observable_value(cell: int) -> float:
     return value
 
 
-async def test_states_are_listed_without_what_is_observed_and_values_follow_from_them(
-    cache_dir: Path,
-) -> None:
+async def test_states_are_listed_without_what_is_observed_and_values_follow_from_them(cache_dir: Path):
     built = await built_text(CORRIDOR, cache_dir)
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=300, seed=1, planner="auto")
@@ -104,9 +102,7 @@ def _chance(reading: int, mean: float) -> float:
 
 
 @pytest.mark.parametrize("readings", [(7, -4, 7), (4, 6, 0), (-12, -3, 10), (10, 10, -10), (-1, 0, 1)])
-async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(
-    readings: tuple[int, ...], cache_dir: Path
-) -> None:
+async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(readings: tuple[int, ...], cache_dir: Path):
     left, right = (math.prod(_chance(reading, mean) for reading in readings) for mean in (-1, 1))
     async with engine_of_text(DOORS, cache_dir) as engine:
         update = await engine.update("listen", "".join(f"{reading};" for reading in readings))
@@ -117,7 +113,7 @@ async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(
     assert (update.summary.effective_states or 0) > 1000
 
 
-async def test_readings_that_are_written_as_numbers_are_paid_for(cache_dir: Path) -> None:
+async def test_readings_that_are_written_as_numbers_are_paid_for(cache_dir: Path):
     """Were all seen after one action, waiting would be better than listening."""
     async with engine_of_text(DOORS, cache_dir) as engine:
         plan = await engine.plan(simulations=4_000, seed=1, planner="auto")
@@ -127,7 +123,7 @@ async def test_readings_that_are_written_as_numbers_are_paid_for(cache_dir: Path
     assert other.actions != plan.actions
 
 
-async def test_responses_that_hardly_come_twice_leave_the_search_to_pomcp(cache_dir: Path) -> None:
+async def test_responses_that_hardly_come_twice_leave_the_search_to_pomcp(cache_dir: Path):
     words = """project: doors
 dynamic_model:
 __reward = -1;
@@ -144,13 +140,13 @@ for (int i = 0; i < 8; i++) {
     assert "; their probabilities cannot be estimated: hardly a response comes twice" in plan.why
 
 
-async def test_pomcp_that_was_asked_for_stays_pomcp(cache_dir: Path) -> None:
+async def test_pomcp_that_was_asked_for_stays_pomcp(cache_dir: Path):
     async with engine_of_text(DOORS, cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="pomcp")
     assert plan.planner == "pomcp"
 
 
-async def test_sarsop_is_told_why_it_cannot_be_used(cache_dir: Path) -> None:
+async def test_sarsop_is_told_why_it_cannot_be_used(cache_dir: Path):
     built = await built_text(CORRIDOR, cache_dir)
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=50, seed=1, planner="sarsop")

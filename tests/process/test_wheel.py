@@ -33,12 +33,12 @@ def aos(aos_without_sim: Installation, tmp_path: Path, cache_dir: Path) -> Itera
         link.unlink()
 
 
-def test_the_wheel_has_a_name_of_its_own(wheel: Path) -> None:
+def test_the_wheel_has_a_name_of_its_own(wheel: Path):
     assert wheel.name.startswith("aos_autonomy-")
 
 
 @pytest.mark.physics
-def test_the_main_job_runs_from_an_empty_folder(aos: Installation) -> None:
+def test_the_main_job_runs_from_an_empty_folder(aos: Installation):
     assert aos.run("aos", "new", "example", "armadillo").returncode == 0
     deploy = aos.folder / "armadillo" / "armadillo.yaml"
     deploy.write_text(deploy.read_text().replace("step_limit: 30", "step_limit: 2"))
@@ -48,13 +48,13 @@ def test_the_main_job_runs_from_an_empty_folder(aos: Installation) -> None:
     assert (aos.folder / "runs" / "latest" / "summary.json").is_file()
 
 
-def test_a_benchmark_runs_from_an_empty_folder(aos_without_sim: Installation) -> None:
+def test_a_benchmark_runs_from_an_empty_folder(aos_without_sim: Installation):
     done = aos_without_sim.run("aos", "bench", "tiger", "--metric", "steps", "--quick", "--json")
     assert done.returncode == 0, done.stderr
     assert '"name": "by hand"' in done.stdout
 
 
-def test_a_simulated_room_without_the_extra_says_what_to_install(aos_without_sim: Installation) -> None:
+def test_a_simulated_room_without_the_extra_says_what_to_install(aos_without_sim: Installation):
     aos_without_sim.run("aos", "new", "example", "armadillo")
     done = aos_without_sim.run("aos-up", "armadillo/armadillo.yaml", *ANY_PORT)
     assert done.returncode == 3
@@ -62,7 +62,7 @@ def test_a_simulated_room_without_the_extra_says_what_to_install(aos_without_sim
     assert "pip install 'aos-autonomy[sim]'" in done.stderr
 
 
-def test_the_doctor_can_do_without_the_simulator(aos_without_sim: Installation) -> None:
+def test_the_doctor_can_do_without_the_simulator(aos_without_sim: Installation):
     done = aos_without_sim.run("aos", "doctor")
     assert done.returncode == 0
     assert "pip install 'aos-autonomy[sim]'" in done.stdout

@@ -32,14 +32,14 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
 )
 async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
     names: tuple[str, ...], first: str, bundles: Path, cache_dir: Path
-) -> None:
+):
     async with engine_of(await built_bundles([bundles / name for name in names], cache_dir)) as engine:
         values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 
 
-async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path, cache_dir: Path) -> None:
+async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path, cache_dir: Path):
     both = [bundles / name for name in ("armadillo-finer-blind", "armadillo-rough-blind")]
     async with engine_of(await built_bundles(both, cache_dir)) as engine:
         await engine.reset_belief()
@@ -55,9 +55,7 @@ async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path,
             await engine.update(action, response)
 
 
-async def test_the_turtlebot_takes_the_shortest_of_all_tours(
-    root: Path, bundles: Path, cache_dir: Path
-) -> None:
+async def test_the_turtlebot_takes_the_shortest_of_all_tours(root: Path, bundles: Path, cache_dir: Path):
     room = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
     at = {name: (place.x, place.y) for name, place in room.places.items()}
     decided = []
@@ -81,7 +79,7 @@ def shortest_tour(start: Point, places: frozenset[Point]) -> float:
     )
 
 
-async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_dir: Path) -> None:
+async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_dir: Path):
     chance = random.Random(1)
     async with engine_of_bundle(bundles / "tictactoe", cache_dir) as engine:
         for seed in range(3):
@@ -89,7 +87,7 @@ async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_
             assert ending != "X", moves
 
 
-async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path, cache_dir: Path) -> None:
+async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path, cache_dir: Path):
     both = [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")]
     chance = random.Random(1)
     async with engine_of(await built_bundles(both, cache_dir)) as engine:
@@ -111,7 +109,7 @@ async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path,
 
 async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world(
     bundles: Path, cache_dir: Path
-) -> None:
+):
     own = await built_bundle(bundles / "tictactoe", cache_dir)
     other = await built_bundles(
         [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")], cache_dir
