@@ -56,8 +56,8 @@ async def stream(
                 for task in done:
                     del upcoming[task]
                     frame = task.result()
-                    if frame.mission == mission and frame.sequence > since:
-                        # Something is missing: the journal has it, and this one as well.
+                    if frame.is_after_gap or (frame.mission == mission and frame.sequence > since):
+                        # Something is missing, or may be: the journal has it, and this one as well.
                         async for missed in _past(run, mission, since):
                             since = missed.sequence + 1
                             yield _encoded(missed, mission, since)

@@ -29,12 +29,16 @@ _log = logging.getLogger("aos.gateway")
 
 
 class Frame(NamedTuple):
-    """An event, encoded. `sequence` is that of a decision record, else -1."""
+    """An event, encoded. `sequence` is that of a decision record, else -1.
+
+    `is_after_gap`: only from here on the system is heard, and the history has what it told before.
+    """
 
     kind: str
     data: bytes
     mission: str = ""
     sequence: int = -1
+    is_after_gap: bool = False
 
 
 class StepEvent(msgspec.Struct, frozen=True):
@@ -220,4 +224,5 @@ def frame_of_state(state: MissionState) -> Frame:
 
 
 def _frame_of_presence(service: str, *, is_there: bool) -> Frame:
-    return Frame("service", msgspec.json.encode(Presence(service, is_there)))
+    data = msgspec.json.encode(Presence(service, is_there))
+    return Frame("service", data, is_after_gap=is_there and service == "solver")
