@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 import pytest_asyncio
 from adapter_process import AdapterProcess
+from deploy_files import world_without_pictures
 from processes import HANG_S
 from starting import until_present
 
@@ -82,14 +83,17 @@ class Robot(AdapterProcess):
 async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path) -> AsyncIterator[Robot]:
     """A robot that is not started yet; whatever a test starts is stopped."""
     (tmp_path / "pictures").mkdir()
-    robot = Robot(bus, keys, endpoint, tmp_path, root / "deploy/worlds/armadillo.yaml")
+    robot = Robot(bus, keys, endpoint, tmp_path, world_without_pictures(root, tmp_path))
     try:
         yield robot
     finally:
         await robot.stop()
 
 
-async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(robot: Robot):
+async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(
+    robot: Robot, root: Path
+):
+    robot.world = root / "deploy/worlds/armadillo.yaml"
     await robot.start()
     async with robot.bus.listen(robot.keys.topic("/gripper"), TopicMessage) as gripper:
         result = await robot.call("/sense")
@@ -104,9 +108,9 @@ async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_t
     assert (await robot.refusal("/navigate", 3, FAR_AWAY, limit_s=0.01)).code == "AOS503"
     assert "gap_m" in (await robot.call("/sense", 4)).fields
     # A stopped world leaves the animated picture of its mission.
-    assert robot.child is not None
-    await robot.child.stop(HANG_S)
+    await robot.stop()
     assert (robot.folder / "mission.gif").stat().st_size > 0
+    assert (robot.folder / "pictures" / "step-001.png").stat().st_size > 0
 
 
 async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot):
@@ -121,6 +125,10 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot):
     # It can move again, and what was refused never ran.
     assert "gap_m" in (await robot.call("/sense", 3)).fields
     assert "gap_m" in (await robot.call("/sense", 2)).fields
+    # This world's file asks for no pictures.
+    await robot.stop()
+    assert not (robot.folder / "mission.gif").exists()
+    assert not any((robot.folder / "pictures").iterdir())
 
 
 async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused(robot: Robot):

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from deploy_files import world_without_pictures
 from gateway import slow_deploy_file
 from processes import HANG_S, descendants, is_running, until_ended
 
@@ -32,7 +33,7 @@ def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = (root / "deploy" / "armadillo.yaml").read_text()
     replaced = {
         "- bundles/": f"- {root}/deploy/bundles/",
-        "world: worlds/": f"world: {root}/deploy/worlds/",
+        "world: worlds/armadillo.yaml": f"world: {world_without_pictures(root, folder)}",
         "simulations: 100_000": "simulations: 5_000",
         "runs: ../runs": "runs: runs",
     }

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from deploy_files import world_without_pictures
 from processes import events_of, until_taking_over
 
 BIN = Path(sys.executable).parent
@@ -49,7 +50,7 @@ def deploy_file(root: Path, tmp_path: Path, picked: Path) -> Path:
     text = (root / "deploy" / "armadillo-hotplug.yaml").read_text()
     for old, new in {
         "[bundles/": f"[{root}/deploy/bundles/",
-        "world: worlds/": f"world: {root}/deploy/worlds/",
+        "world: worlds/armadillo.yaml": f"world: {world_without_pictures(root, tmp_path)}",
         "runs: ../runs": "runs: runs",
         "/pick: pybullet": "/pick: patient",
         "\nbind:": f'\nadapters: {{patient: {{class: "patient:Patient", until: {picked}}}}}\nbind:',

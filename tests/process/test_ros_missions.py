@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from deploy_files import world_without_pictures
 from processes import COMMAND_S, HANG_S, events_of
 from ros1_core import roscore, skip_without_ros1
 
@@ -88,7 +89,8 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
     values = {"bundle": corpus / "armadillo-rough", "master": master}
-    stand_in = original_on_our_robot(root, corpus).replace("robot: iros", "robot: stand-in\nproject: iros")
+    stand_in = original_on_our_robot(root, corpus, tmp_path)
+    stand_in = stand_in.replace("robot: iros", "robot: stand-in\nproject: iros")
     (tmp_path / "robot.yaml").write_text(stand_in + SERVED.format(**values))
     (tmp_path / "mission.yaml").write_text(MISSION.format(**values))
     with up([str(tmp_path / "robot.yaml"), "--serve", "ros1"]) as robot:
@@ -106,7 +108,7 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
 def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(
     corpus: Path, root: Path, tmp_path: Path
 ):
-    (tmp_path / "deploy.yaml").write_text(original_on_our_robot(root, corpus))
+    (tmp_path / "deploy.yaml").write_text(original_on_our_robot(root, corpus, tmp_path))
     with up([str(tmp_path / "deploy.yaml")]) as mission:
         events = list(events_of(mission))
     assert_whole_mission(events, tmp_path / "runs" / "latest")
@@ -117,12 +119,13 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_pat
     assert {step["path"] for step in moved} <= {"/navigate", "/pick", "/sense", "/serve"}
 
 
-def original_on_our_robot(root: Path, corpus: Path) -> str:
+def original_on_our_robot(root: Path, corpus: Path, folder: Path) -> str:
     """The deploy file of the documentation, with the places where bundle and world are."""
+    world = world_without_pictures(root, folder)
     text = (root / "docs" / "examples" / "armadillo-original.yaml").read_text()
     text = text.replace("[armadillo-rough]", f"[{corpus / 'armadillo-rough'}]")
     text = text.replace("step_limit: 15", "step_limit: 5")
-    return text.replace("../../deploy", str(root / "deploy"))
+    return text.replace("../../deploy/worlds/armadillo.yaml", str(world))
 
 
 def assert_whole_mission(events: list[dict[str, Any]], run: Path) -> None:

@@ -29,6 +29,7 @@ class PybulletAdapter:
         self._call: Call | None = None
         self._skills: Mapping[str, Any] = {}
         self._world: World
+        self._has_pictures = True
         self._building: Future[None] | None = None
 
     async def start(self) -> None:
@@ -69,7 +70,10 @@ class PybulletAdapter:
 
     def _build(self, world: WorldFile, seed: int) -> None:
         self._world = world.build(seed)
-        self._world.scene.watchers += [self._look_for_an_end, self._world.camera.watch, self._publish_in_time]
+        self._has_pictures = world.room.pictures
+        self._world.scene.watchers += [self._look_for_an_end, self._publish_in_time]
+        if self._has_pictures:
+            self._world.scene.watchers.append(self._world.camera.watch)
 
     def _run(self, call: Call) -> dict[str, Any]:
         begun_s = time.thread_time()
@@ -86,7 +90,8 @@ class PybulletAdapter:
             self._world.stop()
             self._record(call, time.thread_time() - begun_s)
         self._publish_sensors()
-        self._world.camera.save_picture(self._run_dir / "pictures" / f"step-{call.id.step:03d}.png")
+        if self._has_pictures:
+            self._world.camera.save_picture(self._run_dir / "pictures" / f"step-{call.id.step:03d}.png")
         return answer
 
     def _look_for_an_end(self) -> None:

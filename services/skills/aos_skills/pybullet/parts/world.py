@@ -8,16 +8,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-import msgspec
-
 from aos_skills.pybullet.parts.camera import Camera
 from aos_skills.pybullet.parts.faults import Faults
+from aos_skills.pybullet.parts.room_file import RoomFile
 from aos_skills.pybullet.parts.scene import Scene
 
 Fields = dict[str, Any]
 """The fields of a request, an answer or a message, by name."""
 
-AnyFile = TypeVar("AnyFile", bound=msgspec.Struct)
+AnyFile = TypeVar("AnyFile", bound=RoomFile)
 AnyWorld = TypeVar("AnyWorld", bound="World")
 
 

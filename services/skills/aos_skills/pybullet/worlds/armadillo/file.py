@@ -4,6 +4,7 @@ import msgspec
 
 from aos_skills.pybullet.parts.numbers import Deviation, Length, Share
 from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.parts.room_file import RoomFile
 
 
 class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -37,7 +38,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     silent_fingers: Share = 0.0
 
 
-class ArmadilloFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ArmadilloFile(RoomFile, frozen=True, forbid_unknown_fields=True):
     """The room."""
 
     robot: Place

@@ -6,6 +6,7 @@ import msgspec
 
 from aos_skills.pybullet.parts.numbers import Deviation, Share
 from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.parts.room_file import RoomFile
 
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -19,7 +20,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     misplaced: Share = 0.0
 
 
-class CleanLabFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class CleanLabFile(RoomFile, frozen=True, forbid_unknown_fields=True):
     """Stations and bins by name: where the robot stands in front of each. `groups` are sets of stations with
     cups on different ones.
     """

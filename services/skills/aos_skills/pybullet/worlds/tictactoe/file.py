@@ -5,6 +5,7 @@ from typing import Literal
 import msgspec
 
 from aos_skills.pybullet.parts.numbers import Deviation, Share
+from aos_skills.pybullet.parts.room_file import RoomFile
 from aos_skills.pybullet.worlds.tictactoe.rules import Rules
 
 
@@ -19,7 +20,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     dry_centre: Share = 0.0
 
 
-class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TicTacToeFile(RoomFile, frozen=True, forbid_unknown_fields=True):
     """The player against the robot, the `rules`, and what is on the board at first.
 
     A person types at a terminal that is connected to `port` of this machine: see `play`. `begins` says who

@@ -4,6 +4,7 @@ import msgspec
 
 from aos_skills.pybullet.parts.numbers import Deviation, Length, Share
 from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.parts.room_file import RoomFile
 
 
 class Obstacle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -34,7 +35,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lost_report: Share = 0.0
 
 
-class TurtlebotFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TurtlebotFile(RoomFile, frozen=True, forbid_unknown_fields=True):
     """A rectangular arena around the origin with walls, `half_x` and `half_y` half its sides.
 
     `places` are looked at for the record of what was visited; the robot gets its goals from its documents.
