@@ -7,7 +7,7 @@ CHAOS :=
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11
 RESOLVE := $(COMPILE) $(UPGRADE) --no-annotate --no-header --output-file
 
-.PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile study clean
+.PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -51,11 +51,8 @@ lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.ven
 chaos:  ## kill, freeze and fail processes of missions, and print what became of them
 	$(BIN)/python -m tests.chaos $(CHAOS)
 
-plug:  ## measure what changes and what happens while a mission runs
+plug:  ## measure what documents that change cost a mission, and what is believed then
 	$(BIN)/python -m tests.plug
-
-study:  ## replay missions and study decisions, and hold the answers against planning
-	$(BIN)/python -m tests.study
 
 hostile:  ## play hostile documents and strangers on the bus, and print what they were kept from
 	$(BIN)/python -m tests.hostile --times 17

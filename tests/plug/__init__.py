@@ -1,4 +1,4 @@
-"""Figures about what changes and what happens while a mission runs: `make plug`."""
+"""Figures about documents that change while a mission runs: `make plug`."""
 
 import sys
 from pathlib import Path

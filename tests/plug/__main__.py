@@ -1,7 +1,7 @@
-"""Figures about what changes and what happens while a mission runs, each part measured by a command.
+"""Figures about documents that change while a mission runs, each part measured by a command.
 
   python -m tests.plug                    all parts, as `make plug` does
-  python -m tests.plug missions           one part; `--help` names them and their options
+  python -m tests.plug truth              one part; `--help` names them and their options
 
 Exit code 1: a target was missed.
 """
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import missions, modelled, takeovers
+from . import takeovers
 
 
 class Part(NamedTuple):
@@ -23,10 +23,6 @@ class Part(NamedTuple):
 
 
 PARTS: Mapping[str, Part] = {
-    "modelled": Part(
-        "missions that the model plays, and simulated ones", modelled.add_options, modelled.measure
-    ),
-    "missions": Part("missions one after the other", missions.add_options, missions.measure),
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),
     "shelf": Part("the shelf of models", takeovers.add_shelf_options, takeovers.measure_shelf),
     "pushes": Part("pushes into missions", takeovers.add_push_options, takeovers.measure_pushes),

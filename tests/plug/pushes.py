@@ -24,7 +24,6 @@ from aos_protocol.messages import (
 from aos_runtime.client import AosClient
 
 from .changes import Change, Project
-from .harness import drained
 
 _ROOT = Path(__file__).resolve().parents[2]
 _BIN = Path(sys.executable).parent
@@ -105,7 +104,7 @@ async def _up(folder: Path) -> AsyncIterator[None]:
         try:
             while b'"event":"decision"' not in (line := await process.stdout.readline()).replace(b" ", b""):
                 assert line, (folder / "aos-up.log").read_text()
-            draining = asyncio.create_task(drained(process.stdout))
+            draining = asyncio.create_task(_drained(process.stdout))
             yield
         finally:
             with contextlib.suppress(ProcessLookupError):
@@ -228,3 +227,9 @@ def between(records: Sequence[DecisionRecord]) -> list[float]:
         if before.outcome is not None and after.outcome is None:
             found.append((after.stamp_ns - before.stamp_ns) / 1e9 - after.planning_s)
     return found
+
+
+async def _drained(stream: asyncio.StreamReader) -> None:
+    """Returns at the end of a stream that nobody reads."""
+    while await stream.read(2**16):
+        pass

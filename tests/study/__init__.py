@@ -1,1 +1,1 @@
-"""Missions that are recorded, replayed and studied, and the figures of that: `python -m tests.study`."""
+"""Missions that are recorded, for tests that replay and study them."""

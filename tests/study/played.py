@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -39,11 +38,10 @@ Disturbance = Callable[[Engine, int], Awaitable[None]]
 
 
 class Beside(NamedTuple):
-    """Those who are beside a mission. A `follower` goes on beside it and is cancelled at its end."""
+    """Those who are beside a mission."""
 
     disturbance: Disturbance | None = None
     steering: Steering | None = None
-    follower: Callable[[Played], Awaitable[None]] | None = None
 
 
 class Played(msgspec.Struct):
@@ -93,7 +91,7 @@ class _World(QuietPorts):
     def __init__(self, world: Engine, beside: Beside) -> None:
         self.clock = SystemClock()
         self._world = world
-        self._disturbance, self._steering, _ = beside
+        self._disturbance, self._steering = beside
         self.mission: Mission | None = None
         self._places = {action.name: index for index, action in enumerate(world.description.actions)}
         self.rows: list[JournalRow] = []
@@ -181,28 +179,10 @@ async def play(
         limits = msgspec.convert(settings, MissionLimits, from_attributes=True)
         mission = Mission(Terms(name="m", search=search, limits=limits), running, around)
         around.mission = mission
-        played = Played(around.rows, settings, [files] if then is None else [files, then[1]])
-        await _followed(mission, played, beside.follower)
+        await mission.run_or_raise()
     finally:
         if around.next is not None:
             await around.next[1].close()
         await around.engine.close()
         await world.close()
-    return played
-
-
-async def _followed(
-    mission: Mission, played: Played, follower: Callable[[Played], Awaitable[None]] | None
-) -> None:
-    """Runs a mission to its end, with whoever follows it."""
-    if follower is None:
-        await mission.run_or_raise()
-        return
-    following = asyncio.ensure_future(follower(played))
-    try:
-        await mission.run_or_raise()
-    finally:
-        following.cancel()
-        await asyncio.wait({following})
-    if not following.cancelled():
-        following.result()
+    return Played(around.rows, settings, [files] if then is None else [files, then[1]])
