@@ -35,10 +35,10 @@ async def serve(service: Service[Settings]) -> None:
             child = await Child.start(guarded(["sh", "-c", "sleep 1000 & echo; wait"]), stdout=PIPE)
             await child.stdout.readline()
     try:
-        await service.ready()
         if service.settings.mood == "deaf":
             asyncio.get_running_loop().remove_signal_handler(signal.SIGTERM)
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        await service.ready()
         await asyncio.Event().wait()
     finally:
         _note_stop(service.settings)

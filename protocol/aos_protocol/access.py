@@ -74,6 +74,7 @@ TABLE: tuple[Row, ...] = (
         watches=(MIDDLEWARE, SOLVER, SERVER, OPERATOR, WATCHER),
     ),
     Row("lack/<adapter>/<reason>/<path>", announces=(ADAPTER,), watches=(MIDDLEWARE, OPERATOR)),
+    Row("returning/<program>", announces=(OPERATOR,), watches=(MIDDLEWARE, OPERATOR)),
     Row("call/<path>", asks=_MOVERS, answers=(ADAPTER,)),
     Row("cancel/<path>", asks=(*_MOVERS, SOLVER), answers=(ADAPTER,)),
     Row("progress/<path>", tells=(ADAPTER,), hears=(MIDDLEWARE, SERVER, OPERATOR, WATCHER)),
@@ -165,7 +166,7 @@ def _keys(key: str, act: Act, party: Party) -> list[tuple[str, bool]]:
         key = key.replace("<service>", "*")
     for name, filling in (("<service>", party.name), ("<adapter>", party.name), ("<topic>", "**")):
         key = key.replace(name, filling)
-    for name in ("<skill>", "<version>", "<instance>", "<reason>"):
+    for name in ("<skill>", "<version>", "<instance>", "<reason>", "<program>"):
         key = key.replace(name, "*")
     if "<path>" not in key:
         return [(key, False)]

@@ -12,6 +12,7 @@
     aos/<robot>/middleware/ready    stream and query: which mappings run         MappingQuery -> MappingState
     aos/<robot>/serve/<adapter>/<version>/<instance>/<path>   token   an adapter answers calls of the path
     aos/<robot>/lack/<adapter>/<reason>/<path>   token   why an adapter that is there does not serve the path
+    aos/<robot>/returning/<program>   token   an adapter that has left is started again, or may be
     aos/<robot>/call/<path>         query   the adapter runs a skill's code          SkillCall -> SkillResult
     aos/<robot>/cancel/<path>       query   stop what runs on the path                    Cancel -> Cancelled
     aos/<robot>/progress/<path>     stream  how far a call is                                   SkillProgress
@@ -185,6 +186,18 @@ class Keys:
         if len(parts) != 3 or not lack_key.startswith(head):
             return None
         return Lack(parts[0], unquote(parts[1]), "/" + parts[2])
+
+    def returning(self, program: str) -> str:
+        return f"{self._root}/returning/{_checked(_NAME, program, 'adapter name')}"
+
+    @property
+    def all_returning(self) -> str:
+        return f"{self._root}/returning/*"
+
+    def returning_of(self, key: str) -> str | None:
+        """Returns the adapter that a token says to be expected back; None for a key of another kind."""
+        head, _, program = key.rpartition("/")
+        return program if head == f"{self._root}/returning" else None
 
     def topic(self, path: str) -> str:
         return f"{self._root}/topic/{_path(path)}"

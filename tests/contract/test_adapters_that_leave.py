@@ -39,13 +39,17 @@ async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
     try:
         await system.state_when(lambda state: "sense" not in state.unavailable)
         os.kill(child.pid, death)
-        await system.state_when(lambda state: "sense" in state.unavailable)
+        await system.state_when(lambda state: "sense" in state.unavailable and not state.returning)
         assert (await system.activate("sense", 1)).status == "refused"
+        await system.bus.announce(system.keys.returning("python"))
+        state = await system.state_when(lambda state: "sense" in state.returning)
+        assert state.unavailable["sense"].endswith("of /sense: python is expected back")
         if death == signal.SIGSTOP:
             os.kill(child.pid, signal.SIGCONT)
         else:
             child = await launch(system, endpoint, tmp_path)
-        await system.state_when(lambda state: "sense" not in state.unavailable)
+        state = await system.state_when(lambda state: "sense" not in state.unavailable)
+        assert state.returning == ()
         assert (await system.activate("sense", 2)).status == "observed"
     finally:
         child.kill()

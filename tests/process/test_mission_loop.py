@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from models import built_bundle, built_text
 from processes import HANG_S
-from scripted_missions import Surroundings, jammed, observed, run_mission, timed_out
+from scripted_missions import Clock, Surroundings, jammed, observed, run_mission, timed_out
 
 from aos_protocol.messages import Activate, Fault, Outcome, Steer
 from aos_solver.building.build import BuiltModel
@@ -237,6 +237,39 @@ async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for
     assert waits == [1] * 10
     assert "flood is left out, as it was waited for" in around.decisions[1].why
     assert state.ending == "goal"
+
+
+async def test_an_adapter_that_is_started_again_is_waited_for_as_long_as_that_takes(field: BuiltModel):
+    def come_back() -> None:
+        waits.append(len(around.decisions))
+        if len(waits) == 25:
+            around.unavailable = {}
+
+    waits: list[int] = []
+    around = Surroundings(done)
+    around.unavailable = {"flood": "its adapter has left"}
+    around.returning = ["flood"]
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around.on_hold = come_back
+    await run_mission(field, done, limits=MissionLimits(step_limit=2), around=around)
+    assert [record.skill for record in around.decisions] == ["drive", "flood"]
+    assert waits == [1] * 25
+
+
+async def test_an_adapter_that_is_expected_back_and_does_not_come_is_not_waited_for_for_ever(
+    field: BuiltModel,
+):
+    def wait() -> None:
+        clock.now_s += 30
+
+    around = Surroundings(done)
+    around.clock = clock = Clock()
+    around.unavailable = {"flood": "its adapter has left"}
+    around.returning = ["flood"]
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around.on_hold = wait
+    state, _ = await run_mission(field, done, around=around)
+    assert (state.ending, clock.now_s) == ("goal", 900.0)
 
 
 async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(

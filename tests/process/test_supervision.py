@@ -207,12 +207,44 @@ async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_
     assert [end.how for end in system.ends] == ["killed by SIGKILL"]
 
 
+async def test_a_service_that_does_not_end_is_told_before_it_is_killed(system: System):
+    async with system.up(small("skills", "deaf", stop_s=2)) as supervisor:
+        await supervisor.until_ready()
+    told = [event.detail for event in system.events if event.state == "stopping" and event.detail]
+    assert told == ["it has not ended yet; 2 s after it was asked to, it is killed"]
+
+
 async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System):
     error = await system.error(command("sh", "-c", "echo no camera; exit 4", is_restarted=True))
     assert system.order("ended") == ["robot"] * 5 + ["router"]
     assert error.code == "AOS802"
     assert error.message == "robot ended unexpectedly: exit status 4, and was started 5 times within 60 s"
     assert "no camera" in error.hint
+
+
+@DEATHS
+async def test_an_adapter_is_expected_back_until_it_is_ready_again(system: System, death: signal.Signals):
+    adapter = small("robot", is_adapter=True, is_restarted=True)
+    async with system.up(adapter) as supervisor:
+        await supervisor.until_ready()
+        pid = descendants(supervisor.pids["robot"])[-1]
+        async with asyncio.timeout(HANG_S), supervisor.bus.presence(supervisor.keys.all_returning) as told:
+            os.kill(pid, death)
+            assert await anext(told) == (supervisor.keys.returning("robot"), True)
+            await system.until("robot", "ready", times=2)
+            is_expected = True
+            while is_expected or told.has_items:  # A silence and the end that follows it are told apart.
+                _, is_expected = await anext(told)
+    assert system.order("ended")[0] == "robot"
+
+
+async def test_an_adapter_that_is_not_started_again_is_not_expected_back(system: System):
+    adapter = small("robot", is_adapter=True)
+    async with system.up(adapter, small("other", is_adapter=True)) as supervisor:
+        await supervisor.until_ready()
+        kill(supervisor.pids["robot"])
+        await system.until("robot", "ended")
+        assert not supervisor._running["robot"].returning
 
 
 async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System):

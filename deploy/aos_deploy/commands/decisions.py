@@ -103,7 +103,7 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
     if not event.planner:
         return []  # The line of the decision says who has asked for it.
     barred = [why for made in event.searches if not made.is_dropped for why in made.barred.values()]
-    others = told_together(why for why in barred if why not in event.why)
+    others = told_together(barred, after=event.why)
     told = [event.why, f"barred: {others}"] if others else [event.why]
     return [on_one_line(f"         {event.planner}: {'; '.join(told)}")]
 

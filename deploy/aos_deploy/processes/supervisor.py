@@ -15,7 +15,7 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import AsyncIterator, Coroutine
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,7 @@ from aos_deploy.processes.start import ROUTER_MODULE, start_process
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import ProcessEnd
 from aos_protocol.access import OPERATOR, Party
-from aos_protocol.errors import DeployError
+from aos_protocol.errors import BusError, DeployError
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus.bus import Access, Bus
@@ -54,6 +54,8 @@ FROZEN_S = 5.0
 """A process of ours that is off the bus for so long, after it was ready, is killed."""
 
 _CANCEL_TIMEOUT_S = 2.5
+_TOLD_S = 1.0
+"""An end that takes longer is told with what is waited for."""
 _HOST_S = 2.0
 """A program on another host may take this much longer to end than one here."""
 
@@ -279,6 +281,24 @@ class Supervisor:
             running.silent_since_s = self._clock.monotonic_s()
             look = self._kill_if_stopped if serves_less else self._kill_if_frozen
             running.silence = self._beside(look(running))
+            if not serves_less:
+                self._tell_return(running, it_comes=True)
+
+    def _tell_return(self, running: RunningProgram, *, it_comes: bool) -> None:
+        """Has it known on the bus that an adapter is expected back, until it is ready or is not any more."""
+        key = self.keys.returning(running.program.name)
+        if running.returning is not None:
+            running.returning.cancel()
+            self.bus.withdraw(key)
+            running.returning = None
+        if it_comes and running.program.is_adapter and self._bus is not None:
+            running.returning = self._beside(self._announce_return(key, running.program.start_s))
+
+    async def _announce_return(self, key: str, within_s: float) -> None:
+        with suppress(BusError):  # Without a router nobody decides.
+            await self.bus.announce(key)
+        await asyncio.sleep(within_s)
+        self.bus.withdraw(key)
 
     async def _kill_if_stopped(self, running: RunningProgram) -> None:
         """Kills a program of the user's own that SIGSTOP has stopped. Others may serve less for a while."""
@@ -321,6 +341,7 @@ class Supervisor:
             running.silence.cancel()
             running.silence = None
         running.is_ready = True
+        self._tell_return(running, it_comes=False)
         running.restarts.succeed()
         running.ready.set()
         self._changed(running.program.name, state)
@@ -346,6 +367,7 @@ class Supervisor:
             self._changed(program.name, "ended", f"{status_text(status)}; {then}")
             after_s = round(self._clock.monotonic_s() - self._started_s, 3)
             self.ends.append(ProcessEnd(program.name, after_s, status_text(status), then))
+            self._tell_return(running, it_comes=then == STARTED_AGAIN)
             if then == THE_RUN_ENDS:
                 raise fatal_end(running, status, self._run)
             if then != STARTED_AGAIN:
@@ -389,10 +411,15 @@ class Supervisor:
         running = self._running.get(name)
         if running is not None and running.child.returncode is None:
             self._changed(name, "stopping")
-            if running.program.host:
-                running.child.stdin.close()
-                await running.child.wait_for(running.program.stop_s + _HOST_S)
-            await running.child.stop(running.program.ending_s)
+            slow = f"it has not ended yet; {running.program.stop_s:g} s after it was asked to, it is killed"
+            told = asyncio.get_running_loop().call_later(_TOLD_S, self._changed, name, "stopping", slow)
+            try:
+                if running.program.host:
+                    running.child.stdin.close()
+                    await running.child.wait_for(running.program.stop_s + _HOST_S)
+                await running.child.stop(running.program.ending_s)
+            finally:
+                told.cancel()
             self._changed(name, "ended")
 
     async def _cancel_skills(self) -> None:

@@ -51,7 +51,7 @@ class Screen:
                 self.services[event.service] = event.state
                 waiting = [name for name, state in self.services.items() if state == "starting"]
                 if event.state == "stopping":
-                    self._remark(f"stopping {event.service}")
+                    self._remark(": ".join(filter(None, (f"stopping {event.service}", event.detail))))
                 elif waiting and self.state is None:
                     self._remark(f"waiting for {', '.join(waiting)}")
             case Told():

@@ -87,7 +87,8 @@ class MappingState(Message, frozen=True):
     """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused.
 
     `unavailable` are the skills that cannot be run now, each with the reason. For those in `for_good` to
-    wait mends nothing, since the robot defines their interface otherwise. `announced` says of each skill
+    wait mends nothing, since the robot defines their interface otherwise. The adapter of those in `returning`
+    has left, and `aos-up` expects it back. `announced` says of each skill
     how often an adapter has announced that it serves the skill's path. `revisions` are those whose mappings
     are kept: skills of each of them can be run by them. `stamp_ns` is when the middleware said so by the
     machine's monotonic clock, which also its successors go by, and later each time: an answer that is read
@@ -99,6 +100,7 @@ class MappingState(Message, frozen=True):
     refused: int = 0
     unavailable: dict[str, str] = {}
     for_good: tuple[str, ...] = ()
+    returning: tuple[str, ...] = ()
     announced: dict[str, int] = {}
     revisions: tuple[int, ...] = ()
     stamp_ns: int = 0

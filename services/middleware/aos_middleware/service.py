@@ -117,12 +117,14 @@ class _Middleware:
         why = {skill: self._served.why_unavailable(path) or shut for skill, path in paths.items()}
         unavailable = {skill: reason for skill, reason in why.items() if reason}
         for_good = tuple(skill for skill, path in paths.items() if self._served.is_for_good(path))
+        returning = tuple(skill for skill, path in paths.items() if self._served.returning(path))
         announced = {skill: self._served.announced(path) for skill, path in paths.items()}
         self._stamp_ns = max(self._stamp_ns + 1, round(self._service.clock.monotonic_s() * 1e9))
         return msgspec.structs.replace(
             self._mappings.state,
             unavailable=unavailable,
             for_good=for_good,
+            returning=returning,
             announced=announced,
             stamp_ns=self._stamp_ns,
         )

@@ -46,6 +46,10 @@ class BusPorts:
         return self._mappings.unavailable
 
     @property
+    def returning(self) -> tuple[str, ...]:
+        return self._mappings.returning
+
+    @property
     def announced(self) -> dict[str, int]:
         return self._mappings.announced
 

@@ -20,7 +20,8 @@ MAPPING_DEADLINE_S = 20.0
 class MappingWatch:
     """Follows what the middleware tells; `on_changed` hears of each change.
 
-    `unavailable` are the skills that nobody could run now, each with the reason. `announced` is how often the
+    `unavailable` are the skills that nobody could run now, each with the reason, and the adapter of those
+    `returning` is expected back. `announced` is how often the
     adapter of each skill has come.
     """
 
@@ -31,6 +32,7 @@ class MappingWatch:
         self._revisions: tuple[int, ...] = ()
         self._stamp_ns = 0
         self.unavailable: dict[str, str] = {}
+        self.returning: tuple[str, ...] = ()
         self.announced: dict[str, int] = {}
 
     def is_mapped(self, revision: int) -> bool:
@@ -79,6 +81,7 @@ class MappingWatch:
             why = "; ".join(f"{skill}: {reason}" for skill, reason in state.unavailable.items())
             log.info("unavailable skills: %s", why or "none")
         self.unavailable, self.announced = state.unavailable, state.announced
+        self.returning = state.returning
         for revision in state.revisions:
             if revision not in self._revisions:
                 log.info("the middleware has revision %d", revision)

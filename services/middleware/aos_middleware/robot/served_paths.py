@@ -31,12 +31,14 @@ class ServedPaths:
         self._servers: dict[str, list[Serving]] = {}
         self._lacks: dict[str, dict[str, Lack]] = {}
         self._announced: Counter[str] = Counter()
+        self._last: dict[str, str] = {}
+        self._returning: set[str] = set()
         self._is_ready: dict[str, bool] = {}
         self._has_heard = asyncio.Event()
 
     async def follow(self) -> None:
         """Follows the tokens until the bus closes."""
-        all_keys = (self._keys.all_serve, self._keys.all_live, self._keys.all_lacks)
+        all_keys = (self._keys.all_serve, self._keys.all_live, self._keys.all_lacks, self._keys.all_returning)
         async with merged(*(self._bus.presence(keys) for keys in all_keys)) as changes:
             if not changes.has_items:
                 self._has_heard.set()
@@ -45,6 +47,8 @@ class ServedPaths:
                     self._take_in(serving, is_alive)
                 elif lack := self._keys.lack_of(key):
                     self._take_lack(lack, is_alive)
+                elif adapter := self._keys.returning_of(key):
+                    (self._returning.add if is_alive else self._returning.discard)(adapter)
                 else:
                     self._is_ready[self._keys.service_of(key)] = is_alive
                 self._changed.set()
@@ -56,6 +60,7 @@ class ServedPaths:
         servers = self._servers.setdefault(serving.path, [])
         servers.append(serving) if is_alive else servers.remove(serving)
         self._announced[serving.path] += is_alive
+        self._last[serving.path] = serving.adapter
         _log.info("%s %s %s", serving.adapter, "serves" if is_alive else "has left", serving.path)
 
     def _take_lack(self, lack: Lack, is_alive: bool) -> None:
@@ -81,9 +86,10 @@ class ServedPaths:
         """Returns why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""
         servers = self.servers(path)
         if not servers:
-            return no_adapter(
-                path, "; ".join(f"{lack.adapter} says: {lack.reason}" for lack in self._lacking(path))
-            )
+            told = [f"{lack.adapter} says: {lack.reason}" for lack in self._lacking(path)]
+            if adapter := self.returning(path):
+                told.append(f"{adapter} is expected back")
+            return no_adapter(path, "; ".join(told))
         if len(servers) > 1:
             names = " and ".join(server.who for server in servers)
             return SkillError(
@@ -96,6 +102,11 @@ class ServedPaths:
     def is_for_good(self, path: str) -> bool:
         """Returns whether nobody serves a path, and an adapter says that to wait does not mend it."""
         return not self.servers(path) and any(lack.is_for_good for lack in self._lacking(path))
+
+    def returning(self, path: str) -> str:
+        """Returns the adapter that served a path and is expected back; empty where somebody serves it."""
+        adapter = "" if self.servers(path) else self._last.get("/" + path.strip("/"), "")
+        return adapter if adapter in self._returning else ""
 
     def _lacking(self, path: str) -> list[Lack]:
         return sorted(self._lacks.get("/" + path.strip("/"), {}).values())

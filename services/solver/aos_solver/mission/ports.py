@@ -3,7 +3,7 @@
 `aos_solver.bus_ports` gives a mission the bus and the disk; `simulation` gives it a hidden state.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Protocol
 
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionState, Outcome
@@ -21,6 +21,11 @@ class Available(Protocol):
     @property
     def unavailable(self) -> Mapping[str, str]:
         """The skills that nobody could run now, each with the reason."""
+        ...
+
+    @property
+    def returning(self) -> Collection[str]:
+        """Those of them whose adapter is expected back."""
         ...
 
     @property
@@ -87,6 +92,7 @@ class QuietPorts:
 
     clock: Clock = SystemClock()
     unavailable: Mapping[str, str] = {}
+    returning: Collection[str] = ()
     announced: Mapping[str, int] = {}
     world_ending: Ending | None = None
     keeps_beliefs: bool = False

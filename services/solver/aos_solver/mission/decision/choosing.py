@@ -40,7 +40,7 @@ class _Without(msgspec.Struct, frozen=True):
 
 _IDLE_DECISIONS = 5  # in a row: one or two may be bad luck of a search
 _RETURN_S = 5.0
-"""An adapter that has died is there again within this time, where it is started again."""
+"""An adapter whose start nobody tells, such as one that somebody else starts, may come within this time."""
 _LOOKS = 10
 _GIVES_UP = (Ending.SKILLS_FAILED, Ending.NOTHING_WORTHWHILE)
 
@@ -210,11 +210,16 @@ class Chooser:
         return bool(awaited)
 
     async def _come_back(self, away: Set[str]) -> None:
-        """Waits for skills that are away, if any, until one of them has come back or the time is over."""
-        for _ in range(_LOOKS if away else 0):
-            if not away <= self._around.unavailable.keys():
-                break
+        """Waits for skills that are away, if any, until one of them has come back or the time is over.
+
+        While an adapter of theirs is expected back the time stands still, for as long as a mission may hold.
+        """
+        looks = _LOOKS if away else 0
+        ends_at_s = self._around.clock.monotonic_s() + self._terms.hold_s
+        while looks and away <= self._around.unavailable.keys():
             await self._around.until_changed(_RETURN_S / _LOOKS)
+            if not away & set(self._around.returning) or self._around.clock.monotonic_s() > ends_at_s:
+                looks -= 1
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
