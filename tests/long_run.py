@@ -16,6 +16,7 @@ from aos_protocol.messages import (
     MissionState,
     Outcome,
     PredictedObservation,
+    SearchMade,
 )
 from aos_runtime.disk.journal import Journal
 
@@ -48,6 +49,8 @@ def write_long_run(runs: Path, steps: int, *also: Marginal, has_ended: bool = Tr
                 ),
                 "predicted": (PredictedObservation("seen", 0.8), PredictedObservation("unseen", 0.2)),
                 "planner": "pomcp",
+                "searches": (SearchMade("pomcp", (2000,), 0, {"put": "the arm is off"}),),
+                "set_aside": {"wait": "wait is left out by ana"},
             }
             skill = action.partition("(")[0]
             journal.append(

@@ -109,6 +109,10 @@ def test_slider_and_keys_move_all_views_and_the_address(
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/cut%E0%A4")
     expect(page.get_by_role("main")).to_contain_text("there is no mission cut")
     expect(page.locator(".connection")).to_have_text("No such mission")
+    page.evaluate("localStorage.clear()")
+    page.context.clear_cookies()
+    page.reload()
+    expect(page.locator(".connection")).to_have_text("No access")
 
 
 def late(browser: Browser, served: Gateway, run: Path, view: str = "") -> Page:
@@ -288,6 +292,8 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
             page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
         ).to_be_visible()
         kept(page, f"numbers-{width}")
+        told = ["wait is left out by ana", "put cannot be chosen now: the arm is off"]
+        expect(page.locator(".values .aside")).to_have_text(told)
         assert violations(page, cache_dir) == []
         page.close()
 

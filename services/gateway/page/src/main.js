@@ -10,7 +10,7 @@ const THEME = "aos-theme";
 const apply = (theme) => (theme ? (document.documentElement.dataset.theme = theme) : delete document.documentElement.dataset.theme);
 apply(localStorage.getItem(THEME));
 
-const CONNECTIONS = { live: "Live", lost: "Connection lost, trying again", connecting: "Connecting", over: "Recorded", missing: "No such mission" };
+const CONNECTIONS = { live: "Live", lost: "Connection lost, trying again", connecting: "Connecting", over: "Recorded", missing: "No such mission", refused: "No access" };
 
 function Page() {
   const { kind, name } = route.value;
@@ -28,7 +28,7 @@ function Page() {
       <a class="brand" href="#/" aria-label="AOS, all missions"><svg viewBox="0 0 32 32" width="22" height="22" aria-hidden="true"><rect width="32" height="32" rx="8" /><path d="M6 21c5 0 5-10 10-10s5 10 10 10" /><circle cx="16" cy="11" r="3.2" /></svg><span>AOS</span></a>
       ${isMission && html`<nav aria-label="Place"><a href="#/">Missions</a></nav>`}
       <span class="room"></span>
-      <span class=${`connection is-${connection.value}`} role="status"><i></i>${isMission || connection.value === "lost" ? CONNECTIONS[connection.value] : ""}</span>
+      <span class=${`connection is-${connection.value}`} role="status"><i></i>${isMission || ["lost", "refused"].includes(connection.value) ? CONNECTIONS[connection.value] : ""}</span>
       <${Theme} />
     </header>
     ${isMission ? html`<${Mission} key=${name} />` : html`<${Home} />`}`;

@@ -16,7 +16,7 @@ export const recordsChanged = signal(0);
 export const services = signal(new Map());
 export const progress = signal(null);
 export const reports = signal([]);
-export const connection = signal("connecting"); // live, lost, missing, over
+export const connection = signal("connecting"); // live, lost, missing, refused, over
 export const pictures = signal([]);
 export const draws = signal(false); // the documents have a picture.py
 export const successor = signal(null);
@@ -74,6 +74,9 @@ export async function loadRuns() {
   }
 }
 
+// Whoever may not read has lost nothing, and waits in vain.
+const lost = () => (problem.value?.status === 401 ? "refused" : "lost");
+
 export function listen(name = "", since = 0) {
   source?.close();
   const query = name ? `?mission=${encodeURIComponent(name)}&since=${since}` : "";
@@ -82,7 +85,7 @@ export function listen(name = "", since = 0) {
   source.onopen = () => (connection.value = state.value?.phase === "ended" || isGone.value ? "over" : "live");
   source.onerror = () => {
     if (own !== source) return;
-    connection.value = "lost";
+    connection.value = lost();
     if (own.readyState === EventSource.CLOSED) setTimeout(() => own === source && reopen(name), 1500);
   };
   for (const kind of ["decision", "state", "service", "progress", "bundle", "runs"]) {
@@ -104,7 +107,7 @@ export async function open(name, { again = false } = {}) {
   const path = `/v1/missions/${encodeURIComponent(name)}`;
   if (!again) forget();
   if (!again) connection.value = "connecting";
-  else if (connection.value !== "missing") connection.value = "lost";
+  else if (connection.value !== "missing") connection.value = lost();
   try {
     const [view, trace] = await Promise.all([read(path), read(`${path}/trace`)]);
     if (route.value.name !== name) return;
@@ -125,7 +128,7 @@ export async function open(name, { again = false } = {}) {
     loadPictures(name);
   } catch (error) {
     problem.value = error;
-    connection.value = error.status === 404 ? "missing" : "lost";
+    connection.value = error.status === 404 ? "missing" : lost();
     // A system that has just been started may not answer yet.
     setTimeout(() => route.value.name === name && open(name, { again: true }), 1500);
   }

@@ -27,9 +27,17 @@ export function Values() {
     ${sorted.length > SHOWN && html`<button class="link" onClick=${() => setShowsAll(!showsAll)}>${showsAll ? "Show fewer" : `Show all ${sorted.length}`}</button>`}
     ${!sorted.length && html`<p class="empty">${found.planner ? `${found.planner} gives no values.` : "Nothing was searched for this action."}</p>`}
     ${!sorted.length && canSteer() && html`<${WithoutValues} />`}
-    ${Object.entries(found.set_aside ?? {}).map(([skill, why]) => html`<p class="aside"><b>${skill}</b> is set aside: ${why}</p>`)}
+    ${[...new Set(Object.values(found.set_aside ?? {})), ...notNow(found)].map((why) => html`<p class="aside">${why}</p>`)}
     ${(found.constraints ?? []).map((each) => html`<p class="aside">Never <code>${each.never}</code>: risks ${each.risk.toPrecision(2)} of ${each.left.toPrecision(2)} that are left.</p>`)}
   </div>`;
+}
+
+// Actions that the search knew and nobody could run, together where the reason is the same.
+function notNow(found) {
+  const names = new Map();
+  for (const made of found.searches ?? [])
+    for (const [action, why] of Object.entries(made.is_dropped ? {} : made.barred ?? {})) names.set(why, (names.get(why) ?? new Set()).add(action));
+  return [...names].map(([why, actions]) => `${[...actions].map(briefAction).join(", ")} cannot be chosen now: ${why}`);
 }
 
 // What a person may do where the step has no values: the actions of the last decision that has some.
