@@ -256,9 +256,7 @@ async def test_an_adapter_that_is_started_again_is_waited_for_as_long_as_that_ta
     assert waits == [1] * 25
 
 
-async def test_an_adapter_that_is_expected_back_and_does_not_come_is_not_waited_for_for_ever(
-    field: BuiltModel,
-):
+async def test_an_adapter_that_is_expected_back_is_not_waited_for_for_ever(field: BuiltModel):
     def wait() -> None:
         clock.now_s += 30
 

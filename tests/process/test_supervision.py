@@ -224,27 +224,15 @@ async def test_a_command_that_ends_before_it_serves_is_tried_again(system: Syste
 
 @DEATHS
 async def test_an_adapter_is_expected_back_until_it_is_ready_again(system: System, death: signal.Signals):
-    adapter = small("robot", is_adapter=True, is_restarted=True)
-    async with system.up(adapter) as supervisor:
+    async with system.up(small("robot", is_adapter=True, is_restarted=True)) as supervisor:
         await supervisor.until_ready()
-        pid = descendants(supervisor.pids["robot"])[-1]
         async with asyncio.timeout(HANG_S), supervisor.bus.presence(supervisor.keys.all_returning) as told:
-            os.kill(pid, death)
+            os.kill(descendants(supervisor.pids["robot"])[-1], death)
             assert await anext(told) == (supervisor.keys.returning("robot"), True)
             await system.until("robot", "ready", times=2)
             is_expected = True
-            while is_expected or told.has_items:  # A silence and the end that follows it are told apart.
+            while is_expected or told.has_items:  # A silence and the end that follows are told apart.
                 _, is_expected = await anext(told)
-    assert system.order("ended")[0] == "robot"
-
-
-async def test_an_adapter_that_is_not_started_again_is_not_expected_back(system: System):
-    adapter = small("robot", is_adapter=True)
-    async with system.up(adapter, small("other", is_adapter=True)) as supervisor:
-        await supervisor.until_ready()
-        kill(supervisor.pids["robot"])
-        await system.until("robot", "ended")
-        assert not supervisor._running["robot"].returning
 
 
 async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System):
