@@ -218,6 +218,8 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
         assert refused.value.code == "AOS515"
         kill(stays.process.pid)
     stays.ended()
+    assert stays.aos("mission", "list")[1].splitlines()[-1].startswith("killed ")
+    assert "was killed. `aos-up --resume " in stays.aos("mission", "hold")[2]
     stays.be_slow(False)
     run = stays.run
     with up(root, stays.folder, "--resume") as again:

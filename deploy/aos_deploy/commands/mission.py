@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
+import msgspec
 import typer
 
 from aos_deploy.commands import steering
@@ -144,7 +145,8 @@ def _entries(system: System) -> tuple[MissionEntry, ...]:
 def _kept_entries(run: Path) -> tuple[MissionEntry, ...]:
     from aos_solver.mission.records.logbook import entries_of
 
-    return entries_of(run)
+    entries = entries_of(run)
+    return tuple(msgspec.structs.replace(entry, ending=entry.ending or "killed") for entry in entries)
 
 
 def _line(entry: MissionEntry) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.places import running_folder
+from aos_deploy.printing import from_here
 from aos_deploy.runs.directory import LATEST, RunDirectory
 from aos_protocol.errors import BusError, DeployError
 
@@ -106,7 +107,10 @@ def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
     chosen = chosen_run(run, runs)
     if not chosen.is_running:
         hint = "Start a system with aos-up, or name a running one with --run or --connect"
-        raise BusError(f"the last run, {chosen.path.name}, is over", code="AOS605", hint=hint)
+        end = "is over"
+        if chosen.read_summary() is None:
+            end, hint = "was killed", f"`aos-up --resume {from_here(chosen.path)}` takes it up. {hint}"
+        raise BusError(f"the last run, {chosen.path.name}, {end}", code="AOS605", hint=hint)
     return chosen
 
 
