@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pytest
 from processes import COMMAND_S
 
 AOS = Path(sys.executable).parent / "aos"
@@ -51,6 +52,22 @@ def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path):
     again = json.loads(run("--json").stdout)
     assert records.read_bytes() == before
     assert [verdict["held"] for verdict in again["finer"]["verdicts"]] == [2, 0]
+
+
+def test_a_mission_that_the_model_plays_returns_what_the_simulated_one_returns(tmp_path: Path):
+    bundle = f"{DEPLOY}/bundles/armadillo-finer"
+    deploy = tmp_path / "played.yaml"
+    deploy.write_text(
+        f"aos: 1\nrobot: armadillo\nbundles: [{bundle}]\nruns: runs\n"
+        "mission: {step_limit: 8}\nsolver: {simulations: 500}\n"
+    )
+    up = [AOS.with_name("aos-up"), deploy, "--model", "--seed", "3"]
+    subprocess.run(up, capture_output=True, check=False, timeout=COMMAND_S)
+    simulate = ["simulate", bundle, "--runs", "1", "--seed", "3", "--simulations", "500", "--step-limit", "8"]
+    done = subprocess.run([AOS, *simulate, "--json"], capture_output=True, check=True, timeout=COMMAND_S)
+    (simulated,) = json.loads(done.stdout)["runs"]
+    steps = (tmp_path / "runs/latest/model.jsonl").read_text().splitlines()
+    assert sum(json.loads(step)["reward"] for step in steps) == pytest.approx(simulated["return"])
 
 
 LOSSY_ROBOT = f"""

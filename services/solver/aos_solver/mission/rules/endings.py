@@ -135,7 +135,8 @@ def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> s
         unless = (
             f", and {cautious.goal_probability:.3f} if nothing ran that was not observed" if cautious else ""
         )
-        return f"the goal is reached with probability {belief.goal_probability:.3f}, as the belief has it{unless}"
+        reached = f"the goal is reached with probability {belief.goal_probability:.3f}"
+        return f"{reached}, as the belief has it{unless}"
     if ending == Ending.STEP_LIMIT:
         return f"the step limit of {limits.step_limit} is reached"
     if ending == Ending.NOTHING_WORTHWHILE:
