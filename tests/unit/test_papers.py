@@ -62,7 +62,7 @@ def test_the_table_of_keys_holds_every_key_that_can_be_built():
     built = {robot.live("SERVICE"), robot.activate("SKILL"), robot.call("PATH"), robot.topic("PATH")}
     built |= {robot.cancel("PATH"), robot.progress("PATH")}
     built |= {robot.serve(Serving("ADAPTER", "VERSION", "INSTANCE", "PATH"))}
-    built |= {robot.lack(Lack("ADAPTER", "REASON", "PATH"))}
+    built |= {robot.lack(Lack("ADAPTER", "REASON", "PATH")), robot.returning("PROGRAM")}
     built |= {getattr(robot, name) for name, kind in vars(Keys).items() if isinstance(kind, property)}
     stand_ins = [("ROBOT", "<robot>"), ("SERVICE", "<service>"), ("SKILL", "<skill>"), ("PATH", "<path>")]
     stand_ins += [
@@ -70,6 +70,7 @@ def test_the_table_of_keys_holds_every_key_that_can_be_built():
         ("VERSION", "<version>"),
         ("INSTANCE", "<instance>"),
         ("REASON", "<reason>"),
+        ("PROGRAM", "<program>"),
     ]
     documented = set(re.findall(r"^ +(aos/\S+)", keys.__doc__ or "", re.MULTILINE))
     for key in built:
