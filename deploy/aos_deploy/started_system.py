@@ -30,7 +30,7 @@ _CONNECT_TIMEOUT_S = 30.0
 
 @asynccontextmanager
 async def started_system(
-    deploy_file: str | Path, *options: str, runs: str | Path = RUNS, by: str = ""
+    deploy_file: str | Path, *options: str, runs: str | Path = RUNS
 ) -> AsyncIterator[AosClient]:
     """Starts the system of a deploy file and its first mission, and gives a client as its operator.
 
@@ -41,9 +41,7 @@ async def started_system(
         process = started_process(Path(deploy_file), Path(runs), options, said)
         try:
             run = await until_run(process, said)
-            async with AosClient.of_run(
-                run.path, OPERATOR, connect_timeout_s=_CONNECT_TIMEOUT_S, by=by
-            ) as client:
+            async with AosClient.of_run(run.path, OPERATOR, connect_timeout_s=_CONNECT_TIMEOUT_S) as client:
                 yield client
         finally:
             if process.poll() is None:

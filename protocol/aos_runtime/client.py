@@ -250,12 +250,7 @@ class AosClient(SteeringQuestions):
 
     async def _named(self, mission: int | None) -> str:
         """The name of a mission by its number; empty for the newest one."""
-        if mission is None:
-            return ""
-        for entry in (await self.missions()).entries:
-            if entry.number == mission:
-                return entry.mission
-        raise SkillError(f"there is no mission {mission}", code="AOS501", hint="See `aos mission list`")
+        return "" if mission is None else _found(await self.missions(), mission).mission
 
     async def until_ended(self, mission: str) -> MissionEntry:
         """Returns how a mission has ended, once it has.
@@ -281,13 +276,9 @@ class AosClient(SteeringQuestions):
 
     async def _entry(self, mission: str) -> MissionEntry | None:
         try:
-            entries = (await self.missions()).entries
+            return _found(await self.missions(), mission)
         except (LateAnswerError, NobodyAnswersError, LostAnswerError):
             return None  # There is news when it is back.
-        for entry in entries:
-            if entry.mission == mission:
-                return entry
-        raise SkillError(f"there is no mission {mission}", code="AOS501", hint="See `aos mission list`")
 
     async def decisions(self) -> AsyncIterator[DecisionRecord]:
         """Every decision record from the first, each once and in order, until the mission ends.
@@ -351,6 +342,10 @@ class AosClient(SteeringQuestions):
                 return
             page = await self._page(page.records[-1].sequence + 1)
 
+    async def page(self, query: HistoryQuery) -> History:
+        """A part of a mission's records; errors as from `history`."""
+        return await self._ask(self.keys.decision_history, query, History)
+
     async def _missing(self, feed: DecisionFeed) -> AsyncIterator[DecisionRecord]:
         """The records from the history that the feed lacks; none if the solver has gone."""
         has_more = True
@@ -369,19 +364,27 @@ class AosClient(SteeringQuestions):
             has_more = feed.next_sequence < since or (page.has_more and feed.next_sequence > since)
 
     async def _page(self, since: int) -> History:
-        key, query = self.keys.decision_history, HistoryQuery(since, _PAGE_RECORDS)
+        query = HistoryQuery(since, _PAGE_RECORDS)
         for _ in range(_HISTORY_TRIES - 1):
             try:
-                return await self._ask(key, query, History)
+                return await self.page(query)
             except LateAnswerError as error:
                 _log.info("%s; asked again", error)
-        return await self._ask(key, query, History)
+        return await self.page(query)
 
     async def _state_if_there(self) -> MissionState | None:
         try:
             return await self.mission_state()
         except BusError:
             return None
+
+
+def _found(missions: Missions, wanted: str | int) -> MissionEntry:
+    """The mission of a name or a number; SkillError AOS501 if there is none."""
+    for entry in missions.entries:
+        if wanted in (entry.mission, entry.number):
+            return entry
+    raise SkillError(f"there is no mission {wanted}", code="AOS501", hint="See `aos mission list`")
 
 
 def _place_of(run: Path, user: str) -> tuple[_Place, Credential | None]:

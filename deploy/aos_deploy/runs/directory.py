@@ -36,6 +36,7 @@ from aos_protocol.messages import Fault
 from aos_runtime.disk.mission_folders import mission_folder
 from aos_runtime.failpoints import reach
 from aos_runtime.processes.settings import fault_path
+from aos_runtime.whole_file import PRIVATE, write_whole
 
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""
@@ -127,7 +128,7 @@ class RunDirectory:
             if self.keeps_settings and path.exists():
                 before = msgspec.json.decode(path.read_bytes())
                 settings = before | {name: settings[name] for name in _ANEW if name in settings}
-            _write_privately(path, _pretty(settings))
+            write_whole(path, _pretty(settings), mode=PRIVATE)
         return path
 
     def keep_inputs(self, deploy_file: Any, policy: Path | None) -> None:
@@ -136,7 +137,7 @@ class RunDirectory:
         StorageError AOS701 if they cannot be written, or the policy file cannot be read.
         """
         with _kept(self.path / "deploy.json"):
-            _write_privately(self.path / "deploy.json", _pretty(deploy_file))
+            write_whole(self.path / "deploy.json", _pretty(deploy_file), mode=PRIVATE)
         if policy is not None:
             with _kept(self.policy):
                 shutil.copyfile(policy, self.policy)
@@ -242,22 +243,10 @@ class RunDirectory:
         return False
 
 
-def _write_privately(path: Path, content: bytes) -> None:
-    """Writes a file that nobody else may read."""
-    with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-        file.write(content)
-
-
 def _write_whole(path: Path, content: bytes, place: str) -> None:
-    """Writes beside the file and renames, so that nobody ever reads a part of it. `place` is a failpoint."""
-    beside = path.with_name(f".{path.name}-{os.getpid()}")
+    """Writes a file of the run that others read. `place` is a failpoint."""
     with _kept(path):
-        try:
-            beside.write_bytes(content)
-            reach(f"{place}.before")
-            beside.replace(path)
-        finally:
-            beside.unlink(missing_ok=True)
+        write_whole(path, content, before_rename=lambda: reach(f"{place}.before"))
     reach(f"{place}.after")
 
 

@@ -16,6 +16,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.messages import DecisionRecord, MissionState
 from aos_protocol.mission_rows import DECISION, STATE
 from aos_runtime.disk.journal import Journal, JournalRow
+from aos_runtime.whole_file import write_whole
 
 _BATCH = 500
 _PLACES = "spans.json"
@@ -69,9 +70,7 @@ class Sender:
     def _reach(self, mission: str, next_row: int) -> None:
         self._next_rows[mission] = next_row
         if self._file is not None:
-            written = self._file.with_suffix(".new")
-            written.write_bytes(msgspec.json.encode(self._next_rows))
-            written.replace(self._file)
+            write_whole(self._file, msgspec.json.encode(self._next_rows))
 
 
 def _spans_of_row(row: JournalRow, begun_ns: int) -> Iterator[Span]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from aos_protocol.errors import BusError
+from aos_runtime.whole_file import PRIVATE, write_whole
 
 FOLDER = "credentials"
 """The folder in a run directory with one file for each party, named like it."""
@@ -61,8 +62,5 @@ def read_password(path: Path) -> str:
 def write_password(path: Path, password: str = "") -> str:
     """Writes a password, by default a new one, into a file that nobody else can read, and returns it."""
     password = password or secrets.token_hex(16)
-    beside = path.with_name(f".{path.name}-{os.getpid()}")
-    with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-        file.write(f"{password}\n")
-    beside.replace(path)
+    write_whole(path, f"{password}\n".encode(), mode=PRIVATE)
     return password

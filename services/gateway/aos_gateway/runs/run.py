@@ -18,7 +18,7 @@ from aos_protocol.errors import AosError, GatewayError
 from aos_protocol.messages import History, HistoryQuery, MissionBegun, MissionEntry, MissionState
 from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.client import AosClient
-from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.journal import Journal, JournalRow
 from aos_runtime.disk.mission_folders import (
     JOURNAL,
     mission_folder,
@@ -30,7 +30,6 @@ from aos_runtime.disk.mission_folders import (
 from aos_solver.mission.records.history import history_page
 from aos_solver.mission.records.logbook import entries_of
 
-_ANSWER_S = 5.0
 _BEGINNING_S = 1.0
 _LOOK_S = 0.5
 """Somebody who waits for an answer hears so soon that the system has ended."""
@@ -206,31 +205,25 @@ class KeptRun(Run):
         return await asyncio.to_thread(history_page, journal, mission, HistoryQuery(since, limit))
 
     async def last_state(self, mission: str) -> MissionState | None:
-        state = await asyncio.to_thread(self._last_state, self.folder(mission) / JOURNAL)
-        if state is not None or (end := self.summary(mission)) is None:
+        last = await asyncio.to_thread(self._last_row, mission, STATE)
+        state = message_of_row(last) if last is not None else None
+        if isinstance(state, MissionState):
             return state
+        if (end := self.summary(mission)) is None:
+            return None
         # It ended before it began.
         return MissionState(mission, "ended", end.steps, 0.0, ending=end.ending, remark=end.remark)
 
-    @staticmethod
-    def _last_state(journal: Path) -> MissionState | None:
+    async def parameters(self, mission: str) -> dict[str, str]:
+        last = await asyncio.to_thread(self._last_row, mission, BEGUN)
+        return {} if last is None else last.read_as(MissionBegun).mission_parameters
+
+    def _last_row(self, mission: str, kind: str) -> JournalRow | None:
+        journal = self.folder(mission) / JOURNAL
         if not journal.exists():
             return None
         with Journal.read(journal) as rows:
-            last = next(iter(rows.rows(STATE)[-1:]), None)
-        message = message_of_row(last) if last is not None else None
-        return message if isinstance(message, MissionState) else None
-
-    async def parameters(self, mission: str) -> dict[str, str]:
-        return await asyncio.to_thread(self._parameters, self.folder(mission) / JOURNAL)
-
-    @staticmethod
-    def _parameters(journal: Path) -> dict[str, str]:
-        if not journal.exists():
-            return {}
-        with Journal.read(journal) as rows:
-            last = next(iter(rows.rows(BEGUN)[-1:]), None)
-        return {} if last is None else last.read_as(MissionBegun).mission_parameters
+            return next(iter(rows.rows(kind)[-1:]), None)
 
     def folder(self, mission: str) -> Path:
         """The folder of a mission's journal and summary."""
@@ -278,12 +271,7 @@ class RemoteRun(Run):
 
     async def page(self, mission: str, since: int, limit: int = 0) -> History:
         async with self.client() as client:
-            return await client.bus.ask(
-                client.keys.decision_history,
-                HistoryQuery(since, limit, mission),
-                History,
-                timeout_s=_ANSWER_S,
-            )
+            return await client.page(HistoryQuery(since, limit, mission))
 
     async def last_state(self, mission: str) -> MissionState | None:
         async with self.client() as client:
