@@ -6,14 +6,14 @@ import sys
 from pathlib import Path
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
-from aos_protocol.errors import DocumentError, StorageError
+from aos_protocol.errors import DocumentError, SkillError, StorageError
 from aos_runtime.processes.children import PIPE, Child, guarded
 from aos_runtime.processes.lifecycle import Service, ServiceSettings, run_service
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):
-    """`mood` is `good`, `slow` (never ready), `faulty`, `broken`, `full` (its disk), `deaf` (to SIGTERM) or
-    `parental`."""
+    """`mood` is `good`, `slow` (never ready), `faulty`, `broken`, `full` (its disk), `deaf` (to SIGTERM),
+    `stuck` (ends once it was ready) or `parental`."""
 
     mood: str = "good"
 
@@ -39,6 +39,8 @@ async def serve(service: Service[Settings]) -> None:
             asyncio.get_running_loop().remove_signal_handler(signal.SIGTERM)
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
         await service.ready()
+        if service.settings.mood == "stuck":
+            raise SkillError("the arm is stuck", code="AOS504")
         await asyncio.Event().wait()
     finally:
         _note_stop(service.settings)

@@ -266,9 +266,14 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
         ("drive", "/skill is not bound to a function. Write it as /skill: {python: my_robot.py:function}"),
         ("robot.py:time", "which cannot be called"),
         ("robot.py:beep", "takes no arguments. A function gets the call first"),
+        (
+            "script.py:go",
+            "script.py, which cannot be loaded: SystemExit: 3. What it does as a program stands",
+        ),
     ],
 )
 async def test_what_cannot_be_bound_ends_the_process_with_one_message(robot: Robot, target: str, text: str):
+    (robot.folder / "script.py").write_text("raise SystemExit(3)\n")
     child = await robot.launch(skill=target)
     async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1

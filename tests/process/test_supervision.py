@@ -214,6 +214,13 @@ async def test_a_service_that_does_not_end_is_told_before_it_is_killed(system: S
     assert told == ["it has not ended yet; 2 s after it was asked to, it is killed"]
 
 
+async def test_an_adapter_that_ends_itself_and_starts_again_says_why(system: System):
+    async with system.up(small("robot", "stuck", is_adapter=True, is_restarted=True)):
+        await system.until("robot", "ended")
+    (told, *_) = [event.detail for event in system.events if event.state == "ended" and event.detail]
+    assert told == "exit status 1, the arm is stuck; it is started again"
+
+
 async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System):
     error = await system.error(command("sh", "-c", "echo no camera; exit 4", is_restarted=True))
     assert system.order("ended") == ["robot"] * 5 + ["router"]

@@ -364,7 +364,9 @@ class Supervisor:
             running.is_ready = False
             others = [other for other in self._running.values() if other is not running]
             then = consequence(running, status, others, self._run, self._clock.monotonic_s())
-            self._changed(program.name, "ended", f"{status_text(status)}; {then}")
+            fault = self._run.fault(program.name) if then != THE_RUN_ENDS else None  # It is told then.
+            how = f"{status_text(status)}, {fault.message}" if fault is not None else status_text(status)
+            self._changed(program.name, "ended", f"{how}; {then}")
             after_s = round(self._clock.monotonic_s() - self._started_s, 3)
             self.ends.append(ProcessEnd(program.name, after_s, status_text(status), then))
             self._tell_return(running, it_comes=then == STARTED_AGAIN)

@@ -11,6 +11,7 @@ import asyncio
 import importlib
 import importlib.util
 import inspect
+import logging
 import sys
 import threading
 import traceback
@@ -21,6 +22,8 @@ from typing import Any
 
 from aos_protocol.errors import DeployError, SkillError
 from aos_runtime.adapters import Answer, Call, Host
+
+_log = logging.getLogger("aos.adapter")
 
 _END_S = 1.0
 _POSITIONAL = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
@@ -112,15 +115,19 @@ class PythonAdapter:
     def _module(self, path: str, place: str) -> ModuleType:
         if place in self._modules:
             return self._modules[place]
+        _log.info("loading %s", place)  # The last line, where the file never comes to its end.
         try:
             if place.endswith(".py"):
                 module = _from_file(self._host.folder / place)
             else:
                 module = importlib.import_module(place)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
+            hint = f"A file is found from the deploy file's folder, {self._host.folder}; see the log too"
+            if isinstance(error, SystemExit):
+                hint = "What it does as a program stands behind `if __name__ == '__main__':`"
             raise DeployError(
                 f"{path} is bound to {place}, which cannot be loaded: {type(error).__name__}: {error}",
-                hint=f"A file is found from the deploy file's folder, {self._host.folder}; see the log too",
+                hint=hint,
             ) from error
         self._modules[place] = module
         return module
@@ -130,7 +137,7 @@ class PythonAdapter:
             return self._objects[place, name]
         try:
             made = kind(self._host) if _takes_host(kind) else kind()
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             frame = traceback.extract_tb(error.__traceback__)[-1]
             raise DeployError(
                 f"{name} of {place} cannot be made: {type(error).__name__}: {error}",
