@@ -14,38 +14,44 @@ from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, Version
 from aos_deploy.terminal import write_what_fits
+from aos_deploy.told_numbers import NumbersToldGroup
 from aos_protocol.errors import AosError
 
 _COMMANDS = {
-    "aos_deploy.commands.up": ("up",),
-    "aos_deploy.commands.mission": ("mission",),
-    "aos_deploy.commands.decisions": ("decisions",),
-    "aos_deploy.commands.runs": ("runs",),
-    "aos_deploy.commands.export": ("export",),
-    "aos_gateway.command": ("serve",),
-    "aos_deploy.commands.check": ("check",),
-    "aos_deploy.commands.replay": ("replay", "diff"),
-    "aos_deploy.commands.drift": ("drift",),
-    "aos_deploy.commands.why": ("why", "whatif"),
-    "aos_deploy.commands.skill": ("skill", "resume"),
-    "aos_deploy.commands.documents": ("lint", "inspect"),
-    "aos_deploy.commands.bundle": ("bundle",),
-    "aos_deploy.commands.convert": ("convert",),
-    "aos_deploy.commands.new": ("new",),
-    "aos_deploy.commands.schema": ("schema",),
-    "aos_editor.command": ("language-server",),
-    "aos_deploy.commands.plan": ("plan", "rate"),
-    "aos_lab.commands.simulate": ("simulate",),
-    "aos_lab.commands.solve": ("solve",),
-    "aos_lab.commands.test": ("test",),
-    "aos_lab.commands.experiment": ("experiment",),
-    "aos_lab.commands.calibrate": ("calibrate",),
-    "aos_lab.commands.bench": ("bench",),
-    "aos_lab.commands.gym": ("gym",),
-    "aos_deploy.commands.machine": ("doctor",),
+    "up": ("aos_deploy.commands.up", "Bring a robot's system up and run its mission."),
+    "decisions": ("aos_deploy.commands.decisions", "Print every decision of a mission from its first step."),
+    "export": ("aos_deploy.commands.export", "Write the records of runs to files to take home."),
+    "serve": ("aos_gateway.command", "Show runs, living and past, on a page and over HTTP."),
+    "check": ("aos_deploy.commands.check", "Check a run's journal and ledgers against each other."),
+    "replay": ("aos_deploy.commands.replay", "Compute a mission once more, and compare each decision."),
+    "diff": ("aos_deploy.commands.replay", "Compare two missions up to where they part."),
+    "drift": ("aos_deploy.commands.drift", "Test whether skills do what their documents say."),
+    "why": ("aos_deploy.commands.why", "Explain a decision."),
+    "whatif": ("aos_deploy.commands.why", "Decide a step anew under other circumstances."),
+    "resume": ("aos_deploy.commands.skill", "Go on with a mission that holds."),
+    "lint": ("aos_deploy.commands.documents", "Check a bundle and print everything that is wrong."),
+    "inspect": ("aos_deploy.commands.documents", "Print what becomes of a bundle."),
+    "convert": ("aos_deploy.commands.convert", "Write a bundle's documents in SDL or in AOS 1.x JSON."),
+    "schema": ("aos_deploy.commands.schema", "Print a JSON Schema for editors."),
+    "language-server": ("aos_editor.command", "Check documents while they are written."),
+    "plan": ("aos_deploy.commands.plan", "Decide at the initial belief."),
+    "rate": ("aos_deploy.commands.plan", "Measure how many samples a second the model gives."),
+    "simulate": ("aos_lab.commands.simulate", "Run whole missions against the documents' own model."),
+    "solve": ("aos_lab.commands.solve", "Work out a policy before the mission."),
+    "test": ("aos_lab.commands.test", "Run missions and check what is claimed of them."),
+    "calibrate": ("aos_lab.commands.calibrate", "Estimate the documents' probabilities from missions."),
+    "bench": ("aos_lab.commands.bench", "Measure sampling, search and returns."),
+    "gym": ("aos_lab.commands.gym", "Describe a bundle as a Gymnasium environment."),
+    "doctor": ("aos_deploy.commands.machine", "Say what this machine has and lacks."),
+    "mission": ("aos_deploy.commands.mission", "Start, stop, list and steer missions."),
+    "runs": ("aos_deploy.commands.runs", "List the missions of this machine."),
+    "skill": ("aos_deploy.commands.skill", "See, call and stop the skills of a running system."),
+    "bundle": ("aos_deploy.commands.bundle", "Send documents to a running system, or list them."),
+    "new": ("aos_deploy.commands.new", "Write documents, an adapter or a whole example."),
+    "experiment": ("aos_lab.commands.experiment", "Run an experiment, and see which of its claims hold."),
 }
-"""The modules, in the order of the help, with the names that each registers. They are named here and not
-imported: laboratory, editor and gateway are above this package."""
+"""The module of each command and its sentence, in the order of the help, which imports none of them.
+They are named here since laboratory, editor and gateway are above this package."""
 
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 _UNUSABLE = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR, errno.ELOOP)
@@ -62,10 +68,14 @@ def main(has_imported: Callable[[], object] = lambda: None) -> NoReturn:
     _run(lambda: aos_app(sys.argv[1:]), "aos", has_imported)
 
 
-def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
-    """`aos` with the command that the arguments name, or with all; the faults of commands come out of it."""
+def aos_app(arguments: Sequence[str] | None = None) -> typer.Typer:
+    """`aos` with all commands; of arguments with the one that they call, or with the names of all.
+
+    The faults of commands come out of it.
+    """
     app = typer.Typer(
         name="aos",
+        cls=NumbersToldGroup,
         no_args_is_help=True,
         help="Task-level autonomy for robots: documents in, decisions out.",
         epilog="Example: aos new example armadillo, then aos-up armadillo/armadillo.yaml",
@@ -73,8 +83,13 @@ def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
         **_STYLE,
     )
     app.callback()(_own_options)
-    for module in _needed_modules(arguments):
-        import_module(module).register(app)
+    called = None if arguments is None else _called(arguments)
+    if called == "":
+        for name, (_, sentence) in _COMMANDS.items():
+            app.command(name, help=sentence)(_only_named)
+    else:
+        for module in dict.fromkeys(_COMMANDS[name][0] for name in ([called] if called else _COMMANDS)):
+            import_module(module).register(app)
     return app
 
 
@@ -89,11 +104,14 @@ def _up_app() -> typer.Typer:
     return app
 
 
-def _needed_modules(arguments: Sequence[str]) -> list[str]:
-    """Returns only the module of the command that is called, so that others' imports cost nothing."""
-    words = arguments or _words_to_complete()
-    called = [module for module, names in _COMMANDS.items() if words and words[0] in names]
-    return called or list(_COMMANDS)
+def _called(arguments: Sequence[str]) -> str:
+    """Returns the command that is called, whose imports alone are worth their time; "" if none is."""
+    words = [word for word in arguments or _words_to_complete() if not word.startswith("-")]
+    return words[0] if words and words[0] in _COMMANDS else ""
+
+
+def _only_named() -> None:
+    """Stands for a command in the help, in completion and among names that a wrong one may have meant."""
 
 
 def _words_to_complete() -> list[str]:

@@ -2,6 +2,8 @@
 
 import io
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -9,6 +11,7 @@ from pathlib import Path
 import pytest
 import typer
 from typer.core import TyperGroup
+from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
 
@@ -65,6 +68,53 @@ def test_files_of_examples_are_there_or_made_by_commands(helps: dict[str, str]):
 
 def test_no_list_of_commands_cuts_a_sentence_off(helps: dict[str, str]):
     assert [line for text in helps.values() for line in cut_off(text)] == []
+
+
+def test_the_help_that_imports_no_command_says_what_the_commands_say(helps: dict[str, str]):
+    root = typer.main.get_command(aos_app(["--help"]))
+    assert isinstance(root, TyperGroup)
+    assert sorted(help_of(root, ()).splitlines()) == sorted(helps["aos"].splitlines())
+
+
+def test_the_help_of_all_commands_imports_none_of_them():
+    code = "import sys; from aos_deploy.cli import main; main(lambda: print(*sys.modules))"
+    done = subprocess.run(
+        (sys.executable, "-c", code, "--help"), capture_output=True, text=True, check=True, timeout=60
+    )
+    assert "aos_deploy.told_numbers" in done.stdout
+    assert not re.search(r"aos_deploy\.commands|aos_(lab|solver|gateway|editor)", done.stdout)
+
+
+@pytest.mark.parametrize("arguments", [["--", "schema", "deploy"], ["schema", "deploy"]])
+def test_a_command_is_found_behind_two_dashes(arguments: list[str]):
+    assert '"$schema"' in CliRunner().invoke(aos_app(arguments), arguments).stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("simulate x --runs two", "'--runs': 'two' is not a whole number of at least 1, such as 10"),
+        ("simulate x --runs 0", "'--runs': 0 is not a whole number of at least 1, such as 10"),
+        ("plan x --threads 33", "'--threads': 33 is not a whole number from 1 to 32, such as 1"),
+        ("plan x --time soon", "'--time': 'soon' is not a number of at least 0.001, such as 1"),
+        ("serve --port -1", "'--port': -1 is not a whole number from 0 to 65535, such as 7480"),
+        ("runs prune --keep all", "'--keep': 'all' is not a whole number of at least 0, such as 1"),
+        ("up x --seed z", "'--seed': 'z' is not a whole number of at least 0, such as 1"),
+    ],
+)
+def test_a_number_that_is_not_taken_is_told_with_those_that_are(words: str, said: str):
+    assert (
+        CliRunner().invoke(aos_app(), words.split()).stderr.splitlines()[-1]
+        == f"Error: Invalid value for {said}"
+    )
+
+
+def test_a_program_of_one_command_tells_of_numbers_too():
+    program = (sys.executable, "-c", "from aos_deploy.cli import up_main; up_main()")
+    done = subprocess.run(
+        (*program, "x", "--seed", "z"), capture_output=True, text=True, check=False, timeout=60
+    )
+    assert "'z' is not a whole number of at least 0, such as 1" in done.stderr
 
 
 def test_a_sentence_that_is_too_long_is_found():

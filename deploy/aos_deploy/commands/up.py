@@ -13,6 +13,7 @@ from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, TrustDocuments, Version
+from aos_deploy.told_numbers import NumbersToldCommand
 
 if TYPE_CHECKING:
     from aos_deploy.deployment.reading import Deployment
@@ -67,7 +68,7 @@ Serve = Annotated[
 
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`, or makes it the whole of `aos-up`."""
-    app.command(epilog=_EPILOG, context_settings=HELP_NAMES)(up)
+    app.command(cls=NumbersToldCommand, epilog=_EPILOG, context_settings=HELP_NAMES)(up)
 
 
 def up(
