@@ -175,6 +175,38 @@ async def test_a_number_with_a_unit_is_told_without_the_compilers_words(cache_di
     assert only.message == "a number cannot have `m` behind it"
 
 
+@pytest.mark.parametrize(
+    ("code", "message", "column"),
+    [
+        ("state.load = 3;", "a map variable takes no value as a whole", 14),
+        (
+            "state.load[{par2, par1}] = 3;",
+            "the keys of this map variable are {Side, (0,3,1)}, and these are others",
+            11,
+        ),
+        (
+            "state.load[par1] = 3;",
+            "the keys of this map variable are {Side, (0,3,1)}, and these are others",
+            11,
+        ),
+        ("state.load.total = 3;", "`map of int` has no member named `total`", 12),
+    ],
+)
+async def test_a_mistake_with_a_map_names_its_keys(code: str, message: str, column: int, cache_dir: Path):
+    declared = (
+        "define_type: Side\nenum_members: Left, Right\n\nstate_variable: int load\nkey_types: Side, (0,3,1)\n"
+    )
+    home = f"{HOME}\n{declared}code:\n{code}\n"
+    error = await build_error(emitted_skill("state__.total = 1;", home), cache_dir)
+    (only,) = error.diagnostics
+    assert (only.message, only.span.column) == (message, column)
+    assert only.span.line == home.split("\n").index(code) + 1
+    name = "NAME" if "total" in code else "load"
+    assert (
+        only.hint == f"An element of it is `state.{name}[{{...}}]`, with a key for each of {{Side, (0,3,1)}}"
+    )
+
+
 async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path):
     document: dict[str, Any] = {
         "Preconditions": {"GlobalVariablePreconditionAssignments": [

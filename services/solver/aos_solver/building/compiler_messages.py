@@ -7,6 +7,7 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
+from aos_solver.building.map_messages import told_of_a_map
 from aos_solver.emission.emit import EmittedModel
 
 _PLACE = re.compile(
@@ -152,6 +153,8 @@ def _plain(text: str) -> tuple[str, str]:
     text = text.replace("was not declared in this scope", "was not declared").replace(
         "aos::AnySource::", "AOS."
     )
+    if (of_a_map := told_of_a_map(text)) is not None:
+        return of_a_map
     if _ANOTHER_ENUM.search(text):
         return (
             "this array is indexed by another enum",
