@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "aos/base/xoshiro.hpp"
+#include "aos/draws/xoshiro.hpp"
 
 namespace bench {
 

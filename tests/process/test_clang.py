@@ -19,10 +19,11 @@ from aos_deploy.deployment.constraints import constrained, constraint_of_option
 from aos_protocol.documents import Project
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
-from aos_solver.building.engine_build import FUNCTIONS, NUMBERS, SOURCES
+from aos_solver.building.engine_build import ENGINE, FUNCTIONS, NUMBERS, SOURCES
 from aos_solver.emission.emit import MODEL_FILE
 
 UNOPTIMIZED = ("-O0", "-DAOS_QUICK")
+STATE = "-DAOS_STATE_BYTES=64"
 
 
 @pytest.fixture
@@ -50,9 +51,9 @@ def test_clang_compiles_a_model_with_a_costly_constraint(bundles: Path, clang: C
     compile_model(msgspec.structs.replace(project, constraints=(costly,)), clang, cache_dir)
 
 
-@pytest.mark.parametrize("part", [NUMBERS, FUNCTIONS])
+@pytest.mark.parametrize("part", [ENGINE, NUMBERS, FUNCTIONS])
 def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_dir: Path):
-    command = clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0")
+    command = clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0", STATE)
     once([part], clang, cache_dir, lambda folder: run(command, folder))
 
 

@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "aos/base/json.hpp"
 #include "aos/model/model_support.hpp"
 #include "aos/model/support.hpp"
 #include "aos/model/values.hpp"
+#include "aos/text/json.hpp"
 #include "scripted.hpp"
 
 namespace aos {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/described_distribution.hpp"
-#include "aos/base/distributions.hpp"
+#include "aos/draws/described_distribution.hpp"
+#include "aos/draws/distributions.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"
 #include "check.hpp"

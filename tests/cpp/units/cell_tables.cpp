@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "check.hpp"
 
 namespace cell_tables_tests {

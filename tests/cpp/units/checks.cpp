@@ -5,10 +5,10 @@
 #include <exception>
 #include <string>
 
-#include "aos/base/fault.hpp"
-#include "aos/base/json.hpp"
-#include "aos/model/support.hpp"
 #include "answers.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/model/support.hpp"
+#include "aos/text/json.hpp"
 #include "check.hpp"
 
 #include "action_values.cpp"

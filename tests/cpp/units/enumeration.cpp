@@ -1,12 +1,12 @@
 // Draws and the walk over all of them: enumerator.hpp, normal.hpp, random.hpp.
-#include "aos/base/enumerator.hpp"
+#include "aos/draws/enumerator.hpp"
 
 #include <cmath>
 #include <initializer_list>
 #include <string>
 #include <vector>
 
-#include "aos/base/normal.hpp"
+#include "aos/draws/normal.hpp"
 #include "aos/model/support.hpp"
 #include "check.hpp"
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/observed_numbers.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "check.hpp"
 
 namespace loops_tests {

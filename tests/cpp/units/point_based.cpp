@@ -1,9 +1,9 @@
 // Point-based search on tables: regions, bounds and trials, alias.hpp.
 #include <map>
 
-#include "aos/base/alias.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/alias.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "check.hpp"
 #include "point_based/online.hpp"

@@ -1,5 +1,5 @@
 // Draws that split heavy paths and sample light ones: split_draws.hpp.
-#include "aos/base/split_draws.hpp"
+#include "aos/draws/split_draws.hpp"
 
 #include <array>
 #include <cstddef>

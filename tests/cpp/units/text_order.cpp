@@ -1,5 +1,5 @@
 // The order of texts with numbers: text_order.hpp.
-#include "aos/base/text_order.hpp"
+#include "aos/text/text_order.hpp"
 
 #include "check.hpp"
 

@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/planners.hpp"
+#include "aos/text/json.hpp"
 #include "bisimulation.hpp"
 #include "flat.hpp"
 #include "point_based/online.hpp"

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/planner.hpp"
+#include "aos/text/json.hpp"
 #include "belief_line.hpp"
 #include "flat.hpp"
 #include "problem.hpp"

@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/json.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/planners.hpp"
+#include "aos/text/json.hpp"
 #include "flat.hpp"
 #include "problem.hpp"
 #include "table_model.hpp"

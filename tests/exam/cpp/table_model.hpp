@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/rollout.hpp"
 #include "aos/model/step.hpp"

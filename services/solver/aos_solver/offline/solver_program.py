@@ -8,7 +8,8 @@ from aos_solver.building.compiler_run import internal_error, run_compiler
 from aos_solver.building.engine_build import SOURCES
 
 _SOURCE = Path(__file__).parent / "cpp" / "sarsop.cpp"
-_SHARED = (*sorted((SOURCES / "aos/base").iterdir()), *sorted((SOURCES / "point_based").iterdir()))
+_ROOMS = ("aos/base", "aos/draws", "aos/text", "point_based")
+"""Rooms of the headers that it includes."""
 _OBJECT = "sarsop.o"
 _EXECUTABLE = "sarsop"
 
@@ -20,7 +21,7 @@ async def build_solver(cache_dir: Path) -> Path:
     """
     compiler = await find_compiler()
     compilation = compiler.compilation(str(_SOURCE), _OBJECT, str(SOURCES), "-O3")
-    texts = [path.read_text() for path in (*sorted(_SOURCE.parent.iterdir()), *_SHARED)]
+    texts = [path.read_text() for path in _sources()]
     options = compiler.compilation("", "", "", "-O3")
     name = f"sarsop-{digest_of([compiler.version, *options, *texts])}"
 
@@ -40,3 +41,11 @@ async def build_solver(cache_dir: Path) -> Path:
         (staging / _EXECUTABLE).chmod(0o755)
 
     return await BuildCache(cache_dir).fill(name, make) / _EXECUTABLE
+
+
+def _sources() -> list[Path]:
+    return [
+        path
+        for room in (_SOURCE.parent, *(SOURCES / name for name in _ROOMS))
+        for path in sorted(room.iterdir())
+    ]

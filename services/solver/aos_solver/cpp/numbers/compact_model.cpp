@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/progress.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "numbers/observable_values.hpp"
 
 namespace aos {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/progress.hpp"
+#include "aos/draws/enumerator.hpp"
 
 namespace aos {
 

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "numbers/belief_key.hpp"
 #include "numbers/observable_values.hpp"
 #include "point_based/flat_model.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "aos/base/descriptor_file.hpp"
-#include "aos/base/json.hpp"
+#include "aos/text/json.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/sarsop.hpp"

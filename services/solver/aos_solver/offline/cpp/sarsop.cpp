@@ -12,7 +12,7 @@
 #include <exception>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/json.hpp"
+#include "aos/text/json.hpp"
 #include "point_based/flat_file.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/regions.hpp"

@@ -15,11 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
 #include "aos/belief/drawn_step.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
@@ -28,7 +23,12 @@
 #include "aos/belief/marginals.hpp"
 #include "aos/belief/outcomes.hpp"
 #include "aos/belief/particle_filter.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

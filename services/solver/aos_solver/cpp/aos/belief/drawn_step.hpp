@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <utility>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/particle_filter.hpp"
 #include "aos/belief/split_filter.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -8,7 +8,7 @@
 
 #include "aos/base/function_ref.hpp"
 #include "aos/base/number_index.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -29,11 +29,11 @@
 #include <vector>
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
-#include "aos/base/text_order.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
+#include "aos/text/text_order.hpp"
 
 namespace aos {
 

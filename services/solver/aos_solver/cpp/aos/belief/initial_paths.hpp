@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/loop_heads.hpp"
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
+#include "aos/draws/loop_heads.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 
 namespace aos {
 

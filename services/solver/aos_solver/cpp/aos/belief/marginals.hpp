@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/json.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/model/values.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

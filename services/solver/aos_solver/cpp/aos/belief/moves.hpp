@@ -27,12 +27,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
 #include "aos/belief/free_draws.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/passage.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 
 namespace aos {
 

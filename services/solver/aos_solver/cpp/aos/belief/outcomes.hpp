@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/belief/gathering.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

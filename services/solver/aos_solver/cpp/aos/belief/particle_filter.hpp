@@ -17,13 +17,13 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
 #include "aos/belief/moves.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

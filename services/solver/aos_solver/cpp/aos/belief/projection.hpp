@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/step.hpp"

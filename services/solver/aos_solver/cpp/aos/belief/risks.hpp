@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/violations.hpp"
 

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

@@ -10,11 +10,11 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "aos/base/random.hpp"
-#include "aos/base/split_draws.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/split_draws.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

@@ -10,10 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/base64.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/hypotheses.hpp"
@@ -25,9 +22,12 @@
 #include "aos/child/projected_beliefs.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/wording.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/violations.hpp"
 #include "aos/planning/planners.hpp"
+#include "aos/text/base64.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

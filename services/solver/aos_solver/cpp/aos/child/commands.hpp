@@ -8,7 +8,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "aos/base/json.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
@@ -20,6 +19,7 @@
 #include "aos/child/world_commands.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/planners.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

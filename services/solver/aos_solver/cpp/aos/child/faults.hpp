@@ -6,11 +6,11 @@
 #include <new>
 #include <string>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/json.hpp"
 #include "aos/child/command.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/text/json.hpp"
 #include "point_based/online.hpp"
 
 namespace aos {

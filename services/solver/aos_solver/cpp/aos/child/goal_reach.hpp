@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/history.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/values/random_walk.hpp"

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/values.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

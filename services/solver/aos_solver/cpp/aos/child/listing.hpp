@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "aos/base/descriptor_file.hpp"
-#include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/left_out.hpp"
 #include "aos/planning/listed/state_space.hpp"
+#include "aos/text/json.hpp"
 #include "point_based/flat_file.hpp"
 
 namespace aos {

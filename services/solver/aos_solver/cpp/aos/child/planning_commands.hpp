@@ -14,18 +14,18 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/goal_reach.hpp"
 #include "aos/child/listing.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/wording.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/idle_actions.hpp"
 #include "aos/planning/planners.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

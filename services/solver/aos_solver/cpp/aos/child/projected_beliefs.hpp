@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/projection.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

@@ -7,15 +7,15 @@
 #include <cstdint>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/command.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/endless_steps.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/listed/step_table.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/simulated_state.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <utility>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/reward_ledger.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

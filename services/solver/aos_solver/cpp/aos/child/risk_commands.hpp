@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

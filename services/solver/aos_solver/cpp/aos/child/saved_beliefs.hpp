@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/base64.hpp"
-#include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/state_text.hpp"
+#include "aos/text/base64.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

@@ -7,19 +7,19 @@
 #include <cstdint>
 #include <memory>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/reward_terms.hpp"
 #include "aos/child/wording.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/exact_root.hpp"
 #include "aos/planning/listed/state_space.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

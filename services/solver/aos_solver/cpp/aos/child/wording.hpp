@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "aos/base/json.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/child/command.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

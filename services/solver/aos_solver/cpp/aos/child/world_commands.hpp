@@ -5,16 +5,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/base64.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
-#include "aos/base/replay.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/wording.hpp"
 #include "aos/child/worlds.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/draws/replay.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/base64.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/base64.hpp"
-#include "aos/base/json.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/observation_numbers.hpp"
+#include "aos/text/base64.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

@@ -14,8 +14,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "aos/base/loop_heads.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/loop_heads.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/endless_steps.hpp"
 #include "aos/model/reflection.hpp"

@@ -13,11 +13,11 @@
 #include <string>
 #include <unordered_set>
 
-#include "aos/base/build_kind.hpp"
-#include "aos/base/enumerator.hpp"
-#include "aos/base/loop_heads.hpp"
 #include "aos/base/mixed.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/loop_heads.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/build_kind.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
 
 namespace aos {

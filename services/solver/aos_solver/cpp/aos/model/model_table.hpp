@@ -11,10 +11,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "aos/base/build_kind.hpp"
-#include "aos/base/directed.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/build_kind.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/rollout.hpp"

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "aos/base/distributions.hpp"
-#include "aos/base/observed_numbers.hpp"
+#include "aos/draws/distributions.hpp"
+#include "aos/draws/observed_numbers.hpp"
 
 namespace aos {
 

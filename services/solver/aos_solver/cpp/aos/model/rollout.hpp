@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <utility>
 
-#include "aos/base/build_kind.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
+#include "aos/draws/random.hpp"
+#include "aos/model/build_kind.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

@@ -12,12 +12,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "aos/base/distribution_functions.hpp"
-#include "aos/base/draw_sources.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/reward_ledger.hpp"
+#include "aos/draws/distribution_functions.hpp"
+#include "aos/draws/draw_sources.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/containers.hpp"
 #include "aos/model/endless_steps.hpp"
 #include "aos/model/grounding.hpp"

@@ -11,11 +11,11 @@
 
 #include "aos/base/fault.hpp"
 #include "aos/base/reward_ledger.hpp"
-#include "aos/base/utf8.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/utf8.hpp"
 
 namespace aos {
 

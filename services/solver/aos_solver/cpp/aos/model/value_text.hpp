@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "aos/base/fault.hpp"
-#include "aos/base/json.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/values.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <optional>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/state_numbers.hpp"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/state_space.hpp"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/belief_tree/belief_tree.hpp"
 #include "aos/planning/budget.hpp"

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <cstdint>
 
-#include "aos/base/directed.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/values/group_missions.hpp"

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/described_distribution.hpp"
 #include "aos/base/mixed.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/described_distribution.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 
 namespace aos {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/sensing_tables.hpp"
 #include "aos/planning/listed/state_space.hpp"

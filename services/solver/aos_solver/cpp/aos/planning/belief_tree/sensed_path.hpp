@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/described_distribution.hpp"
-#include "aos/base/directed.hpp"
-#include "aos/base/distributions.hpp"
-#include "aos/base/enumerator.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/described_distribution.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/distributions.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/observed_numbers.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"

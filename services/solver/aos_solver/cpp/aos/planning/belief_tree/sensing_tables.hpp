@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "aos/base/mixed.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/belief_tree/belief_tree_constants.hpp"
 #include "aos/planning/belief_tree/observation_tables.hpp"
 #include "aos/planning/belief_tree/sensed_path.hpp"

@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/room.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"

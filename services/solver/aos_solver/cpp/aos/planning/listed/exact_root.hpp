@@ -1,8 +1,8 @@
 // The belief from which exact values are computed.
 #pragma once
 
-#include "aos/base/enumerator.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "numbers/exact.hpp"
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/budget.hpp"

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "point_based/flat_model.hpp"

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "aos/base/described_distribution.hpp"
+#include "aos/draws/described_distribution.hpp"
 
 namespace aos {
 

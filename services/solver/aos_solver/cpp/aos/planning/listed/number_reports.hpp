@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/described_distribution.hpp"
-#include "aos/base/distributions.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/mixed.hpp"
+#include "aos/draws/described_distribution.hpp"
+#include "aos/draws/distributions.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "aos/base/json.hpp"
 #include "aos/model/step.hpp"
+#include "aos/text/json.hpp"
 
 namespace aos {
 

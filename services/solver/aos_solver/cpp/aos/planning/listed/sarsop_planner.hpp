@@ -5,14 +5,14 @@
 #include <string>
 #include <utility>
 
-#include "aos/base/random.hpp"
-#include "aos/base/rounded_text.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/listed/near_states.hpp"
 #include "aos/planning/listed/point_based.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/planner.hpp"
+#include "aos/text/rounded_text.hpp"
 
 namespace aos {
 

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
 

@@ -15,12 +15,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/number_reports.hpp"

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/alias.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/alias.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/state_space.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_library.hpp"
 #include "aos/planning/options/option_search.hpp"

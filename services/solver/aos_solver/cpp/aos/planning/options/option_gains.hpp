@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/own_changes.hpp"

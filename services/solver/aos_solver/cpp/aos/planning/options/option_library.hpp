@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/best_end.hpp"
 #include "aos/planning/options/decision_clock.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/option_regret.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/repeated_observation.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

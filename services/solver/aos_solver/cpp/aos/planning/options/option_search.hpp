@@ -21,9 +21,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/values/leaf_cells.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/decision_clock.hpp"

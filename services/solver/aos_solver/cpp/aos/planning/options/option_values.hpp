@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/options/option_following.hpp"

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
 

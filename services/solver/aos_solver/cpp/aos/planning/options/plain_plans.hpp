@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "aos/base/function_ref.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/step_reports.hpp"
 

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/described_distribution.hpp"
-#include "aos/base/distributions.hpp"
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/described_distribution.hpp"
+#include "aos/draws/distributions.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 

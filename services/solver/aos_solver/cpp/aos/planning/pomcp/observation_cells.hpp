@@ -14,8 +14,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 

@@ -14,9 +14,9 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/observed_numbers.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
+#include "aos/draws/observed_numbers.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/pomcp/best_action.hpp"

@@ -13,9 +13,9 @@
 
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 #include "aos/planning/values/random_walk.hpp"

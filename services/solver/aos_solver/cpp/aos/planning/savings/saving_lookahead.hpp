@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

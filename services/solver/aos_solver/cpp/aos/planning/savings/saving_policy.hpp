@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

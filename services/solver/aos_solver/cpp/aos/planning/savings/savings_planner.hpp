@@ -8,9 +8,9 @@
 #include <string>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/options/options_planner.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/savings/saving_policy.hpp"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "aos/base/mixed.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/values.hpp"

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "aos/base/clock.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/planning/backoff.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/planning/pomcp/pomcp.hpp"
@@ -49,7 +49,7 @@ class SeekPlanner final : public Planner<Model> {
     }
     why += "; to seek what is somewhere returns more, and decides";
     estimates_.assign(estimates_.size(), {});
-    estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, sought_.missions, sought_.error};
+    estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
     return simulations;
   }
 

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "aos/base/mixed.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/sampled_belief.hpp"

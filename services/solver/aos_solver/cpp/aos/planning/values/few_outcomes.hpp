@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 

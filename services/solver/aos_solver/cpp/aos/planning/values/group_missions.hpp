@@ -18,12 +18,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/random.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/values.hpp"

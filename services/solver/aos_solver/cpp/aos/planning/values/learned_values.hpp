@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "aos/base/progress.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 #include "aos/planning/values/random_walk.hpp"

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/listed/state_space.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/rollout.hpp"
 #include "aos/model/step.hpp"
 

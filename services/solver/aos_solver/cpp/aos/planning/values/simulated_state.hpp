@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/step_table.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"

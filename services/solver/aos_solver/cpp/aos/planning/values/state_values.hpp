@@ -1,7 +1,7 @@
 // What states are worth to a search: the common base of values that are computed and of values that are learned.
 #pragma once
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -13,11 +13,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/listed/state_lister.hpp"

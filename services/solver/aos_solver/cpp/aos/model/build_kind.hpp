@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "aos/base/random.hpp"
+#include "aos/draws/random.hpp"
 
 // An attribute of functions: in a thorough build, everything that the function calls is inlined into it.
 #ifdef AOS_QUICK

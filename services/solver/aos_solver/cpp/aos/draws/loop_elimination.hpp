@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/enumerator.hpp"
-#include "aos/base/loop_chain.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/loop_chain.hpp"
 
 namespace aos {
 

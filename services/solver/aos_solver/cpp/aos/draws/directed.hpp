@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "aos/base/loop_heads.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/loop_heads.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

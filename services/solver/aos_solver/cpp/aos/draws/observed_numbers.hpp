@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/distributions.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/distributions.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

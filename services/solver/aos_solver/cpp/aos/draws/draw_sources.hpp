@@ -8,10 +8,10 @@
 #include <limits>
 #include <type_traits>
 
-#include "aos/base/directed.hpp"
-#include "aos/base/enumerator.hpp"
-#include "aos/base/loop_elimination.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/loop_elimination.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/directed.hpp"
-#include "aos/base/loop_heads.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/loop_heads.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <vector>
 
-#include "aos/base/normal.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/normal.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

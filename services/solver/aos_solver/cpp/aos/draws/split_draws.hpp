@@ -12,9 +12,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/directed.hpp"
-#include "aos/base/enumerator.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/enumerator.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

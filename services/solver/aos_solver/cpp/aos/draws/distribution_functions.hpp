@@ -8,10 +8,10 @@
 #include <span>
 #include <utility>
 
-#include "aos/base/described_distribution.hpp"
-#include "aos/base/distributions.hpp"
-#include "aos/base/normal.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/described_distribution.hpp"
+#include "aos/draws/distributions.hpp"
+#include "aos/draws/normal.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

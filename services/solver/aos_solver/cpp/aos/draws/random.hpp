@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/loop_heads.hpp"
-#include "aos/base/normal.hpp"
-#include "aos/base/xoshiro.hpp"
+#include "aos/draws/loop_heads.hpp"
+#include "aos/draws/normal.hpp"
+#include "aos/draws/xoshiro.hpp"
 
 namespace aos {
 

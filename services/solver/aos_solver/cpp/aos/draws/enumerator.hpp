@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "aos/base/directed.hpp"
 #include "aos/base/function_ref.hpp"
-#include "aos/base/loop_chain.hpp"
-#include "aos/base/loop_heads.hpp"
-#include "aos/base/number_strata.hpp"
-#include "aos/base/random.hpp"
+#include "aos/draws/directed.hpp"
+#include "aos/draws/loop_chain.hpp"
+#include "aos/draws/loop_heads.hpp"
+#include "aos/draws/number_strata.hpp"
+#include "aos/draws/random.hpp"
 
 namespace aos {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "aos/base/utf8.hpp"
+#include "aos/text/utf8.hpp"
 
 namespace aos {
 
