@@ -6,7 +6,7 @@ _MAP = re.compile(
     r"(?:const )?(?:class )?aos::Table<((?:[^<>]|<[^<>]*>)*?),\s*(aos::(?:Enum|Range)Axis<.*?>)\s*>"
 )
 _KEYS = re.compile(r"EnumAxis<(\w+), ?\d+>|RangeAxis<(-?\d+), ?(-?\d+), ?(-?\d+)>")
-_NAME = re.compile(r"\b(state_*\.)(?:(?:\w+|<anonymous>)::)*(\w+)")
+_NAME = re.compile(r"\b(state_*\.)(?:\w+::|<anonymous>(?:::|\.))*(\w+)")
 _VALUE = re.compile(r"no match for `operator=`|no viable overloaded `=`")
 _INDEX = re.compile(r"no match for `operator\[\]`|no viable overloaded operator\[\]")
 
