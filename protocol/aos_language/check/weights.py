@@ -68,7 +68,7 @@ def _check_list(
         hint = "They are divided by their sum"
         findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
     elif rounding is None and abs(total - 1.0) > _TOLERANCE:
-        hint = "AOSUtils does not divide by the sum: a missing part gives -1, a surplus is cut off"
+        hint = "AOSUtils gives -1 for a missing part, and divides only where the sum is above 1"
         findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
     elif size is not None and len(weights) < size:
         # In the original, too, a weight that is missing is 0.

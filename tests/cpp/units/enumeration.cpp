@@ -114,6 +114,17 @@ TEST("One of 5000 weights is drawn where it is nearly all") {
   EXPECT_THAT(random.SampleDiscrete(-1, weights) == 4321, "5000 weights");
 }
 
+TEST("Weights that sum to more than 1 are divided, and what is missing to 1 gives -1") {
+  Sampler random{1};
+  int last = 0;
+  int none = 0;
+  for (int i = 0; i < 3000; ++i) {
+    last += random.SampleDiscrete(std::vector<double>{1, 1, 1}) == 2 ? 1 : 0;
+    none += random.SampleDiscrete(std::vector<double>{0.25, 0.25}) == -1 ? 1 : 0;
+  }
+  EXPECT_THAT(std::abs(last - 1000) < 130 && std::abs(none - 1500) < 140, "five standard deviations");
+}
+
 TEST("Normal quantiles are those of the normal distribution") {
   for (const double probability : {1e-12, 1e-5, 0.01, 0.3, 0.5, 0.8, 0.999, 1 - 1e-9}) {
     const double back = 0.5 * std::erfc(-normal_quantile(probability) / std::sqrt(2.0));
