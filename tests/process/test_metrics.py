@@ -65,41 +65,35 @@ def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cac
         assert 'aos_missions_running{robot="tiger"}' not in over
 
 
-def test_a_run_that_was_killed_and_taken_up_goes_on_being_counted(tmp_path: Path, cache_dir: Path):
-    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir, "--metrics") as served:
-        assert samples(served)['aos_missions_running{robot="tiger"}'] == 1
-        os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
-        while served.ask(f"/v1/runs/{run.name}").json["is_running"]:
-            pass
-        killed = samples(served)
-        assert killed['aos_missions_total{robot="tiger",ending="killed"}'] == 1
-        assert 'aos_missions_running{robot="tiger"}' not in killed
-        with resumed(run, cache_dir):
-            assert served.ask(f"/v1/runs/{run.name}").json["is_running"] is True
-            assert samples(served)['aos_missions_running{robot="tiger"}'] == 1
-
-
-def test_a_run_that_was_taken_up_and_stopped_between_two_questions_is_counted_once(
+def test_a_run_that_was_killed_and_taken_up_is_counted_once_also_by_who_was_not_asked_meanwhile(
     tmp_path: Path, cache_dir: Path
 ):
-    killed, cancelled = (
-        f'aos_missions_total{{robot="tiger",ending="{end}"}}' for end in ("killed", "cancelled")
+    running, killed, cancelled = (
+        f"aos_missions_{what}}}"
+        for what in (
+            'running{robot="tiger"',
+            'total{robot="tiger",ending="killed"',
+            'total{robot="tiger",ending="cancelled"',
+        )
     )
-    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir, "--metrics") as served:
+    with (
+        slow_system(tmp_path, cache_dir) as run,
+        gateway(tmp_path, cache_dir, "--metrics") as served,
+        gateway(tmp_path, cache_dir, "--metrics") as asked,
+    ):
+        assert samples(asked)[running] == samples(served)[running] == 1
         os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
         while served.ask(f"/v1/runs/{run.name}").json["is_running"]:
             pass
-        assert samples(served)[killed] == 1
+        for one in (served, asked):
+            assert samples(one)[killed] == 1
+            assert running not in samples(one)
         with gateway(tmp_path, cache_dir, "--metrics") as later:
             assert killed not in samples(later)
             with resumed(run, cache_dir):
-                pass
+                assert asked.ask(f"/v1/runs/{run.name}").json["is_running"] is True
+                assert samples(asked)[running] == 1
             assert served.ask(f"/v1/runs/{run.name}").json["ending"] == "cancelled"
-            assert {name: samples(served).get(name) for name in (killed, cancelled)} == {
-                killed: 1,
-                cancelled: 1,
-            }
-            assert {name: samples(later).get(name) for name in (killed, cancelled)} == {
-                killed: None,
-                cancelled: 1,
-            }
+            for one, kills in ((served, 1), (asked, 1), (later, None)):
+                now = samples(one)
+                assert (now.get(killed), now.get(cancelled), now.get(running)) == (kills, 1, None)
