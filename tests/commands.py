@@ -9,4 +9,5 @@ from aos_deploy.cli import aos_app
 
 def aos(*arguments: str | Path) -> Result:
     """The outcome of `aos` with these arguments."""
-    return CliRunner().invoke(aos_app(), [str(argument) for argument in arguments])
+    words = [str(argument) for argument in arguments]
+    return CliRunner().invoke(aos_app(words), words)

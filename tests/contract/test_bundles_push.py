@@ -9,11 +9,11 @@ from pathlib import Path
 
 import msgspec
 import pytest_asyncio
+from commands import aos as called
 from mappings import mapping_text
 from starting import until_present
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
-from aos_deploy.cli import aos_app
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MappingQuery, MappingState
 from aos_registry.settings import Settings
@@ -33,11 +33,10 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
         child = await Child.start(
             [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
         )
-    app = aos_app()
 
     async def run(*arguments: str) -> Result:
         where = ["--connect", endpoint, "--robot", "test"]
-        return await asyncio.to_thread(CliRunner().invoke, app, [*arguments, *where])
+        return await asyncio.to_thread(called, *arguments, *where)
 
     yield run
     await child.stop(5.0)

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import aos
 from processes import HANG_S
 from test_mission_tests import MISSIONS
-from typer.testing import CliRunner
 
-from aos_deploy import cli
 from aos_lab.calibration import calibrate as calibration
 from aos_lab.calibration import records
 from aos_lab.calibration.records import RecordedMission
@@ -37,7 +36,7 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
 
     monkeypatch.setattr(simulate, "simulate_mission", third_interrupted)
     command = ["simulate", str(bundles / "bench" / "tiger"), "--runs", "5", "--simulations", "10", "--json"]
-    done = CliRunner().invoke(cli.aos_app(), command)
+    done = aos(*command)
     assert done.exit_code == 130
     assert [run["seed"] for run in json.loads(done.stdout)["runs"]] == [1, 2]
     assert "stopped after 2 of 5 missions" in done.stderr
@@ -77,7 +76,7 @@ def test_ctrl_c_tells_after_how_many_missions_of_a_test(
     file = tmp_path / "missions.yaml"
     file.write_text(MISSIONS.replace("seeds: 2", "seeds: 5"))
     command = ["test", str(file), *(["--keep", str(tmp_path / "kept")] if keeps else [])]
-    done = CliRunner().invoke(cli.aos_app(), command)
+    done = aos(*command)
     assert done.exit_code == 130
     after = "the same command goes on" if keeps else "with --keep DIR the same command would go on"
     assert done.stderr == f"aos: stopped in finer after 2 of its 5 missions; {after} from there\n"
@@ -95,6 +94,6 @@ def test_ctrl_c_ends_a_calibration_while_it_computes(tmp_path: Path, monkeypatch
     monkeypatch.setattr(records, "read_missions", lambda path: [RecordedMission("run", ())])
     monkeypatch.setattr(calibration, "estimate", interrupted)
     bundle = DEPLOY / "bundles" / "armadillo-finer"
-    done = CliRunner().invoke(cli.aos_app(), ["calibrate", str(tmp_path), str(bundle)])
+    done = aos("calibrate", tmp_path, bundle)
     assert (done.exit_code, done.stderr) == (130, "aos: stopped; nothing was estimated\n")
     assert not has_gone_on

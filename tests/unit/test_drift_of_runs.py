@@ -64,5 +64,6 @@ def test_each_model_has_tests_of_its_own_and_the_newest_decides(tmp_path, monkey
         *("model d, revision 2", "model e, revision 3")
     ]
     assert "does not hold since" in told.stdout
-    narrow = CliRunner().invoke(aos_app(), ["drift", *map(str, worn), str(mended)], env={"COLUMNS": "24"})
+    words = ["drift", *map(str, worn), str(mended)]
+    narrow = CliRunner().invoke(aos_app(words), words, env={"COLUMNS": "24"})
     assert sorted(filter(str.isalnum, narrow.stdout)) == sorted(filter(str.isalnum, told.stdout))
