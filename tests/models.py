@@ -37,11 +37,8 @@ async def engine_of(
     built: BuiltModel, *, seed: int = 1, impossible_observation: ImpossiblePolicy = "widen"
 ) -> AsyncIterator[Engine]:
     """A running engine child."""
-    engine = await Engine.start(built, seed=seed, impossible_observation=impossible_observation)
-    try:
+    async with await Engine.start(built, seed=seed, impossible_observation=impossible_observation) as engine:
         yield engine
-    finally:
-        await engine.close()
 
 
 @asynccontextmanager

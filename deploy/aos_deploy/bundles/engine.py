@@ -46,13 +46,10 @@ async def engine_of_bundle(
             lambda remark: typer.echo(f"aos: {remark}", err=True),
             kind=kind,
         )
-        engine = await Engine.start(built, seed=seed)
-        try:
+        async with await Engine.start(built, seed=seed) as engine:
             yield engine
             for finding in with_excerpts(await endless_findings(engine), planned.files):
                 typer.echo(render(finding), err=True)
-        finally:
-            await engine.close()
     except ModelError as error:
         error.diagnostics = with_excerpts(error.diagnostics, planned.files)
         raise

@@ -15,12 +15,9 @@ async def picture_findings(files: Mapping[str, bytes], built: BuiltModel) -> tup
         return ()
     from aos_middleware.workers.picture import draw
 
-    engine = await Engine.start(built, seed=1)
-    try:
+    async with await Engine.start(built, seed=1) as engine:
         belief = await engine.summary()
         skills = list(engine.description.actions)[:1]
-    finally:
-        await engine.close()
     step = {
         "number": 0,
         "action": skills[0].name if skills else "",

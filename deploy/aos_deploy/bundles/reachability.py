@@ -29,14 +29,11 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     is an error at its place.
     """
     try:
-        engine = await Engine.start(built, seed=1)
-        try:
+        async with await Engine.start(built, seed=1) as engine:
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
             if not reach.is_whole:
                 await engine.rate(_DRAWN_TIME_S, seed=1, max_seconds=MAX_CPU_S)
             endless = await endless_findings(engine)
-        finally:
-            await engine.close()
     except ModelError as error:
         is_fault = not isinstance(error, OverdueError)
         if is_fault and not error.diagnostics:

@@ -123,14 +123,11 @@ async def _seed(engine: Engine, project: Project, world: PlayedWorld, cache_dir:
     built = await built_with_conditions(project, world.given, cache_dir)
     values = usable_values(world.values, engine.parameters)
     built = msgspec.structs.replace(built, mission_values=values)
-    aside = await Engine.start(built, seed=world.seed, keeps_belief=False)
-    try:
+    async with await Engine.start(built, seed=world.seed, keeps_belief=False) as aside:
         for draw in range(MAX_DRAWS):
             seed = world.seed + draw * 1_000_003
             await aside.reset_world(seed)
             start = await aside.begin_mission_in_world(world.idle)
             if start.conditions == (1 << len(world.given)) - 1:
                 return seed
-    finally:
-        await aside.close()
     return world.seed

@@ -183,11 +183,8 @@ class Suite:
     @asynccontextmanager
     async def _engine(self, project: Project) -> AsyncIterator[Engine]:
         built = await build_project(project, self._cache_dir, kind="thorough")
-        engine = await Engine.start(built, seed=self._effort.seed, keeps_belief=False)
-        try:
+        async with await Engine.start(built, seed=self._effort.seed, keeps_belief=False) as engine:
             yield engine
-        finally:
-            await engine.close()
 
     @contextmanager
     def _telling(self, name: str) -> Iterator[None]:

@@ -104,8 +104,7 @@ async def _lattices(
 ) -> list[Lattice]:
     """Returns all that each mission may have been, by the engine of the documents."""
     built = await build_project(draws.keeping, cache_dir())
-    engine = await Engine.start(built, seed=1, keeps_belief=False)
-    try:
+    async with await Engine.start(built, seed=1, keeps_belief=False) as engine:
         lattices: list[Lattice] = []
         for values, alike in _by_values(missions):
             await engine.start_with(values)
@@ -114,5 +113,3 @@ async def _lattices(
                 lattices.append(await lattice_of(mission, layers))
                 on_mission()
         return lattices
-    finally:
-        await engine.close()

@@ -53,11 +53,8 @@ class Regret(msgspec.Struct, frozen=True, kw_only=True):
 async def optimum_of(deployment: Deployment) -> Optimum:
     """Solves a deployment's mission by SARSOP; IntractableError where the model cannot be listed."""
     player = await ModelPlayer.prepared(ModelMissions.of(deployment))
-    engine = await Engine.start(player.model, seed=1, keeps_belief=False)
-    try:
+    async with await Engine.start(player.model, seed=1, keeps_belief=False) as engine:
         model = (await enumerate_model(engine)).model
-    finally:
-        await engine.close()
     stop_value = deployment.file.mission.stop_below_value
     if stop_value is not None:
         model = with_stopping(model, stop_value)

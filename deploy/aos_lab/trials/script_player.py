@@ -53,9 +53,8 @@ class ScriptPlayer:
         for adapter in deployment.adapters:
             check_installed(adapter.name, adapter.kind)
         player = await ModelPlayer.prepared(ModelMissions.of(deployment))
-        engine = await Engine.start(player.model, seed=1, keeps_belief=False)
-        actions = {action.name: action for action in engine.description.actions}
-        await engine.close()
+        async with await Engine.start(player.model, seed=1, keeps_belief=False) as engine:
+            actions = {action.name: action for action in engine.description.actions}
         for name in script:
             if name not in actions:
                 hint = f"Known are {', '.join(actions)}"

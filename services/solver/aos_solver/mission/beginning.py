@@ -24,8 +24,7 @@ async def begin_with(
     if not start.given:
         await _begin(engine, start, kept)
         return
-    aside = await conditioned()
-    try:
+    async with await conditioned() as aside:
         await _begin(aside, start, kept)
         answer = await aside.condition(refuted_below)
         if answer.probability <= 0:
@@ -38,8 +37,6 @@ async def begin_with(
                 else "See the initial belief in the environment document",
             )
         await engine.import_beliefs(await aside.export_beliefs())
-    finally:
-        await aside.close()
 
 
 async def _begin(engine: Engine, start: StartMission, kept: ExportedBeliefs | None) -> None:

@@ -140,18 +140,15 @@ async def _engine(
     known = built.emitted.parameters
     values = {name: text for name, text in begun.mission_parameters.items() if name in known}
     built = msgspec.structs.replace(built, mission_values=values)
-    engine = await Engine.start(
+    async with await Engine.start(
         built,
         seed=begun.seed,
         impossible_observation=replay.settings.impossible_observation,
         niceness=documents.niceness,
-    )
-    try:
+    ) as engine:
         step = 0
         async for update in replayed(engine, replay.past):
             step += 1
             if update.is_impossible:
                 said = (*said, f"step {step} is impossible in the changed documents")
         yield engine, said
-    finally:
-        await engine.close()

@@ -15,6 +15,7 @@ import msgspec
 from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
+from aos_runtime.closing import Closing
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.beliefs import BeliefUpdate, Believed, Conditioned
 from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress
@@ -50,7 +51,7 @@ class Done(msgspec.Struct, frozen=True):
     """The answer that says nothing more."""
 
 
-class Asking:
+class Asking(Closing):
     """Owns the child process of one built model. Questions are asked one at a time."""
 
     def __init__(
@@ -139,7 +140,7 @@ class Asking:
             await self._restart_child()
 
     async def close(self) -> None:
-        """Ends the child. A closed engine is not asked again."""
+        """Ends the child; closing twice does nothing. A closed engine is not asked again."""
         await self._drop_child()
         for memory in (self._beliefs, self._listing):
             if memory is not None:
