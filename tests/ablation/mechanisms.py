@@ -36,7 +36,7 @@ ROUTES = (
         "auto, states unlisted",
         "auto",
         _UNLISTED,
-        ("options", "enough_ways", "tests_first", "learned_values"),
+        ("options", "enough_ways", "tests_first", "detours", "seek", "learned_values"),
     ),
     Route(
         "pomcp with values of many states",

@@ -73,7 +73,7 @@ struct Found {
     const aos::BarredActions none;
     aos::SeekPolicy<Drained> policy;
     sought = policy.find(belief, horizon, none, 100'000, random);
-    given_up = policy.given_up();
+    given_up = policy.given_up(random).returned;
     aos::StateSpace<Drained> space;
     aos::MdpValues<Drained> values{space};
     aos::GroupMissions<Drained> missions;

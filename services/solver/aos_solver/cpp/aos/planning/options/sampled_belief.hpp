@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
 #include <vector>
 
 #include "aos/base/function_ref.hpp"
@@ -83,6 +86,29 @@ class SampledBelief {
     for (const auto& [state, weight] : gathering.particles()) {
       states_.push_back(state);
       weights_.push_back(weight / gathering.total());
+    }
+  }
+
+  // Takes the running part, which is not empty, with one state for all of the same key, and leaves at most `count` of these.
+  void draw_alike(const Belief<Model>& belief, std::size_t count, FunctionRef<std::uint64_t(const State&)> key_of, Sampler& random) {
+    std::unordered_map<std::uint64_t, std::size_t> known;
+    std::vector<State> alike;
+    StateWeights weights;
+    for (const auto& [state, weight] : belief.particles()) {
+      if (Model::ending(state) != Ending::running) continue;
+      const auto [entry, is_new] = known.emplace(key_of(state), alike.size());
+      if (is_new) alike.push_back(state);
+      if (is_new) weights.push_back(0);
+      weights[entry->second] += weight;
+    }
+    thin_out(weights, count, random);
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    states_.clear();
+    weights_.clear();
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] <= 0) continue;
+      states_.push_back(alike[k]);
+      weights_.push_back(weights[k] / total);
     }
   }
 

@@ -66,6 +66,12 @@ class RunningDown {
     for (const State& state : states) key = mixed(key, place_of(state));
     return key;
   }
+  // The same number for states that do not differ, but for what runs down.
+  std::uint64_t all_else_of(const State& state) const {
+    std::uint64_t key = 0;
+    for (std::size_t i = 0; i < lasts_.size(); ++i) key = lasts_[i] ? mixed(key, std::to_integer<std::uint64_t>(Model::bytes_of(state)[i])) : key;
+    return key;
+  }
   // Whether two states differ, but for what runs down.
   bool differ(const State& one, const State& other) const {
     const std::byte* const left = Model::bytes_of(one);

@@ -1,10 +1,12 @@
-// Seeking as a planner: where no way to a reward tells what to do, POMCP is asked, and decides unless to seek returns more (seek_policy.hpp).
+// Seeking as a planner: where no way to a reward tells what to do, POMCP is asked, and decides unless to seek returns more
+// (seek_policy.hpp). Where a mission has sought, and that no longer pays, it is brought to its end.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "aos/base/clock.hpp"
 #include "aos/base/switches.hpp"
@@ -32,22 +34,26 @@ class SeekPlanner final : public Planner<Model> {
     if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
     if (belief.probability_of(Ending::running) < 1 || pomcp_.has_wide_values(belief, horizon) || !looks_.is_due()) return false;
     seek(belief, horizon, barred, share * affordable_.of(budget, horizon), random, choosing);
-    const double least = sought_.returned - (has_decided_ ? 0 : sought_.error);
-    has_decided_ = sought_.action >= 0 && least > policy_.given_up();
-    if (has_decided_) pomcp_.prepare(question, random, choosing);
-    return has_decided_;
+    const Sought given_up = policy_.given_up(random);
+    is_over_ = sought_.action < 0 || sought_.returned - (has_sought_ ? 0 : sought_.error) <= given_up.returned;
+    if (is_over_ && (!has_sought_ || given_up.action < 0)) return false;
+    if (is_over_) sought_ = given_up;
+    pomcp_.prepare(question, random, choosing);
+    return true;
   }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
     const std::uint64_t simulations = pomcp_.search(question, random, why);
     estimates_ = pomcp_.estimates(question.belief);
     const auto chosen = static_cast<std::size_t>(pomcp_.choice(estimates_, question.horizon, question.barred));
-    has_decided_ = sought_.returned > estimates_[chosen].q;
-    if (!has_decided_) {
-      why += "; to seek returns less";
+    // A tree that ends in values of seen states promises what no robot returns that does not see them.
+    estimates_ = pomcp_.values(question.belief, std::move(estimates_), static_cast<int>(chosen));
+    if (sought_.returned <= estimates_[chosen].q) {
+      why += is_over_ ? "; to end the mission returns less" : "; to seek returns less";
       return simulations;
     }
-    why += "; to seek what is somewhere returns more, and decides";
+    why += is_over_ ? "; nothing that can be sought pays any more, and to end the mission returns more" : "; to seek what is somewhere returns more, and decides";
+    has_sought_ = true;
     estimates_.assign(estimates_.size(), {});
     estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
     return simulations;
@@ -57,7 +63,7 @@ class SeekPlanner final : public Planner<Model> {
   Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
   void start_over() override {
     policy_.start_over();
-    has_decided_ = false;
+    has_sought_ = false;
     looks_ = Backoff{};
   }
 
@@ -69,7 +75,7 @@ class SeekPlanner final : public Planner<Model> {
     Sampler own{random.bits()};
     sought_ = policy_.find(belief, horizon, barred, affordable, own);
     affordable_.note(affordable, PlanningClock::now() - start);
-    if (sought_.action >= 0) looks_.succeed();
+    if (sought_.action >= 0 || has_sought_) looks_.succeed();
     else looks_.fail();
   }
 
@@ -81,7 +87,8 @@ class SeekPlanner final : public Planner<Model> {
   Sought sought_;
   Estimates estimates_;
   Backoff looks_;
-  bool has_decided_ = false;
+  bool has_sought_ = false;  // in this mission
+  bool is_over_ = false;     // since nothing that can be sought pays any more
 };
 
 }  // namespace aos

@@ -1,10 +1,10 @@
 // Looks for one thing among many places: goes where a nat is cheapest, looks there, and ends in time.
 //
-// A few states of the belief stand for it. From them the places are found that moves lead to (seek_places.hpp). In each place each
-// action that tells something is a test. A state wins by a test if the best end after it returns more than without it. States that
-// win by the same tests are a class, and tests tell of the class. The policy takes the test, with the way to it, that tells most for
-// what it costs, as long as the best end can be had after it. Missions by this policy, whose true state the code of the model steps,
-// tell what it returns.
+// States of the belief stand for it, one for all that differ by what runs down alone. From them the places are found that moves
+// lead to (seek_places.hpp). In each place each action that tells something is a test. A state wins by a test if the best end after
+// it returns more than without it. States that win by the same tests are a class, and tests tell of the class. The policy takes the
+// test, with the way to it, that tells most for what it costs, as long as the best end can be had after it. Missions by this
+// policy, whose true state the code of the model steps, tell what it returns.
 #pragma once
 
 #include <algorithm>
@@ -43,9 +43,9 @@ class SeekPolicy {
   Sought find(const Belief<Model>& belief, int horizon, const BarredActions& barred, double affordable, Sampler& random) {
     horizon_ = horizon;
     steps_ = affordable;
-    belief_.draw(belief, most_states, random);
     if (!is_prepared_) running_down_.find(belief, random);
     is_prepared_ = true;
+    belief_.draw_alike(belief, most_states, [&](const State& state) { return running_down_.all_else_of(state); }, random);
     places_.explore(belief_, running_down_, barred, steps_, random);
     find_ends(random);
     if (!find_wins(random)) return {};
@@ -64,8 +64,8 @@ class SeekPolicy {
     const double mean = sum / count;
     return {first, mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1)), static_cast<int>(count)};
   }
-  // What is returned if the mission is brought to its best end at once.
-  double given_up() const { return given_up_; }
+  // To bring the mission to its best end at once. None where no way to an end is known.
+  Sought given_up(Sampler random) { return {ended(0, any_state(), random).action, given_up_, 0, static_cast<int>(belief_.size())}; }
   void start_over() { is_prepared_ = false; }
 
  private:
@@ -73,7 +73,7 @@ class SeekPolicy {
   using Test = typename Places::Test;
   using End = typename Places::End;
 
-  static constexpr std::size_t most_states = 64;
+  static constexpr std::size_t most_states = 160;
   static constexpr std::size_t most_ends = 3;
   static constexpr int fewest_missions = 16;
   static constexpr int most_missions = 64;
@@ -209,11 +209,12 @@ class SeekPolicy {
     return nullptr;
   }
 
+  const State& any_state() const { return belief_.states()[belief_.size() / 2]; }
+
   // The first action of the policy.
   int first_action(Sampler& random) {
-    const State& any = belief_.states()[belief_.size() / 2];
-    const Test* const test = best_test(0, prior_, any, random);
-    if (test == nullptr) return ended(0, any, random).action;
+    const Test* const test = best_test(0, prior_, any_state(), random);
+    if (test == nullptr) return ended(0, any_state(), random).action;
     return places_.way(0, test->place, test->action).front();
   }
 
