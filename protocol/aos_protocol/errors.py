@@ -179,7 +179,8 @@ class AosError(Exception):
 
     def __str__(self) -> str:
         text = f"{self.code}: {self.message}"
-        return f"{text.rstrip('.')}. {self.hint}" if self.hint else text
+        end = "" if text.endswith("?") else "."
+        return f"{text.rstrip('.')}{end} {self.hint}" if self.hint else text
 
 
 class DocumentError(AosError):

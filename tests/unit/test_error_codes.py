@@ -11,7 +11,7 @@ from test_reading_rules import REFUSED, WARNED, WHOLE_FILES
 from aos_deploy.runs.directory import RunDirectory
 from aos_language.load import load_files
 from aos_protocol.codec import open_envelope
-from aos_protocol.errors import CODES, BusError, DeployError, PlanningError
+from aos_protocol.errors import CODES, AosError, BusError, DeployError, PlanningError
 from aos_protocol.messages import Envelope
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 from aos_solver.offline.solving import SolvingLimits, solve
@@ -57,3 +57,8 @@ def test_no_code_of_the_table_is_left_without_a_provocation(root: Path):
         if path != this_file:
             provoked |= set(re.findall(r"\bAOS\d{3}\b", path.read_text(encoding="utf-8")))
     assert sorted(CODES.keys() - provoked) == []
+
+
+def test_a_question_ends_a_message_as_a_full_stop_does():
+    assert str(AosError("no field; did you mean it?", code="AOS401", hint="Mend it")).endswith("it? Mend it")
+    assert str(AosError("no field.", code="AOS401", hint="Mend it")) == "AOS401: no field. Mend it"

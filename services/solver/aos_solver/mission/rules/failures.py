@@ -8,7 +8,7 @@ from typing import Literal
 
 import msgspec
 
-from aos_protocol.errors import ANOTHER_MAY_MOVE
+from aos_protocol.errors import ANOTHER_MAY_MOVE, AosError
 from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.mission.rules.setting_aside import SettingAside
 
@@ -172,5 +172,5 @@ def _said(outcome: Outcome, is_excluded: bool) -> str:
     what = outcome.response or outcome.status
     if outcome.fault is None:
         return what
-    hint = f". {outcome.fault.hint}" if outcome.fault.hint else ""
-    return f"{what}, {outcome.fault.code}: {outcome.fault.message}{hint}"
+    fault = outcome.fault
+    return f"{what}, {AosError(fault.message, code=fault.code, hint=fault.hint)}"
