@@ -100,4 +100,30 @@ TEST("A thing that pays less than the way to it is not sought") {
   EXPECT(!found.is_ready);
 }
 
+TEST("States that differ by what runs down alone are one state of a belief, with their weights") {
+  const Problem problem = corridor_with_a_thing(60);
+  Drained::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<Drained>::drawn(random);
+  aos::SampledBelief<Drained> sampled;
+  sampled.draw_alike(belief, 64, [](const Drained::State& state) { return static_cast<std::uint64_t>(state.variables[1] % 2); }, random);
+  EXPECT_EQUAL(sampled.size(), std::size_t{2});
+  EXPECT_NEAR(sampled.weights()[0], 0.5, 0.05);
+  sampled.draw_alike(belief, 4, [](const Drained::State& state) { return static_cast<std::uint64_t>(state.variables[1]); }, random);
+  EXPECT_EQUAL(sampled.size(), std::size_t{4});
+}
+
+TEST("Where nothing is left to be sought, the mission can be brought to its best end") {
+  Problem problem = corridor_with_a_thing(60);
+  problem.starts = {{2 * (cells + 1) + cells, 1.0}};  // in the third cell, with the thing
+  Drained::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<Drained>::drawn(random);
+  aos::SeekPolicy<Drained> policy;
+  EXPECT_EQUAL(policy.find(belief, horizon, aos::BarredActions{}, 100'000, random).action, -1);
+  const aos::Sought given_up = policy.given_up(random);
+  EXPECT_EQUAL(given_up.action, back);
+  EXPECT_NEAR(given_up.returned, 60 * 0.98 * 0.98 - 0.2 - 0.2 * 0.98, 1e-9);
+}
+
 }  // namespace seek_tests
