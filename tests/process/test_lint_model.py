@@ -181,6 +181,24 @@ def test_templates_that_recurse_deeply_are_refused_at_their_line(hall: Callable[
     assert linted(hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == f"walk.sd:{line}"
 
 
+def test_a_skill_with_a_mistake_has_no_second_one_where_the_environment_looks_at_its_parameters(
+    hall: Callable[..., Path],
+):
+    folder = hall("")
+    with (folder / "hall.ef").open("a") as environment:
+        environment.write(
+            "\naction_parameter: int far\n\n"
+            "extrinsic_code:\nif (walk != NULL && walk->steps == 2) state_.place = 1;\n"
+        )
+    walk = WALK.format(code="").replace(
+        "dynamic_model:", "parameter: int steps\nviolate_penalty: 1,5\n\ndynamic_model:"
+    )
+    (folder / "walk.sd").write_text(walk)
+    result = aos("lint", folder, "--format", "json")
+    errors = [one for one in json.loads(result.stdout)["diagnostics"] if one["severity"] == "error"]
+    assert [(one["code"], _place(one["span"])) for one in errors] == [("AOS106", "walk.sd:4")]
+
+
 def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
     hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ):

@@ -175,6 +175,12 @@ async def test_a_number_with_a_unit_is_told_without_the_compilers_words(cache_di
     assert only.message == "a number cannot have `m` behind it"
 
 
+async def told_by_gcc() -> None:
+    """Skips where another compiler is found: clang names no types there."""
+    if (compiler := await find_compiler()).family != "gcc":
+        pytest.skip(f"words of g++, and not of {compiler.version}")
+
+
 @pytest.mark.parametrize(
     ("code", "message", "column"),
     [
@@ -193,6 +199,7 @@ async def test_a_number_with_a_unit_is_told_without_the_compilers_words(cache_di
     ],
 )
 async def test_a_mistake_with_a_map_names_its_keys(code: str, message: str, column: int, cache_dir: Path):
+    await told_by_gcc()
     declared = (
         "define_type: Side\nenum_members: Left, Right\n\nstate_variable: int load\nkey_types: Side, (0,3,1)\n"
     )
@@ -205,6 +212,32 @@ async def test_a_mistake_with_a_map_names_its_keys(code: str, message: str, colu
     assert (
         only.hint == f"An element of it is `state.{name}[{{...}}]`, with a key for each of {{Side, (0,3,1)}}"
     )
+
+
+@pytest.mark.parametrize(
+    ("code", "said", "hint"),
+    [
+        ("state__.row = 3;", "`vector<int>` cannot be set to `int`", ""),
+        ("state__.row = {Left, 2.5, missing};", "`missing` was not declared", ""),
+        (
+            "state__.at(Left) = 2;",
+            "this is an array, and no function",
+            "An element of it has square brackets: `[i]`",
+        ),
+        (
+            "std::pair<int, std::string> p; p = {1};",
+            "`std::pair<int, std::string >` cannot be set to a list in braces",
+            "",
+        ),
+    ],
+)
+async def test_types_are_told_by_their_names_in_documents(code: str, said: str, hint: str, cache_dir: Path):
+    await told_by_gcc()
+    side = "define_type: Side\nenum_members: Left, Right\n\n"
+    variables = "state_variable: int at [Side]\n\nstate_variable: int row []\ncode:\nstate.row = {1, 2};\n"
+    error = await build_error(emitted_skill(code, f"{HOME}\n{side}{variables}"), cache_dir)
+    (only,) = error.diagnostics
+    assert (only.message, only.hint) == (said, hint)
 
 
 async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path):

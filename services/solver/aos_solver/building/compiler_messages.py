@@ -8,6 +8,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
 from aos_solver.building.map_messages import told_of_a_map
+from aos_solver.building.type_words import in_words
 from aos_solver.emission.emit import EmittedModel
 
 _PLACE = re.compile(
@@ -34,6 +35,8 @@ _OF_STREAMS = re.compile(r".*`std::(\w+)` from `std::ios_base&.*")
 _SUFFIX = re.compile(
     r"unable to find numeric literal operator `operator\"\"\s*(\w+)`.*|invalid suffix [`\"](\w+)[`\"] on .*"
 )
+_CONSEQUENCES = ("<expression error>", "cannot be set to a list in braces", "and these are others")
+"""Said too where a name within was not declared."""
 _FAULTS = ("error", "fatal error", "Error")
 
 
@@ -113,7 +116,7 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
             continue  # Said of the same name.
-        if named and "<expression error>" in diagnostic.message:
+        if named and any(word in diagnostic.message for word in _CONSEQUENCES):
             continue  # It follows from another.
         first.setdefault((diagnostic.span.file, diagnostic.span.line, diagnostic.message), diagnostic)
     return list(first.values())
@@ -147,7 +150,6 @@ def _plain(text: str) -> tuple[str, str]:
     """The message in the documents' terms, and the compiler's suggestion as a hint."""
     text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
     text = re.sub(r"\.<lambda\([^)]*\)>(?=\()", "", _WITHIN.sub("", text))
-    text = re.sub(r"(?:const )?(?:class )?aos::Vector<(.+?), \d+>", r"vector<\1>", text)
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
     text = text.replace("was not declared in this scope", "was not declared").replace(
@@ -160,6 +162,9 @@ def _plain(text: str) -> tuple[str, str]:
             "this array is indexed by another enum",
             "Use a value of its own enum, or a number: `int(value)`",
         )
+    text, hint = in_words(text)
+    if hint or "cannot be set to" in text:
+        return text, hint
     if (suffix := _SUFFIX.fullmatch(text)) is not None:
         return (
             f"a number cannot have `{suffix[1] or suffix[2]}` behind it",

@@ -1,0 +1,36 @@
+"""Types in the compiler's messages, in the words of documents."""
+
+import re
+
+_WORDS = (
+    (re.compile(r"(?:const )?(?:class )?aos::Vector<(.+?), \d+>"), r"vector<\1>"),
+    (re.compile(r"(?:const )?(?:class )?aos::Named<(\w+), \d+, ([^<>]+)>"), r"array of \2 over \1"),
+    (re.compile(r"(?:const )?(?:class )?aos::Text\b"), "string"),
+    (re.compile(r"std::(?:__cxx11::)?basic_string<char>"), "std::string"),
+    (re.compile(r"`<brace-enclosed initializer list>`"), "a list in braces"),
+    (re.compile(r"`const char ?(?:\*|\[\d+\])`"), "a text"),
+)
+STATE_PART = re.compile(r"\b(state_*\.)(?:\w+::|<anonymous>(?:::|\.))*(\w+)")
+"""A variable of a state, behind the class that holds it."""
+_ASSIGNED = re.compile(
+    r"no match for `operator=` in .* \(operand types are (?P<to>.+?) and (?P<value>[^()]+)\)"
+)
+_CALLED = re.compile(r"no match for call to `\((?:const )?(?:array of |vector<)")
+
+
+def in_words(text: str) -> tuple[str, str]:
+    """Returns a message with our types by their names in documents, and a hint where one is known."""
+    text = STATE_PART.sub(r"\1\2", text)
+    is_text = "`const char" in text
+    plain = text
+    for pattern, word in _WORDS:
+        plain = pattern.sub(word, plain)
+    if _CALLED.match(plain) is not None:
+        return "this is an array, and no function", "An element of it has square brackets: `[i]`"
+    if (refused := _ASSIGNED.fullmatch(plain)) is None:
+        # Only a refused assignment has its literals put in words.
+        for pattern, word in _WORDS[:-2]:
+            text = pattern.sub(word, text)
+        return text, ""
+    hint = "Numbers, values of enums and responses are written without quotes" if is_text else ""
+    return f"{refused['to']} cannot be set to {refused['value']}", hint
