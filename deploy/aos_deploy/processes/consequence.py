@@ -35,7 +35,6 @@ class RunningProgram:
         self.is_ready = False
         self.seeking: asyncio.Task[None] | None = None
         self.silence: asyncio.Task[None] | None = None
-        self.returning: asyncio.Task[None] | None = None
         self.silent_since_s = 0.0
 
 

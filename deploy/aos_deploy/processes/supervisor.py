@@ -15,7 +15,7 @@ from __future__ import annotations
 import asyncio
 import signal
 from collections.abc import AsyncIterator, Coroutine
-from contextlib import asynccontextmanager, suppress
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -35,11 +35,12 @@ from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.processes.program import Program
 from aos_deploy.processes.ready import Before, before_start, check_port_is_free, until_seen_ready
 from aos_deploy.processes.remote import is_lost, was_frozen
+from aos_deploy.processes.returns import Returns
 from aos_deploy.processes.start import ROUTER_MODULE, start_process
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import ProcessEnd
 from aos_protocol.access import OPERATOR, Party
-from aos_protocol.errors import BusError, DeployError
+from aos_protocol.errors import DeployError
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus.bus import Access, Bus
@@ -121,6 +122,7 @@ class Supervisor:
         self._watches: list[asyncio.Task[None]] = []
         self._is_stopping = False
         self._bus: Bus | None = None
+        self._returns: Returns | None = None
         self._serving: set[str] = set()
         self._besides: list[asyncio.Task[None]] = []
         self._have_started = asyncio.Event()
@@ -161,6 +163,7 @@ class Supervisor:
             credential=self._passes.credential(OPERATOR),
             access=Access(self._base.robot, Party(name=OPERATOR, role=OPERATOR)),
         )
+        self._returns = Returns(self.bus, self.keys, self._beside)
         self._set_ready(self._running[ROUTER.name])
         self._beside(self._follow_presence(self.bus))
 
@@ -282,23 +285,11 @@ class Supervisor:
             look = self._kill_if_stopped if serves_less else self._kill_if_frozen
             running.silence = self._beside(look(running))
             if not serves_less:
-                self._tell_return(running, it_comes=True)
+                self._tell_return(running.program, it_comes=True)
 
-    def _tell_return(self, running: RunningProgram, *, it_comes: bool) -> None:
-        """Has it known on the bus that an adapter is expected back, until it is ready or is not any more."""
-        key = self.keys.returning(running.program.name)
-        if running.returning is not None:
-            running.returning.cancel()
-            self.bus.withdraw(key)
-            running.returning = None
-        if it_comes and running.program.is_adapter and self._bus is not None:
-            running.returning = self._beside(self._announce_return(key, running.program.start_s))
-
-    async def _announce_return(self, key: str, within_s: float) -> None:
-        with suppress(BusError):  # Without a router nobody decides.
-            await self.bus.announce(key)
-        await asyncio.sleep(within_s)
-        self.bus.withdraw(key)
+    def _tell_return(self, program: Program, *, it_comes: bool) -> None:
+        if self._returns is not None:  # Before there is a bus nobody decides.
+            self._returns.expect(program) if it_comes else self._returns.settle(program.name)
 
     async def _kill_if_stopped(self, running: RunningProgram) -> None:
         """Kills a program of the user's own that SIGSTOP has stopped. Others may serve less for a while."""
@@ -341,7 +332,7 @@ class Supervisor:
             running.silence.cancel()
             running.silence = None
         running.is_ready = True
-        self._tell_return(running, it_comes=False)
+        self._tell_return(running.program, it_comes=False)
         running.restarts.succeed()
         running.ready.set()
         self._changed(running.program.name, state)
@@ -369,7 +360,7 @@ class Supervisor:
             self._changed(program.name, "ended", f"{how}; {then}")
             after_s = round(self._clock.monotonic_s() - self._started_s, 3)
             self.ends.append(ProcessEnd(program.name, after_s, status_text(status), then))
-            self._tell_return(running, it_comes=then == STARTED_AGAIN)
+            self._tell_return(program, it_comes=then == STARTED_AGAIN)
             if then == THE_RUN_ENDS:
                 raise fatal_end(running, status, self._run)
             if then != STARTED_AGAIN:
