@@ -240,6 +240,23 @@ async def test_types_are_told_by_their_names_in_documents(code: str, said: str, 
     assert (only.message, only.hint) == (said, hint)
 
 
+@pytest.mark.parametrize(("values", "types"), [("1", "int"), ("2.5, 1", "double, int")])
+async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(
+    values: str, types: str, cache_dir: Path
+):
+    await told_by_gcc()
+    listed = f"__possibleParameters.push_back(std::make_tuple({values}));"
+    code = (
+        f"state__.total = 1;\n\nparameter: int a\nparameter: string b\n\navailable_parameters_code:\n{listed}"
+    )
+    error = await build_error(emitted_skill(code), cache_dir)
+    (only,) = error.diagnostics
+    assert (
+        only.message == f"the parameters of this skill are (int, std::string), and these values are ({types})"
+    )
+    assert str(only.span).startswith("act.sd:9:")
+
+
 async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path):
     document: dict[str, Any] = {
         "Preconditions": {"GlobalVariablePreconditionAssignments": [

@@ -6,7 +6,12 @@ _WORDS = (
     (re.compile(r"(?:const )?(?:class )?aos::Vector<(.+?), \d+>"), r"vector<\1>"),
     (re.compile(r"(?:const )?(?:class )?aos::Named<(\w+), \d+, ([^<>]+)>"), r"array of \2 over \1"),
     (re.compile(r"(?:const )?(?:class )?aos::Text\b"), "string"),
-    (re.compile(r"std::(?:__cxx11::)?basic_string<char>"), "std::string"),
+    (
+        re.compile(
+            r"std::(?:__cxx11::)?basic_string<char(?:, std::char_traits<char>, std::allocator<char> )?>"
+        ),
+        "std::string",
+    ),
     (re.compile(r"`<brace-enclosed initializer list>`"), "a list in braces"),
     (re.compile(r"`const char ?(?:\*|\[\d+\])`"), "a text"),
 )
@@ -14,6 +19,9 @@ STATE_PART = re.compile(r"\b(state_*\.)(?:\w+::|<anonymous>(?:::|\.))*(\w+)")
 """A variable of a state, behind the class that holds it."""
 _ASSIGNED = re.compile(
     r"no match for `operator=` in .* \(operand types are (?P<to>.+?) and (?P<value>[^()]+)\)"
+)
+_PARAMETERS = re.compile(
+    r"no matching function for call to `std::vector<std::tuple<(.*)> ?>::push_back\(std::tuple<(.*)>\)`"
 )
 _CALLED = re.compile(r"no match for call to `\((?:const )?(?:array of |vector<)")
 
@@ -27,6 +35,12 @@ def in_words(text: str) -> tuple[str, str]:
         plain = pattern.sub(word, plain)
     if _CALLED.match(plain) is not None:
         return "this is an array, and no function", "An element of it has square brackets: `[i]`"
+    if (listed := _PARAMETERS.match(plain)) is not None:
+        taken, given = listed[1].strip(), listed[2].strip()
+        return (
+            f"the parameters of this skill are ({taken}), and these values are ({given})",
+            "Give `std::make_tuple` one value for each parameter, in their order",
+        )
     if (refused := _ASSIGNED.fullmatch(plain)) is None:
         # Only a refused assignment has its literals put in words.
         for pattern, word in _WORDS[:-2]:
