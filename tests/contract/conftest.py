@@ -72,8 +72,18 @@ async def other(endpoint: str) -> AsyncIterator[Bus]:
 async def system(
     bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path, bundles: Path
 ) -> AsyncIterator[System]:
-    """A middleware process that has our armadillo, and a skill that listens; `other` surrounds it."""
+    """A middleware that has our armadillo, and a skill that listens; `other` surrounds it."""
     async with running_system(bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer") as running:
+        yield running
+
+
+@pytest_asyncio.fixture
+async def process_system(
+    bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path, bundles: Path
+) -> AsyncIterator[System]:
+    """The same with a middleware that is a process, which a test may freeze, end and start again."""
+    bundle = bundles / "armadillo-finer"
+    async with running_system(bus, other, keys, tmp_path, endpoint, bundle, is_process=True) as running:
         yield running
 
 

@@ -1,9 +1,13 @@
-"""A middleware process on the real bus, between a scripted registry and a scripted adapter."""
+"""The middleware on the real bus, between a scripted registry and a scripted adapter.
+
+It runs in the test's process, on a connection of its own, or as a process that a test may end.
+"""
 
 import asyncio
+import logging
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +16,7 @@ from mapping_documents import project_in, skill_of
 from processes import HANG_S
 from starting import until_present
 
+from aos_middleware.service import serve
 from aos_middleware.settings import Settings
 from aos_protocol import messages
 from aos_protocol.documents import Project
@@ -19,6 +24,7 @@ from aos_protocol.keys import Keys, Lack, Serving
 from aos_runtime.bus.bus import Bus
 from aos_runtime.parties.reported_state import state_when
 from aos_runtime.processes.children import PIPE, Child
+from aos_runtime.processes.lifecycle import serve_on_bus
 
 __all__ = [
     "HANG_S",
@@ -138,39 +144,45 @@ class Adapter:
 
 
 class System:
-    """A middleware process with its surroundings, and how the solver speaks to it."""
+    """A middleware with its surroundings, and how the solver speaks to it."""
 
-    def __init__(self, bus: Bus, keys: Keys, run_dir: Path, registry: Registry, adapter: Adapter) -> None:
+    def __init__(
+        self, bus: Bus, keys: Keys, settings: Settings, registry: Registry, adapter: Adapter
+    ) -> None:
         self.bus = bus
         self.keys = keys
-        self.run_dir = run_dir
+        self.run_dir = Path(settings.run_dir)
         self.registry = registry
         self.adapter = adapter
         self.child: Child | None = None
+        self._settings = settings
         self._log = ""
-        self._has_logged = asyncio.Condition()
-        self._reading: asyncio.Task[None] | None = None
+        self._has_logged = asyncio.Event()
+        self._running: asyncio.Task[None] | None = None
 
-    async def start(self, endpoint: str, **settings: Any) -> None:
-        """Starts the service; returns when it answers."""
-        values = Settings(
-            robot=self.keys.robot,
-            service="middleware",
-            endpoint=endpoint,
-            run_dir=str(self.run_dir),
-            project="armadillo",
-            **settings,
-        )
+    async def start(self) -> None:
+        """Starts the service as a process; returns when it answers."""
         path = self.run_dir / "middleware.json"
-        path.write_bytes(msgspec.json.encode(values))
+        path.write_bytes(msgspec.json.encode(self._settings))
         async with until_present(self.bus, self.keys.live("middleware")):
             self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=PIPE)
-            self._reading = asyncio.create_task(self._read_log(self.child))
+            self._running = asyncio.create_task(self._read_log(self.child))
+
+    async def host(self) -> None:
+        """Starts the service in this process, which has imported it already; returns when it answers."""
+        async with until_present(self.bus, self.keys.live("middleware")):
+            self._running = asyncio.create_task(self._serve())
 
     async def stop(self) -> None:
-        if self.child is not None and self._reading is not None:
+        """Ends the service; raises what it has failed with."""
+        if self._running is None:
+            return
+        if self.child is not None:
             await self.child.stop(5.0)
-            await self._reading
+        else:
+            self._running.cancel()
+        with suppress(asyncio.CancelledError):
+            await self._running
 
     async def state(self, revision: int) -> messages.MappingState:
         """The state of the mappings once they are those of a revision."""
@@ -220,20 +232,54 @@ class System:
 
     async def logged(self, text: str) -> str:
         """Returns what the service has logged once a text is in it."""
-        async with asyncio.timeout(HANG_S), self._has_logged:
-            await self._has_logged.wait_for(lambda: text in self._log)
+        async with asyncio.timeout(HANG_S):
+            while text not in self._log:
+                self._has_logged.clear()
+                await self._has_logged.wait()
             return self._log
+
+    def _note(self, text: str) -> None:
+        self._log += text
+        self._has_logged.set()
 
     async def _read_log(self, child: Child) -> None:
         while line := await child.stderr.readline():
-            async with self._has_logged:
-                self._log += line.decode()
-                self._has_logged.notify_all()
+            self._note(line.decode())
+
+    async def _serve(self) -> None:
+        log = logging.getLogger("aos")
+        handler = _Lines(self._note)
+        log.addHandler(handler)
+        log.setLevel(logging.INFO)
+        try:
+            await serve_on_bus(self._settings, serve)
+        finally:
+            log.setLevel(logging.NOTSET)
+            log.removeHandler(handler)
+
+
+class _Lines(logging.Handler):
+    """Hands over each line of a log."""
+
+    def __init__(self, note: Callable[[str], None]) -> None:
+        super().__init__()
+        self._note = note
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._note(f"{record.getMessage()}\n")
 
 
 @asynccontextmanager
 async def running_system(
-    bus: Bus, other: Bus, keys: Keys, run_dir: Path, endpoint: str, bundle: Path, **settings: Any
+    bus: Bus,
+    other: Bus,
+    keys: Keys,
+    run_dir: Path,
+    endpoint: str,
+    bundle: Path,
+    *,
+    is_process: bool = False,
+    **settings: Any,
 ) -> AsyncIterator[System]:
     """A middleware that has taken over the bundle's project and `SENSE`, and ends with the block."""
     project = project_in(bundle)
@@ -242,9 +288,17 @@ async def running_system(
     registry = Registry(other, keys, project)
     await other.answer(keys.project, messages.ProjectQuery, registry.answer)
     await other.announce(keys.live("registry"))
-    system = System(bus, keys, run_dir, registry, Adapter(other, keys))
+    values = Settings(
+        robot=keys.robot,
+        service="middleware",
+        endpoint=endpoint,
+        run_dir=str(run_dir),
+        project="armadillo",
+        **settings,
+    )
+    system = System(bus, keys, values, registry, Adapter(other, keys))
     try:
-        await system.start(endpoint, **settings)
+        await (system.start() if is_process else system.host())
         await system.state(1)
         yield system
     finally:

@@ -121,7 +121,7 @@ async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system
 
 
 async def test_a_call_of_a_middleware_that_a_signal_has_frozen_is_joined_and_no_adapter_is_lost(
-    system: System,
+    process_system: System,
 ):
     is_over = asyncio.Event()
 
@@ -129,21 +129,21 @@ async def test_a_call_of_a_middleware_that_a_signal_has_frozen_is_joined_and_no_
         await is_over.wait()
         return {"success": True}
 
-    await system.adapter.serve("/pick", pick)
+    await process_system.adapter.serve("/pick", pick)
     key, live, request = (
-        system.keys.activate("pick"),
-        system.keys.live("middleware"),
+        process_system.keys.activate("pick"),
+        process_system.keys.live("middleware"),
         Activate(ActivationId("m", 1), "pick", {}, HANG_S),
     )
-    asked = ask_until_answered(system.bus, key, request, Outcome, server=live, timeout_s=HANG_S)
+    asked = ask_until_answered(process_system.bus, key, request, Outcome, server=live, timeout_s=HANG_S)
     waiting = asyncio.create_task(asked)
-    await asyncio.wait_for(system.adapter.is_called.wait(), HANG_S)
-    assert system.child is not None
-    async with asyncio.timeout(HANG_S), system.bus.presence(live) as presence:
-        os.kill(system.child.pid, signal.SIGSTOP)
+    await asyncio.wait_for(process_system.adapter.is_called.wait(), HANG_S)
+    assert process_system.child is not None
+    async with asyncio.timeout(HANG_S), process_system.bus.presence(live) as presence:
+        os.kill(process_system.child.pid, signal.SIGSTOP)
         while (await anext(presence))[1]:
             pass
-        os.kill(system.child.pid, signal.SIGCONT)
+        os.kill(process_system.child.pid, signal.SIGCONT)
         while not (await anext(presence))[1]:
             pass
     is_over.set()

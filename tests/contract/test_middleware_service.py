@@ -68,19 +68,19 @@ async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(
     assert (await system.activate("sense")).response == "quiet"
 
 
-async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(system: System, endpoint: str):
-    await system.adapter.serve("/pick", succeed)
-    first = await system.activate("pick")
-    assert await system.activate("pick") == first
+async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(process_system: System):
+    await process_system.adapter.serve("/pick", succeed)
+    first = await process_system.activate("pick")
+    assert await process_system.activate("pick") == first
     # An id that stands for another motion moves nothing, and is a step of the mission.
-    outcome = await system.activate("serve")
+    outcome = await process_system.activate("serve")
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("refused", "AOS514")
-    await system.stop()
-    await system.start(endpoint)
-    await system.state(1)
-    assert await system.activate("pick") == first
-    assert len(system.adapter.calls) == 1
+    await process_system.stop()
+    await process_system.start()
+    await process_system.state(1)
+    assert await process_system.activate("pick") == first
+    assert len(process_system.adapter.calls) == 1
 
 
 async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: System):
@@ -109,7 +109,7 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
     ids=["killed, its_result_tells_all", "stopped, its_topics_were_missed"],
 )
 async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
-    system: System, endpoint: str, ending: str, skill: str, result: tuple[str, str]
+    process_system: System, ending: str, skill: str, result: tuple[str, str]
 ):
     may_end = asyncio.Event()
 
@@ -117,39 +117,39 @@ async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
         await may_end.wait()
         return {"success": True}
 
-    await system.adapter.serve(f"/{skill}", move)
-    assert system.child is not None
+    await process_system.adapter.serve(f"/{skill}", move)
+    assert process_system.child is not None
     async with asyncio.TaskGroup() as tasks:
-        cut_off = tasks.create_task(_error_of(system.activate(skill)))
-        await system.adapter.is_called.wait()
+        cut_off = tasks.create_task(_error_of(process_system.activate(skill)))
+        await process_system.adapter.is_called.wait()
         if ending == "killed":
-            system.child.kill()
-        status = await system.child.stop(5.0)
+            process_system.child.kill()
+        status = await process_system.child.stop(5.0)
     assert status == (-9 if ending == "killed" else 0)
     assert isinstance(cut_off.result(), LostAnswerError)
-    system.adapter.is_called.clear()
-    await system.start(endpoint)
-    await system.state(1)
+    process_system.adapter.is_called.clear()
+    await process_system.start()
+    await process_system.state(1)
     async with asyncio.TaskGroup() as tasks:
-        taken_up = tasks.create_task(system.activate(skill))
-        await system.adapter.is_called.wait()
+        taken_up = tasks.create_task(process_system.activate(skill))
+        await process_system.adapter.is_called.wait()
         may_end.set()
     assert (taken_up.result().status, taken_up.result().response) == result
-    assert len(system.adapter.motions) == 1
+    assert len(process_system.adapter.motions) == 1
 
 
-async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(system: System, endpoint: str):
-    await system.adapter.serve("/pick", hang)
-    assert system.child is not None
+async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(process_system: System):
+    await process_system.adapter.serve("/pick", hang)
+    assert process_system.child is not None
     async with asyncio.TaskGroup() as tasks:
-        tasks.create_task(_error_of(system.activate("pick")))
-        await system.adapter.is_called.wait()
-        system.child.kill()
-        await system.child.stop(5.0)
-    system.adapter.withdraw("/pick")
-    await system.start(endpoint)
-    await system.state(1)
-    outcome = await system.activate("pick")
+        tasks.create_task(_error_of(process_system.activate("pick")))
+        await process_system.adapter.is_called.wait()
+        process_system.child.kill()
+        await process_system.child.stop(5.0)
+    process_system.adapter.withdraw("/pick")
+    await process_system.start()
+    await process_system.state(1)
+    outcome = await process_system.activate("pick")
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS505")
 

@@ -42,6 +42,7 @@ __all__ = [
     "root_cause",
     "run_process",
     "run_service",
+    "serve_on_bus",
 ]
 
 
@@ -97,20 +98,27 @@ def run_service(
     """
 
     async def run(settings: S) -> None:
-        clock = SystemClock()
-        bus = await Bus.open(
-            settings.endpoint,
-            sender=settings.service,
-            connect_timeout_s=ROUTER_S,
-            clock=clock,
-            lease_s=lease_s,
-            credential=settings.credential,
-            access=Access(settings.robot, settings.party),
-        )
-        async with bus:
-            await serve(Service(settings, bus, clock))
+        await serve_on_bus(settings, serve, lease_s=lease_s)
 
     run_process(settings_type, run, settings)
+
+
+async def serve_on_bus(
+    settings: S, serve: Callable[[Service[S]], Awaitable[None]], *, lease_s: float = LEASE_S
+) -> None:
+    """Opens the bus of the settings, and runs `serve` until it returns, fails or is cancelled."""
+    clock = SystemClock()
+    bus = await Bus.open(
+        settings.endpoint,
+        sender=settings.service,
+        connect_timeout_s=ROUTER_S,
+        clock=clock,
+        lease_s=lease_s,
+        credential=settings.credential,
+        access=Access(settings.robot, settings.party),
+    )
+    async with bus:
+        await serve(Service(settings, bus, clock))
 
 
 def run_process(
