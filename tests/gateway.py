@@ -1,8 +1,10 @@
 """A gateway as a process, requests to it, and small missions for it to show."""
 
+import fcntl
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -226,6 +228,17 @@ def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -
             command, cwd=folder, env=environment(folder, cache), stdout=out, timeout=COMMAND_S, check=False
         )
     return (runs / "latest").resolve()
+
+
+def copied_past(shared: Path, folder: Path, cache: Path) -> Path:
+    """The directory, below a folder, of a copy of the mission that the first who asks plays for all."""
+    shared.mkdir(exist_ok=True)
+    with (shared / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (shared / "played").exists():
+            (shared / "played").write_text(played(shared, cache).name)
+    shutil.copytree(shared / "runs", folder / "runs", symlinks=True)
+    return folder / "runs" / (shared / "played").read_text()
 
 
 def write_slow_tiger(folder: Path) -> None:

@@ -1,10 +1,11 @@
 """Fixtures of the tests that start whole systems."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from gateway import Gateway, gateway, played, slow_system
+from gateway import Gateway, copied_past, gateway, slow_system
 from models import built_bundle
 from supervised_system import TESTS, System
 
@@ -20,9 +21,11 @@ def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
 
 @pytest.fixture(scope="module")
 def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
-    """A gateway, and a mission that has run to its end."""
+    """A gateway, and a mission that has run to its end: one for all processes of a run of the tests."""
+    base = tmp_path_factory.getbasetemp()
+    shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "played"
     folder = tmp_path_factory.mktemp("past")
-    run = played(folder, cache_dir)
+    run = copied_past(shared, folder, cache_dir)
     with gateway(folder, cache_dir) as served:
         yield served, run.name
 
