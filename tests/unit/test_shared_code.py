@@ -229,6 +229,8 @@ def test_the_emitted_functions_stand_at_the_documents_lines():
         ("there are no arguments to 'slipps' that depend on a template parameter", "slipps", "slips"),
         ("'Tree' was not declared in this scope; did you mean 'free'?", "Tree", ""),
         ("'sqr' was not declared in this scope; did you mean 'sqrt'?", "sqr", "sqrt"),
+        ("'tool' was not declared in this scope; did you mean 'bool'?", "tool", "state.tool"),
+        ("'is_dug' was not declared in this scope", "is_dug", "state.is_dug"),
     ],
 )
 def test_a_misspelt_name_is_told_with_one_that_documents_have(said, name, hint):

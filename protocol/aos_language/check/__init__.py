@@ -1,12 +1,12 @@
 """The rules across documents.
 
 `declarations` looks at names and types, `defaults` at what variables start with, `mission_parameters` at what
-a mission may set, `model_code` at the C++ of environment and skills, `responses` at what the two halves of a
-skill say to each other, `mapping_code` at the Python of the mappings, `enum_texts` at what it takes enums
-for, `stop_when` at what stops a skill and `python_names` at the names in it, `monitors` at mappings without a
-skill, `endings` at what ends a mission, `preconditions` at those that nothing keeps, `observed_numbers` at
-numbers beside responses, `shared_code` at what all model code shares and `shared_mapping_code` at what all
-mappings share, `unused` at what nothing mentions.
+a mission may set, `model_code` at the C++ of environment and skills, `responses` and `response_values` at
+what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings, `enum_texts`
+at what it takes enums for, `stop_when` at what stops a skill and `python_names` at the names in it,
+`monitors` at mappings without a skill, `endings` at what ends a mission, `preconditions` at those that
+nothing keeps, `observed_numbers` at numbers beside responses, `shared_code` at what all model code shares and
+`shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
 """
 
 from aos_language.assembly import Assembly

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.enum_texts import check_enum_texts
+from aos_language.check.input_fields import check_input_fields
 from aos_language.check.python_names import (
     PythonNames,
     check_fields_set,
@@ -163,6 +164,7 @@ def _check_variable(
     if tree is None:
         return
     check_names(variable.code, tree, names.of_code(), findings, severity)
+    check_input_fields(variable.code, tree, findings)
     _check_ends(variable, variable.code, tree, findings)
 
 

@@ -10,13 +10,15 @@ from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.document_code import absent_skills
 from aos_language.findings import Findings
-from aos_protocol.diagnostics import Severity, Span
+from aos_protocol.diagnostics import Mend, Severity, Span
 from aos_protocol.spelling import nearest, quoted
 
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
 _TRUTHS = frozenset({"__isFailureState", "__isGoalState", "__meetPrecondition", "__stopEvaluatingState"})
 _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_OWN_TYPE = re.compile(r"\b(?:class|struct|union)\b")
+"""Code with a type of its own may set that one's fields by their names."""
 
 
 class MentionCheck:
@@ -108,6 +110,11 @@ class MentionCheck:
             self._findings.unknown(root, (special,), f"unknown name `{root}`", self._span(mention.root))
         elif is_special:
             self._findings.unknown(root, known, f"unknown name `{root}`", self._span(mention.root))
+        elif is_set and root in self._scope.variables and not _OWN_TYPE.search(self._cpp.code):
+            # Nothing else of the documents has this name.
+            right = f"{(self._block.role.writes or self._block.role.reads)[0]}.{root}"
+            mend = Mend(span := self._span(mention.root), len(root), right)
+            self._findings.error("AOS110", f"unknown name `{root}`", span, f"Did you mean `{right}`?", mend)
 
     def _check_copy(self, mention: Mention, root: str) -> None:
         role = self._block.role

@@ -8,6 +8,7 @@ from aos_language.check.blocks import DEFAULT, STATES, Block, environment_blocks
 from aos_language.check.built_ins import BUILT_INS, check_built_in
 from aos_language.check.mentions import LITERAL_NAMES, MentionCheck, listing
 from aos_language.check.scope import Scope
+from aos_language.check.shared_calls import check_shared_call
 from aos_language.check.weights import check_weights
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, FaultKind, read_cpp
 from aos_language.cpp.unset import unset_reads
@@ -190,6 +191,8 @@ class _BlockCheck:
         for call in self._cpp.calls:
             declared = self._declared.union(self._locals, self._block.names)
             check_built_in(call, self._cpp.code, declared, self._span, self._findings)
+            if call.name and call.name[0] not in {*self._locals, *self._block.names}:
+                check_shared_call(call, self._scope.shared, self._span(call.function), self._findings)
             if len(call.name) == 2 and call.name[1] in BUILT_INS.get(call.name[0], ()):
                 self._check_enum(call)
                 check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)

@@ -153,8 +153,8 @@ def check_names(
     if names.is_open or any(alias.name == "*" for alias in ast.walk(tree) if isinstance(alias, ast.alias)):
         return
     known = names.known | _bound_names(tree)
-    for node in _loaded_names(tree):
-        if node.id in known:
+    for node in nodes_read(tree):
+        if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load) or node.id in known:
             continue
         span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
         close = nearest(node.id, names.local_names)
@@ -200,13 +200,12 @@ def _bound_names(tree: ast.AST) -> frozenset[str]:
     return frozenset(bound)
 
 
-def _loaded_names(tree: ast.AST) -> Iterator[ast.Name]:
-    """The names that are read, but for those in a `try` that catches."""
+def nodes_read(tree: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of code, but for those in a `try` that catches: that is ready for their errors."""
     waiting = [tree]
     while waiting:
         node = waiting.pop()
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
-            yield node
+        yield node
         skipped: list[ast.stmt] = []
         if isinstance(node, ast.Try | ast.TryStar) and node.handlers:
             skipped = node.body

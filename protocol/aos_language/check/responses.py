@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from difflib import get_close_matches
 
 from aos_language.check.blocks import DYNAMIC, Block, assignment_blocks, read_block
+from aos_language.check.response_values import check_response_values
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Mention
@@ -25,12 +26,14 @@ def check_responses(
 
     Where the documents are not read as a `whole`, what seems to be missing may stand in the rest.
     """
-    blocks = list(assignment_blocks(DYNAMIC, model.dynamic_model))
+    parameters = {parameter.name: parameter.type for parameter in model.parameters}
+    blocks = list(assignment_blocks(DYNAMIC, model.dynamic_model, parameters))
     read = [(block, read_block(block)) for block in blocks]
     if any(cpp.faults for _, cpp in read):
         return
     known = _known_names(model, scope, read)
     given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+    check_response_values(given, read, scope, findings)
     enum_values, others = _own_names(model, read)
     for block, mention in _assigned_names(read):
         name = mention.path[0]

@@ -35,8 +35,9 @@ class SharedName(msgspec.Struct, frozen=True):
 class SharedFunction(SharedName, frozen=True):
     """A function. Its parameters begin at offset `parameters`, its body at offset `body`.
 
-    `takes` are its parameters' names, in their order. `draws`: it has a source of draws as a parameter of its
-    own. `only_reads`: a call changes nothing and gives a plain value, which follows from the arguments.
+    `takes` are its parameters' names, in their order, `written` what stands for them in the document, and
+    `needs` is how many of them have no default. `draws`: it has a source of draws as a parameter of its own.
+    `only_reads`: a call changes nothing and gives a plain value, which follows from the arguments.
     """
 
     parameters: int
@@ -45,6 +46,8 @@ class SharedFunction(SharedName, frozen=True):
     draws: bool = False
     only_reads: bool = False
     takes: tuple[str, ...] = ()
+    written: tuple[str, ...] = ()
+    needs: int = 0
 
 
 class SharedMisuse(msgspec.Struct, frozen=True):
@@ -257,7 +260,8 @@ class _Reading:
             message = f"`{text_of(source)}` is no parameter: a function that draws has it by itself"
             self._misuse(source, message, "Leave the parameter out, and call the function without it")
         declared = [parameter for parameter in parameters.named_children if parameter.type != "comment"]
-        is_void = len(declared) == 1 and text_of(declared[0]) == "void"
+        if len(declared) == 1 and text_of(declared[0]) == "void":
+            declared = []
         self._words.setdefault(text_of(name), set()).update(_identifiers(body), _identifiers(parameters))
         written = text_of(function)[: text_of(function).index(text_of(name))]
         is_plain = node.type == "function_definition" and _OTHER_TYPES.search(written) is None
@@ -272,9 +276,11 @@ class _Reading:
                 True,
                 self._offset(parameters.start_byte) + 1,
                 self._offset(body.start_byte) + 1,
-                bool(declared) and not is_void,
+                bool(declared),
                 only_reads=only_reads,
-                takes=() if is_void else tuple(_parameter_name(parameter) for parameter in declared),
+                takes=tuple(_parameter_name(parameter) for parameter in declared),
+                written=tuple(" ".join(text_of(parameter).split()) for parameter in declared),
+                needs=sum(parameter.type == "parameter_declaration" for parameter in declared),
             )
         )
 

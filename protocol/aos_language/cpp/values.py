@@ -1,9 +1,10 @@
-"""The lone names that an expression of C++ can be the value of: not those of its conditions and arguments."""
+"""The values that an expression of C++ can have: not those of its conditions and arguments."""
 
 from collections.abc import Iterator
 
 import tree_sitter
 
+from aos_language.cpp.nodes import operator_of
 from aos_language.cpp.tree import tree_of
 
 _VALUES = {
@@ -22,17 +23,25 @@ def value_names(expression: str) -> list[tuple[str, int]]:
 
     Of an element of an array it is the array's name, and of a list its elements'.
     """
+    return [(text, offset) for kind, text, offset in values(expression) if kind == "identifier"]
+
+
+def values(expression: str) -> list[tuple[str, str, int]]:
+    """All that it can be the value of, each with what it is in the tree, its text and its offset.
+
+    Behind a text in quotes and a `+` stands a value, too: that sum is no text where the value is none.
+    """
     is_list = expression.lstrip().startswith("{")
     before, after = ("auto x = ", "\n;") if is_list else ("auto x = (", "\n);")
     data = f"{before}{expression}{after}".encode()
-    names = []
-    for node in _identifiers(tree_of(data.decode())):
+    found = []
+    for node in _values(tree_of(data.decode())):
         start = len(data[: node.start_byte].decode()) - len(before)
-        names.append((data[node.start_byte : node.end_byte].decode(), start))
-    return names
+        found.append((node.type, data[node.start_byte : node.end_byte].decode(), start))
+    return found
 
 
-def _identifiers(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
+def _values(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
     waiting = [root]
     while waiting:
         node = waiting.pop()
@@ -41,8 +50,10 @@ def _identifiers(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
             waiting += [value] if value is not None else []
         elif node.type in ("translation_unit", "declaration", "initializer_list"):
             waiting += reversed(node.named_children)
-        elif node.type == "identifier":
-            yield node
         elif node.type in _VALUES:
             parts = [part for part in node.named_children if part.type != "comment"]
             waiting += [parts[at] for at in reversed(_VALUES[node.type]) if at < len(parts)]
+        elif node.type == "binary_expression" and node.named_children[0].type == "string_literal":
+            waiting += node.named_children[1:2] if operator_of(node) == "+" else []
+        else:
+            yield node

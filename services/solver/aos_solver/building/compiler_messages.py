@@ -76,10 +76,13 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             outside.append(f"{message.file}:{message.line}:{message.column}: {message.text}")
             continue
         text, hint = _plain(message.text)
-        if not _may_be_meant(hint, emitted):
+        unknown = _NOT_DECLARED.fullmatch(text)
+        name = unknown[1] or unknown[2] if unknown is not None else ""
+        if name in emitted.layout.shapes:
+            hint = f"Did you mean `state.{name}`?"
+        elif not _may_be_meant(hint, emitted):
             hint = ""
-        if not hint and (unknown := _NOT_DECLARED.fullmatch(text)) is not None:
-            name = unknown[1] or unknown[2]
+        if not hint and name:
             of_python = f"C++ writes `{_OF_PYTHON[name]}`" if name in _OF_PYTHON else ""
             hint = of_python or did_you_mean(name, sorted(emitted.names - {name}))
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)

@@ -1,0 +1,102 @@
+"""Slips that C++ and Python take without a word, or tell only when a robot runs."""
+
+import pytest
+from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
+
+TEXT = MAPPING.replace("response: walked\nresponse_rule: True\n", "response_local_variable: steps\n")
+SIDES = f"{ENVIRONMENT}\ndefine_type: Side\nenum_members: Left, Right\nstate_variable: Side side\n"
+TON = "\nlocal_variable: tons\nfrom_ros_service_response: true\ntype: float\ncode:\n"
+FAR = "int far(int a, bool b, int c = 2) { return b ? a : c; }"
+
+
+def with_shared(code: str) -> str:
+    return ENVIRONMENT.replace("define_type: Cell", f"shared_code:\n{code}\n\ndefine_type: Cell", 1)
+
+
+@pytest.mark.parametrize(
+    ("value", "name", "kind", "hint"),
+    [
+        ("count", "count", "int", "Write `std::to_string(count)`"),
+        ('"step " + steps', "steps", "int", "Write `std::to_string(steps)`"),
+        ('steps > 1 ? "far" : 0', "0", "number", 'Write it in quotes: `"0"`'),
+        ("state__.side", "state__.side", "Side", "Write `std::to_string(state__.side)`, or a text"),
+        ("Left", "Left", "Side", 'Write it in quotes: `"Left"`'),
+    ],
+)
+def test_a_number_cannot_be_a_text_response(value, name, kind, hint):
+    code = f"int count = steps;\n__moduleResponseStr = {value};"
+    told = found(environment=SIDES, skill=SKILL.replace("__moduleResponse = walked;", code), mapping=TEXT)
+    (only,) = [finding for finding in told if finding.is_error]
+    message = f"__moduleResponseStr takes a text, and `{name}` is of the type {kind}"
+    assert (only.code, only.message, only.hint[: len(hint)]) == ("AOS106", message, hint)
+    assert (only.span.line, only.span.column) == (11, 23 + value.index(name))
+
+
+@pytest.mark.parametrize("value", ['steps > 1 ? "a" : name', "std::to_string(steps)", "names[steps]"])
+def test_a_text_of_any_kind_is_a_text_response(value):
+    code = f'std::string name = "n"; std::vector<std::string> names;\n__moduleResponseStr = {value};'
+    assert finding_texts(skill=SKILL.replace("__moduleResponse = walked;", code), mapping=TEXT) == []
+
+
+def test_a_number_in_the_place_of_a_response_is_told_with_the_names():
+    told = "10 AOS116 `0` is a number, and no name of a response. The responses are `walked`"
+    assert finding_texts(skill=SKILL.replace("= walked;", "= steps > 1 ? walked : 0;")) == [told]
+
+
+@pytest.mark.parametrize(("call", "given"), [("far(1)", "1 value"), ("far(1, true, 2, 3)", "4 values")])
+def test_a_call_of_a_shared_function_with_other_values_is_told_with_what_it_takes(call, given):
+    told = f"9 AOS110 `far` is called with {given}. Shared code has `far(int a, bool b, int c = 2)`"
+    assert finding_texts(environment=with_shared(FAR), skill=SKILL.replace("+ steps", f"+ {call}")) == [told]
+
+
+@pytest.mark.parametrize(
+    ("shared", "call"),
+    [
+        (FAR, "far(1, true)"),
+        ("int far(int a) { return a; }\nint far() { return far(1); }", "far()"),
+        ("int far(const auto&... all) { return sizeof...(all); }", "far(1, 2, 3)"),
+        ("int far(int a) { return a; }", "[&](auto far) { return far(); }([] { return 1; }) + far(1)"),
+    ],
+)
+def test_calls_that_a_shared_function_takes_are_left_alone(shared, call):
+    skill = SKILL.replace("+ steps", f"+ {call}")
+    assert finding_texts(environment=with_shared(shared), skill=skill) == []
+
+
+def test_a_state_variable_that_is_set_without_its_state_is_told_with_it():
+    for whole, before, meant in (
+        ({"skill": SKILL}, "state__.second.x =", "state__.second"),
+        ({"environment": ENVIRONMENT}, "if (state.second", "state.second"),
+    ):
+        (only,) = found(
+            **{key: text.replace(before, f"second = {{3}};\n{before}") for key, text in whole.items()}
+        )
+        assert (only.code, only.message) == ("AOS110", "unknown name `second`")
+        assert (only.hint, only.mend.text) == (f"Did you mean `{meant}`?", meant)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "auto [first, second] = std::make_pair(1, 2); second = 3;",
+        "auto set = [&](auto& second) { second = 3; }; set(state__.first.x);",
+        "struct Pair { int second = 0; void raise() { second = 1; } };",
+    ],
+)
+def test_names_that_code_declares_for_itself_are_no_state_variables(code):
+    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
+
+
+@pytest.mark.parametrize(
+    ("code", "right"),
+    [
+        ("tons = __input[tons]", "Write `__input.tons`"),
+        ("tons = __input.report['load']", "Write `__input.report.load`"),
+        ("tons = __input.loads[0]", ""),
+        ("try:\n    tons = __input['a']\nexcept TypeError:\n    tons = 1.0", ""),
+    ],
+)
+def test_a_field_of_the_input_in_brackets_is_told_as_an_attribute(code, right):
+    told = found(mapping=f"{MAPPING.replace('True', 'tons')}{TON}{code}\n")
+    places = [(each.code, each.span.line, each.span.column, each.hint) for each in told]
+    assert places == ([("AOS121", 18, 8, right)] if right else [])
