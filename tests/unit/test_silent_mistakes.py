@@ -3,6 +3,8 @@
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
 
+from aos_protocol.diagnostics import Severity
+
 TEXT = MAPPING.replace("response: walked\nresponse_rule: True\n", "response_local_variable: steps\n")
 SIDES = f"{ENVIRONMENT}\ndefine_type: Side\nenum_members: Left, Right\nstate_variable: Side side\n"
 TON = "\nlocal_variable: tons\nfrom_ros_service_response: true\ntype: float\ncode:\n"
@@ -100,3 +102,31 @@ def test_a_field_of_the_input_in_brackets_is_told_as_an_attribute(code, right):
     told = found(mapping=f"{MAPPING.replace('True', 'tons')}{TON}{code}\n")
     places = [(each.code, each.span.line, each.span.column, each.hint) for each in told]
     assert places == ([("AOS121", 18, 8, right)] if right else [])
+
+
+@pytest.mark.parametrize(
+    ("rule", "hint"),
+    [
+        ("steps is TRUE", "Python writes `True`"),
+        ("str(steps) == Left", "A value of Side is a text here: write `'Left'`"),
+        ("math.isnan(steps)", "It is a module of Python: import it"),
+        ("steps => 1", "Python writes `>=`"),
+    ],
+)
+def test_a_name_of_another_place_is_told_with_what_python_writes(rule, hint):
+    told = found(environment=SIDES, mapping=MAPPING.replace("rule: True", f"rule: {rule}"))
+    assert hint in [each.hint for each in told]
+
+
+def test_where_everything_is_imported_a_name_that_is_nearly_known_is_told():
+    imports = "skill\nimports: from: hall.msg import: *\npath"
+    mapping = MAPPING.replace("skill\npath", imports).replace("True", "stepss > stride and Steps(1) != true")
+    told = [(each.severity, each.hint) for each in found(mapping=mapping) if each.code == "AOS110"]
+    warning = Severity.WARNING
+    assert told == [(warning, "Did you mean `steps`?"), (warning, "Python writes `True`")]
+
+
+def test_a_first_value_that_takes_a_local_variable_is_told_what_to_write():
+    topic = "local_variable: far\ntopic: /far\ntype: bool\ninitial_value: steps > 1\ncode:\nreturn far\n"
+    (only,) = found(mapping=f"{MAPPING.replace('rule: True', 'rule: far')}\n{topic}")
+    assert only.hint == "A first value is made when there is no local variable yet: write a constant"

@@ -1,7 +1,7 @@
 """The names that the Python of a mapping uses: is there something behind each when it runs?
 
 A name that nothing gives is an error, for it is a NameError in every run that comes to it. What an `import *`
-brings nobody knows here, so such a mapping is left alone; so is code that is ready for the error, in a `try`.
+brings nobody knows here, so there only names that are nearly known are told. Code in a `try` is ready for it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,9 @@ from __future__ import annotations
 import ast
 import builtins
 import re
-from collections.abc import Iterable, Iterator
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
 
 import msgspec
 
@@ -33,8 +35,10 @@ _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 _OF_MESSAGES = (".msg", ".srv", ".action")
 _INPUT, _PARAMETERS = "__input", "parameters"
 _BUILT_IN_NAMES = frozenset(dir(builtins))
+_NEARLY = 0.85
+"""A share of a name, from 0 to 1: with so much of a known one it is that one, mistyped."""
 _WORD = re.compile(r"[A-Za-z_]\w*")
-_OF_OTHER_LANGUAGES = {"true": "True", "false": "False", "null": "None", "nullptr": "None", "NULL": "None"}
+_OF_OTHER_LANGUAGES = {"true": "True", "false": "False", "null": "None", "none": "None"}
 
 
 class PythonNames(msgspec.Struct, frozen=True):
@@ -42,7 +46,8 @@ class PythonNames(msgspec.Struct, frozen=True):
 
     `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
     those of the skill. `is_open` where an `import *` brings names that nobody knows here. `of_end` are those
-    that say how the skill has ended, `messages` the classes that are imported from modules of messages.
+    that say how the skill has ended, `messages` the classes that are imported from modules of messages, and
+    `enum_values` those of the model, each with its enum.
     """
 
     known: frozenset[str]
@@ -51,6 +56,7 @@ class PythonNames(msgspec.Struct, frozen=True):
     is_open: bool = False
     of_end: frozenset[str] = frozenset()
     messages: frozenset[str] = frozenset()
+    enum_values: Mapping[str, str] = {}
 
     @classmethod
     def of(cls, mapping: AbstractionMapping, model: SkillModel | None, scope: Scope) -> PythonNames:
@@ -72,6 +78,7 @@ class PythonNames(msgspec.Struct, frozen=True):
             is_open=imported is None,
             of_end=of_end,
             messages=frozenset(messages),
+            enum_values=scope.enum_values,
         )
 
     @classmethod
@@ -150,20 +157,21 @@ def check_names(
                 span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
                 message = f"{name} is given fields by position, which fails where it cannot be imported"
                 findings.warning("AOS121", message, span, f"Give them by name: `{name}(field=...)`")
-    if names.is_open or any(alias.name == "*" for alias in ast.walk(tree) if isinstance(alias, ast.alias)):
-        return
     known = names.known | _bound_names(tree)
+    is_open = names.is_open or "*" in known
     for node in nodes_read(tree):
         if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load) or node.id in known:
             continue
         span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
-        close = nearest(node.id, names.local_names)
         hint = _hint(node.id, names)
-        if close or hint:
-            candidates = names.local_names if close else ()
-        else:
-            candidates = tuple(sorted(known - _BUILT_IN_NAMES))
-            hint = _local_variables(names)
+        if is_open:
+            close = get_close_matches(node.id, names.local_names, 1, _NEARLY)
+            if not close and node.id.lower() not in _OF_OTHER_LANGUAGES:
+                continue
+            severity = Severity.WARNING
+        candidates = () if hint else names.local_names
+        if not hint and not nearest(node.id, names.local_names):
+            candidates, hint = tuple(sorted(known - _BUILT_IN_NAMES)), _local_variables(names)
         message = f"no local variable gives `{node.id}`"
         findings.unknown(node.id, candidates, message, span, hint, severity=severity)
 
@@ -214,8 +222,10 @@ def nodes_read(tree: ast.AST) -> Iterator[ast.AST]:
 
 def _hint(name: str, names: PythonNames) -> str:
     """Advice on a name that people take for another; empty for other names."""
-    if name in _OF_OTHER_LANGUAGES:
-        return f"Python writes `{_OF_OTHER_LANGUAGES[name]}`"
+    if name.lower() in _OF_OTHER_LANGUAGES:
+        return f"Python writes `{_OF_OTHER_LANGUAGES[name.lower()]}`"
+    if name in names.local_names:
+        return "A first value is made when there is no local variable yet: write a constant"
     if name in STATE_COPIES:
         return "A mapping knows its local variables, not the state of the model"
     if name == _INPUT:
@@ -224,7 +234,9 @@ def _hint(name: str, names: PythonNames) -> str:
         return "Only rules of a skill's mapping know it"
     if name in names.parameters:
         return f"Add a local variable with `action_parameter: {name}`"
-    return ""
+    if name in names.enum_values:
+        return f"A value of {names.enum_values[name]} is a text here: write `'{name}'`"
+    return "It is a module of Python: import it" if name in sys.stdlib_module_names else ""
 
 
 def _local_variables(names: PythonNames) -> str:

@@ -11,7 +11,7 @@ from aos_protocol.diagnostics import Mend
 from aos_protocol.documents import Snippet
 
 _CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
-_LINE = re.compile(r"(?<=on line )\d+")
+_LINE = re.compile(r"(?<=(?:on|at) line )\d+")
 _TEXT = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"|#.*")
 
 
@@ -33,6 +33,8 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(_TEXT.sub("", code)) else ""
         if mode == "eval" and (error.text or "")[(error.offset or end) - 1 :].startswith("= "):
             hint = hint or "To compare, write `==`"
+        if "=>" in _TEXT.sub("", code):
+            hint = "Python writes `>=`"
         message = _LINE.sub(lambda n: str(snippet.locate(int(n[0]) - is_long, 1).line), error.msg)
         findings.error("AOS121", f"this is not Python: {message}", span, hint)
     except (ValueError, RecursionError, MemoryError) as error:
