@@ -1,12 +1,12 @@
 """A mission through the real middleware and a real engine: what its runs tell, and low-level values."""
 
+import asyncio
 import math
-import sys
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 import pytest_asyncio
 from models import built_text, engine_of
@@ -14,6 +14,7 @@ from processes import HANG_S
 from scripted_models import text_project
 from starting import until_present
 
+from aos_middleware.service import serve
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
 from aos_protocol.keys import Keys, Serving
@@ -33,7 +34,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.bus.bus import Bus
 from aos_runtime.parties.reported_state import state_when
-from aos_runtime.processes.children import Child
+from aos_runtime.processes.lifecycle import serve_on_bus
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.loop import Mission
@@ -139,7 +140,7 @@ RUNS: tuple[dict[str, Any], ...] = (
 
 
 class Robot(QuietPorts):
-    """A middleware process, and an adapter that answers from `RUNS`; the ports of a mission."""
+    """A middleware, and an adapter that answers from `RUNS`; the ports of a mission."""
 
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self._bus = bus
@@ -175,17 +176,6 @@ class Robot(QuietPorts):
         )
 
 
-async def start_middleware(bus: Bus, keys: Keys, endpoint: str, run_dir: Path) -> Child:
-    """A middleware process that can be asked."""
-    settings = Settings(
-        robot=keys.robot, service="middleware", endpoint=endpoint, run_dir=str(run_dir), project="stock"
-    )
-    path = run_dir / "middleware.json"
-    path.write_bytes(msgspec.json.encode(settings))
-    async with until_present(bus, keys.live("middleware")):
-        return await Child.start([sys.executable, "-m", "aos_middleware", str(path)])
-
-
 @pytest_asyncio.fixture
 async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
     project: Project = text_project(STOCK)
@@ -197,12 +187,18 @@ async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path)
     await other.answer(keys.project, ProjectQuery, answer)
     await other.answer(keys.call("/count"), SkillCall, robot.run_skill)
     await other.announce(keys.serve(Serving("counter", "1", other.instance, "/count")))
-    middleware = await start_middleware(bus, keys, endpoint, tmp_path)
+    settings = Settings(
+        robot=keys.robot, service="middleware", endpoint=endpoint, run_dir=str(tmp_path), project="stock"
+    )
+    async with until_present(bus, keys.live("middleware")):
+        middleware = asyncio.create_task(serve_on_bus(settings, serve))
     try:
         await robot.await_mappings()
         yield robot
     finally:
-        await middleware.stop(5.0)
+        middleware.cancel()
+        with suppress(asyncio.CancelledError):
+            await middleware
 
 
 @pytest_asyncio.fixture
