@@ -130,3 +130,14 @@ def test_a_first_value_that_takes_a_local_variable_is_told_what_to_write():
     topic = "local_variable: far\ntopic: /far\ntype: bool\ninitial_value: steps > 1\ncode:\nreturn far\n"
     (only,) = found(mapping=f"{MAPPING.replace('rule: True', 'rule: far')}\n{topic}")
     assert only.hint == "A first value is made when there is no local variable yet: write a constant"
+
+
+def test_a_field_of_a_whole_compound_is_taken_by_brackets():
+    (only,) = found(
+        environment=ENVIRONMENT.replace("action_parameter: int near", "action_parameter: Cell near").replace(
+            "state.near = 1", "state.near.x = 1"
+        ),
+        skill=SKILL.replace("int steps", "Cell steps").replace("+ steps;", "+ steps.x;"),
+        mapping=MAPPING.replace("code:\nsteps", "code:\nsteps.x"),
+    )
+    assert (only.code, only.hint) == ("AOS121", "Write `steps['x']`")

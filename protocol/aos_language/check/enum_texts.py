@@ -1,4 +1,4 @@
-"""Mappings see an enum's value as the text of its name: code that takes it for a number is told."""
+"""Mappings see an enum's value as the text of its name and a compound as a dict: other uses are told."""
 
 import ast
 from collections.abc import Iterator
@@ -27,19 +27,24 @@ def check_enum_texts(
     scope: Scope,
     findings: Findings,
 ) -> None:
-    """Reports AOS149 for comparisons with what no value is called, and for calculations."""
-    enums = {
-        variable.name: enum
-        for variable in mapping.local_variables
-        if (enum := _enum_of(variable, model, scope)) is not None
-    }
-    for snippet in snippets if enums else ():
+    """Reports AOS149 for comparisons with what no value is called and for calculations, and AOS121 for
+    fields of a compound that are taken as attributes."""
+    kinds = {variable.name: _type_of(variable, model, scope) for variable in mapping.local_variables}
+    enums = {name: scope.enums[kind] for name, kind in kinds.items() if kind in scope.enums}
+    compounds = {name: scope.compounds[kind] for name, kind in kinds.items() if kind in scope.compounds}
+    for snippet in snippets if enums or compounds else ():
         tree, lines_above = _tree(snippet)
         nodes = list(ast.walk(tree))
         own = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
         own |= {node.arg for node in nodes if isinstance(node, ast.arg)}
         known = {name: enum for name, enum in enums.items() if name not in own}
         for node in nodes:
+            if isinstance(node, ast.Attribute) and isinstance(value := node.value, ast.Name):
+                compound = None if value.id in own else compounds.get(value.id)
+                if compound is not None and node.attr in {field.name for field in compound.fields}:
+                    span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
+                    message = f"`{value.id}` is a dict of the fields of {compound.name}"
+                    findings.error("AOS121", message, span, f"Write `{value.id}['{node.attr}']`")
             for name, message, hint in _mistakes(node, known):
                 span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
                 findings.warning("AOS149", message, span, hint)
@@ -58,17 +63,17 @@ def _tree(snippet: Snippet) -> tuple[ast.AST, int]:
     return ast.Pass(), 0
 
 
-def _enum_of(variable: LocalVariable, model: SkillModel, scope: Scope) -> EnumType | None:
-    """The enum of the skill's parameter, or of a part of it, that a local variable takes."""
+def _type_of(variable: LocalVariable, model: SkillModel, scope: Scope) -> str:
+    """The type of the skill's parameter, or of a part of it, that a local variable takes."""
     if variable.source is not LocalSource.PARAMETER:
-        return None
+        return ""
     name, *fields = variable.parameter_path.split(".")
     kind = next((parameter.type for parameter in model.parameters if parameter.name == name), "")
     for field in fields:
         compound = scope.compounds.get(kind)
         types = {inner.name: inner.type for inner in compound.fields} if compound is not None else {}
         kind = types.get(field, "")
-    return scope.enums.get(kind)
+    return kind
 
 
 def _mistakes(node: ast.AST, enums: dict[str, EnumType]) -> Iterator[tuple[ast.Name, str, str]]:
