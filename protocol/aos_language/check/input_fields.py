@@ -20,7 +20,7 @@ def check_input_fields(code: Snippet, tree: ast.AST, findings: Findings) -> None
         if isinstance(node.value, ast.Name) or isinstance(text, str):
             owner = ast.unparse(node.value)
             span = code.locate(node.lineno, column_of(code, node.lineno, node.col_offset))
-            message = f"`{owner}` has its fields as attributes, and none in brackets"
+            message = f"the fields of `{owner}` are attributes"
             findings.error("AOS121", message, span, f"Write `{owner}.{name or 'field'}`")
 
 
