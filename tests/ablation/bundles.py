@@ -15,9 +15,9 @@ from tests.wide.gauges import gauges
 from tests.wide.leaving import LEAVING, LEAVING_SIZES
 from tests.wide.lock import lock
 from tests.wide.photo import photo
+from tests.wide.pipe import pipe
 from tests.wide.problems import PROBLEMS, SIZES
 from tests.wide.rescue import rescue
-from tests.wide.seek import SEEK, SEEK_SIZES
 from tests.wide.together import TOGETHER, TOGETHER_SIZES
 from tests.wide.towers import towers
 from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
@@ -25,8 +25,8 @@ from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 from .losses import error_of_mean
 from .mechanisms import BUNDLES, BundleRoute
 
-_SINGLE = {"rescue": rescue, "lock": lock, "towers": towers, "photo": photo, "gauges": gauges}
-_SINGLE_SIZES = {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8}
+_SINGLE = {"rescue": rescue, "lock": lock, "towers": towers, "photo": photo, "gauges": gauges, "pipe": pipe}
+_SINGLE_SIZES = {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8, "pipe": 40}
 
 _HERE = Path(__file__).parents[2] / "deploy" / "bundles" / "bench"
 
@@ -63,8 +63,8 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | SEEK | _SINGLE
-    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | SEEK_SIZES | _SINGLE_SIZES
+    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | _SINGLE
+    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | _SINGLE_SIZES
     if name not in problems:
         return None
     written = scratch / name

@@ -113,7 +113,7 @@ BUNDLES = (
     BundleRoute("tidy", 4000, 100, ("goal_conditions",)),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("rescue", 1000, 40, ("options", "tests_first")),
-    BundleRoute("spot", 1000, 80, ("seek",)),
+    BundleRoute("pipe", 1000, 80, ("seek",)),
     BundleRoute("photo", 1000, 80, ("priced_information", "wide_values", "first_state")),
     BundleRoute("shelf", 1000, 60, ("estimated_draws",)),
     BundleRoute(

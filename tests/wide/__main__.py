@@ -25,10 +25,10 @@ from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
 from .lock import Lock, lock, lock_rule
 from .missions import Played, played
 from .photo import Photo, photo, photo_rule
+from .pipe import Pipe, pipe, pipe_rule
 from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
-from .seek import SEEK, SEEK_RULES, SEEK_SIZES, SEEK_WORLDS
 from .sorting import Sorting, sorting, sorting_rule
 from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
 from .towers import Towers, towers, towers_rule
@@ -43,16 +43,16 @@ _SINGLE = {
     "photo": photo,
     "sorting": sorting,
     "gauges": gauges,
+    "pipe": pipe,
 }
-_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | SEEK | _SINGLE
+_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
 _SIZES = (
     SIZES
     | APART_SIZES
     | UPKEEP_SIZES
     | TOGETHER_SIZES
     | LEAVING_SIZES
-    | SEEK_SIZES
-    | {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "sorting": 10, "gauges": 8}
+    | {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "sorting": 10, "gauges": 8, "pipe": 40}
 )
 _RULES = (
     RULES
@@ -60,7 +60,6 @@ _RULES = (
     | UPKEEP_RULES
     | TOGETHER_RULES
     | LEAVING_RULES
-    | SEEK_RULES
     | {
         "rescue": rescue_rule,
         "lock": lock_rule,
@@ -68,13 +67,21 @@ _RULES = (
         "photo": photo_rule,
         "sorting": sorting_rule,
         "gauges": gauges_rule,
+        "pipe": pipe_rule,
     }
 )
 _WORLDS = (
     TOGETHER_WORLDS
     | LEAVING_WORLDS
-    | SEEK_WORLDS
-    | {"rescue": Rescue, "lock": Lock, "towers": Towers, "photo": Photo, "sorting": Sorting, "gauges": Gauges}
+    | {
+        "rescue": Rescue,
+        "lock": Lock,
+        "towers": Towers,
+        "photo": Photo,
+        "sorting": Sorting,
+        "gauges": Gauges,
+        "pipe": Pipe,
+    }
 )
 
 
