@@ -8,7 +8,7 @@ _MAP = re.compile(
     r"(?:const )?(?:class )?aos::Table<((?:[^<>]|<[^<>]*>)*?),\s*(aos::(?:Enum|Range)Axis<.*?>)\s*>"
 )
 _KEYS = re.compile(r"EnumAxis<(\w+), ?\d+>|RangeAxis<(-?\d+), ?(-?\d+), ?(-?\d+)>")
-_VALUE = re.compile(r"no match for `operator=`|no viable overloaded `=`")
+_VALUE = re.compile(r"no match for `operator=`")
 _INDEX = re.compile(r"no match for `operator\[\]`|no viable overloaded operator\[\]")
 
 

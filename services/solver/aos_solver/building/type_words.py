@@ -23,7 +23,10 @@ _ASSIGNED = re.compile(
 _PARAMETERS = re.compile(
     r"no matching function for call to `std::vector<std::tuple<(.*)> ?>::push_back\(std::tuple<(.*)>\)`"
 )
-_CALLED = re.compile(r"no match for call to `\((?:const )?(?:array of |vector<)")
+_ARRAY = r"(?:const )?(?:array of |vector<)"
+_CALLED = re.compile(rf"no match for call to `\({_ARRAY}|type `{_ARRAY}.*` does not provide a call operator")
+_NOT_ASSIGNED = "no viable overloaded `=`"
+"""Clang's words, without the types."""
 
 
 def in_words(text: str) -> tuple[str, str]:
@@ -35,6 +38,8 @@ def in_words(text: str) -> tuple[str, str]:
         plain = pattern.sub(word, plain)
     if _CALLED.match(plain) is not None:
         return "this is an array, and no function", "An element of it has square brackets: `[i]`"
+    if plain == _NOT_ASSIGNED:
+        return "this cannot be set to a value of that type", ""
     if (listed := _PARAMETERS.match(plain)) is not None:
         taken, given = listed[1].strip(), listed[2].strip()
         return (
