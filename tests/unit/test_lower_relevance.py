@@ -142,7 +142,7 @@ NOISE = "state__.level = state.level; if (AOS.Bernoulli(0.2)) __moduleResponse =
         (NOISE, [True]),
         ("__moduleResponseStr = to_string(int(AOS.SampleNormal(state.level, 2)));", [True]),
         (
-            "double noise = AOS.SampleNormal(0, 1); int n = int(noise); __moduleResponseStr += to_string(n);",
+            "double noise = AOS.SampleNormal(0, 1); int heard = int(noise); __moduleResponseStr += heard;",
             [True],
         ),
         ("if (AOS.Bernoulli(0.5)) __moduleResponse = AOSUtils::SampleDiscrete({0.5, 0.5});", [True, True]),

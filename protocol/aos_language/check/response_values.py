@@ -19,8 +19,10 @@ _NUMBER = re.compile(r"(?:const )?(?:bool|double|float|int|long|short|size_t|uns
 def check_response_values(
     given: tuple[str, ...], read: Iterable[tuple[Block, Cpp]], scope: Scope, findings: Findings
 ) -> None:
-    """Warns of numbers in the place of the responses that are `given` (AOS116), and reports those in that of
-    a text (AOS106)."""
+    """Warns of numbers in the place of the responses that are `given` or of a text (AOS116).
+
+    These are no errors: code that appends a letter by its number may mean it.
+    """
     for block, cpp in read:
         for mention in cpp.mentions:
             is_text = mention.path == ("__moduleResponseStr",)
@@ -35,10 +37,9 @@ def check_response_values(
                 if is_text and (type_name := "number" if is_number else _type_of(value, block, cpp, scope)):
                     message = f"__moduleResponseStr takes a text, and `{value}` is of the type {type_name}"
                     is_variable = not is_number and value not in scope.enum_values
-                    hint = f"Write `std::to_string({value})`, or a text in quotes"
-                    findings.error(
-                        "AOS106", message, span, hint if is_variable else f'Write it in quotes: `"{value}"`'
-                    )
+                    as_text = f"Write `std::to_string({value})`, or a text in quotes"
+                    hint = as_text if is_variable else f'Write it in quotes: `"{value}"`'
+                    findings.warning("AOS116", message, span, hint)
                 elif not is_text and is_number and given:
                     message = f"`{value}` is a number, and no name of a response"
                     findings.warning("AOS116", message, span, f"The responses are {quoted(given)}")
