@@ -148,13 +148,15 @@ def _compiler_errors(files: Mapping[str, bytes], draft: Project) -> tuple[Diagno
 
     from aos_deploy.places import cache_dir
     from aos_solver.building.project_build import build_project
+    from aos_solver.emission.lowering.lower import skills_looked_for
 
     try:
         asyncio.run(build_project(draft, cache_dir()))
     except AosError as error:
-        own = (found for found in error.diagnostics if found.code == "AOS201")
         # A skill that is left out for a mistake of its own has no parameters that code may look at.
-        return with_excerpts((found for found in own if "base operand of `->`" not in found.message), files)
+        absent = [f"{name}->" for name in skills_looked_for(draft)]
+        found = with_excerpts((found for found in error.diagnostics if found.code == "AOS201"), files)
+        return tuple(one for one in found if not any(parameter in one.excerpt for parameter in absent))
     return ()
 
 

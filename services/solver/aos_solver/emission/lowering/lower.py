@@ -153,7 +153,7 @@ class _Lowering:
             draws_defaults=any(True for _ in drawing_defaults(environment)),
             initial_belief=initial_belief,
             extrinsic_changes=extrinsic_changes,
-            absent_skills=_absent_skills(project),
+            absent_skills=skills_looked_for(project),
             state_heuristic=state_heuristic,
             print_state=print_state,
             special_states=special_states,
@@ -287,7 +287,7 @@ class _Lowering:
         return msgspec.structs.replace(lowered, locals=_locals(mapping, lowered))
 
 
-def _absent_skills(project: Project) -> tuple[str, ...]:
+def skills_looked_for(project: Project) -> tuple[str, ...]:
     """The skills that the extrinsic changes look for, and that the project does not have (yet)."""
     read = list(snippets_of(project.environment.extrinsic_changes))
     known = {"NULL", "nullptr", *STATES, *(skill.name for skill in project.skills)}
