@@ -8,20 +8,23 @@ from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_protocol.documents import Assignment, Environment, Snippet
 
 _COMPARED = re.compile(r"\s*[!=]=\s*(?:NULL|nullptr)\b")
+_PARAMETER = re.compile(r"\s*->")
 _COMPARED_BEFORE = re.compile(r"(?:NULL|nullptr)\s*[!=]=\s*$")
 
 
 def absent_skills(cpp: Cpp, known: Collection[str]) -> frozenset[str]:
-    """The names that extrinsic code compares with NULL, as it does with skills, and that are not `known`."""
+    """The names that extrinsic code takes for skills, and that are not `known`: it compares them with NULL, or
+    reads a parameter of them."""
     own = {declaration.name for declaration in cpp.declarations}
     return frozenset(
         mention.path[0]
         for mention in cpp.mentions
-        if len(mention.path) == 1
-        and mention.path[0] not in own
+        if mention.path[0] not in own
         and mention.path[0] not in known
         and (
-            _COMPARED.match(cpp.code, mention.extent.end)
+            _PARAMETER.match(cpp.code, mention.root.end)
+            if len(mention.path) > 1
+            else _COMPARED.match(cpp.code, mention.extent.end)
             or _COMPARED_BEFORE.search(cpp.code, 0, mention.extent.start)
         )
     )

@@ -28,6 +28,8 @@ extrinsic_code:
 state_.seen = (fly != NULL) + 2 * (rest != NULL) + 4 * (never != NULL);
 if (turn != NULL) state_.seen += 10 * turn->by;
 if (lean) state_.seen += 100 * lean->by;
+if (dive && dive->to.depth_m > 2 || NULL != dive && turn) state_.seen = rows[dive->row] + dive->to.depth_m;
+else state_.seen += dive == NULL ? 0 : dive->to.depth_m;
 __reward = fly != NULL ? -1 : 0;
 """,
     "fly.sd": PARAMETERLESS,

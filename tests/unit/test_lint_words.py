@@ -239,12 +239,14 @@ def test_a_skill_that_was_left_out_counts_as_never_chosen():
     assert found(environment=ENVIRONMENT + misspelt)[0].hint == "Did you mean `walk`?"
 
 
-def test_parameters_of_a_skill_that_was_left_out_are_an_error():
+def test_parameters_of_a_skill_that_was_left_out_are_an_error_where_they_may_be_read():
     looking = EXTRINSIC.replace("AOS.Bernoulli(0.5)", "pour->cups > 1")
-    assert [finding.severity for finding in found(environment=ENVIRONMENT + looking)] == [
-        Severity.WARNING,
+    assert [finding.severity for finding in found(environment=ENVIRONMENT + looking)] == [Severity.WARNING]
+    (read,) = found(environment=ENVIRONMENT + "\nextrinsic_code:\nstate_.second.x += pour->cups;\n")
+    assert (read.severity, read.hint) == (
         Severity.ERROR,
-    ]
+        "Read it where `pour != NULL` holds: `if (pour != NULL) ...`",
+    )
     unread = {"hall.ef": ENVIRONMENT + looking, "walk.sd": SKILL, "walk.am": MAPPING, "pour.sd": ""}
     assert [finding.code for finding in load_files(encoded(unread)).diagnostics] == ["AOS104"]
     pointer = "\nextrinsic_code:\nCell* cell = NULL;\nif (cell == NULL) state_.second.x = 1;\n"

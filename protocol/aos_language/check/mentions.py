@@ -6,6 +6,7 @@ from collections.abc import Iterable, Set
 from aos_language.check.blocks import Block, titles_with
 from aos_language.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_language.check.subscripts import subscripts_of
+from aos_language.cpp.absent import without_null
 from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.document_code import absent_skills
@@ -32,6 +33,7 @@ class MentionCheck:
         self._findings = findings
         self._locals = {declaration.name for declaration in cpp.declarations}
         self._absent = self._absent_skills()
+        self._always_run = without_null(cpp.code, self._absent)
         self._reported_absent: set[str] = set()
 
     def _absent_skills(self) -> frozenset[str]:
@@ -78,11 +80,15 @@ class MentionCheck:
         self._findings.error("AOS145", message, self._span(mention.root), hint)
 
     def _check_absent_skill(self, mention: Mention, root: str) -> None:
-        """A skill that is not there is never chosen; its parameters nobody knows."""
-        span, skills = self._span(mention.root), self._scope.skills
-        if len(mention.path) > 1:
-            message = f"there is no skill `{root}` that has parameters"
-            hint = "If it was left out, leave out what looks at its parameters too"
+        """A skill that is not there is never chosen. Its parameters nobody knows, and code that would read
+        them whatever was chosen is an error."""
+        span, skills, place = self._span(mention.root), self._scope.skills, mention.root
+        runs = self._always_run[place.start : place.end] == root
+        if runs and len(mention.path) > 1:
+            message = (
+                f"a parameter of `{root}` is read where it may not be chosen, and there is no such skill"
+            )
+            hint = f"Read it where `{root} != NULL` holds: `if ({root} != NULL) ...`"
             self._findings.unknown(root, skills, message, span, hint)
         elif root not in self._reported_absent:
             self._reported_absent.add(root)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 
 import msgspec
 
+from aos_language.cpp.absent import without_null
 from aos_language.cpp.flow import STATES
 from aos_language.cpp.snippets import read_cpp_expression
 from aos_language.document_code import absent_skills, shared_code_of, snippets_of
@@ -16,7 +17,15 @@ from aos_language.local_types import LocalType, local_type, reported_variables
 from aos_language.mission_parameters import parameter_leaves
 from aos_language.observed import reported_numbers
 from aos_protocol.diagnostics import Diagnostic
-from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill, Snippet
+from aos_protocol.documents import (
+    AbstractionMapping,
+    Assignment,
+    Environment,
+    Iteration,
+    Project,
+    Skill,
+    Snippet,
+)
 from aos_protocol.documents import Constraint as DocumentedConstraint
 from aos_solver.emission.lowering.averages import averaged_draws
 from aos_solver.emission.lowering.code import (
@@ -88,6 +97,8 @@ class _Lowering:
     """One project on its way; the order of the calls is the order of the pieces' numbers."""
 
     def __init__(self, project: Project, findings: Findings) -> None:
+        self._absent_skills = skills_looked_for(project)
+        project = _without_absent(project, self._absent_skills)
         environment = project.environment
         self._project = project
         self._findings = findings
@@ -153,7 +164,7 @@ class _Lowering:
             draws_defaults=any(True for _ in drawing_defaults(environment)),
             initial_belief=initial_belief,
             extrinsic_changes=extrinsic_changes,
-            absent_skills=skills_looked_for(project),
+            absent_skills=self._absent_skills,
             state_heuristic=state_heuristic,
             print_state=print_state,
             special_states=special_states,
@@ -296,6 +307,28 @@ def skills_looked_for(project: Project) -> tuple[str, ...]:
         known |= {loop.item for loop in (*assignment.over_previous, *assignment.over_next)}
         known |= {assignment.temporary.name} if assignment.temporary is not None else set()
     return tuple(sorted({name for _, cpp in read for name in absent_skills(cpp, known)}))
+
+
+def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
+    """The project without the code that runs for absent skills only, whose parameters nobody knows."""
+
+    def cut(snippet: Snippet | None) -> Snippet | None:
+        return snippet and replace(snippet, code=without_null(snippet.code, absent))
+
+    def cut_loops(loops: tuple[Iteration, ...]) -> tuple[Iteration, ...]:
+        return tuple(replace(loop, condition=cut(loop.condition), body=cut(loop.body)) for loop in loops)
+
+    replace = msgspec.structs.replace
+    changes = tuple(
+        replace(
+            each,
+            over_previous=cut_loops(each.over_previous),
+            over_next=cut_loops(each.over_next),
+            code=cut(each.code),
+        )
+        for each in project.environment.extrinsic_changes
+    )
+    return replace(project, environment=replace(project.environment, extrinsic_changes=changes))
 
 
 def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:

@@ -1,0 +1,85 @@
+"""Code as it is where some pointers are null: without what only runs where they are not."""
+
+import re
+from collections.abc import Collection, Iterator
+
+import tree_sitter
+
+from aos_language.cpp.nodes import below, child_of, operator_of, text_of
+from aos_language.cpp.tree import tree_of
+
+_BEFORE = "void f() {"
+_NULLS = ("NULL", "nullptr", "0")
+_EFFECTS = ("call_expression", "assignment_expression", "update_expression")
+
+
+def without_null(code: str, null: Collection[str]) -> str:
+    """Blanks what never runs where the names `null` are null pointers; all places stay."""
+    if not any(name in code for name in null):
+        return code
+    data = (_BEFORE + code + "\n}").encode("utf-8", "replace")
+    waiting, cuts = [tree_of(data.decode())], list[tuple[int, int, str]]()
+    while waiting:
+        node = waiting.pop()
+        dead = tuple(_never_run(node, null))
+        cuts += dead
+        waiting += [
+            part
+            for part in node.children
+            if not any(start <= part.start_byte and part.end_byte <= end for start, end, _ in dead)
+        ]
+    for start, end, instead in sorted(cuts, reverse=True):
+        blank = re.sub(r"[^\n]", " ", data[start:end].decode())
+        data = data[:start] + (instead + blank[len(instead) :]).encode() + data[end:]
+    return data.decode()[len(_BEFORE) : -2]
+
+
+def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[int, int, str]]:
+    """The bytes below a node that never run, with what stands in their place."""
+    match node.type:
+        case "if_statement":
+            truth = _truth(child_of(node, "condition"), null)
+            body, otherwise = child_of(node, "consequence"), node.child_by_field_name("alternative")
+            if truth is False:
+                yield body.start_byte, body.end_byte, ";"
+            elif truth and otherwise is not None:
+                yield otherwise.start_byte, otherwise.end_byte, ""
+        case "conditional_expression":
+            condition, then = child_of(node, "condition"), child_of(node, "consequence")
+            otherwise, truth = child_of(node, "alternative"), _truth(condition, null)
+            if truth is None or any(part.type in _EFFECTS for part in below(condition)):
+                return
+            if truth:
+                yield condition.start_byte, then.start_byte, ""
+                yield then.end_byte, otherwise.end_byte, ""
+            else:
+                yield condition.start_byte, otherwise.start_byte, ""
+        case "binary_expression":
+            right = child_of(node, "right")
+            settled = {"&&": False, "||": True}.get(operator_of(node))
+            if settled is not None and _truth(child_of(node, "left"), null) is settled:
+                yield right.start_byte, right.end_byte, "0"
+
+
+def _truth(node: tree_sitter.Node, null: Collection[str]) -> bool | None:
+    """Whether a condition holds; None where it depends on more than the null pointers."""
+    match node.type:
+        case "condition_clause" | "parenthesized_expression" if len(node.named_children) == 1:
+            return _truth(node.named_children[0], null)
+        case "identifier" if text_of(node) in null:
+            return False
+        case "unary_expression" if operator_of(node) == "!":
+            inner = _truth(child_of(node, "argument"), null)
+            return None if inner is None else not inner
+        case "binary_expression":
+            left, right = child_of(node, "left"), child_of(node, "right")
+            operator = operator_of(node)
+            if operator in ("==", "!="):
+                sides = {text_of(left), text_of(right)}
+                is_known = len(sides & set(_NULLS)) == 1 and len(sides & set(null)) == 1
+                return operator == "==" if is_known else None
+            settled = {"&&": False, "||": True}.get(operator)
+            if settled is not None:
+                truths = {_truth(left, null), _truth(right, null)}
+                return settled if settled in truths else None if None in truths else not settled
+    return None
