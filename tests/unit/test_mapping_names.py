@@ -105,7 +105,7 @@ def finding_texts(**texts: str) -> list[str]:
         {"code": "from os.path import *\nanswer = join('a', __input.answer)"},
         {"code": "match __input.answer:\n    case [one, *rest]:\n        answer = (one, rest)"},
         {"initial": "home.x if parameters else Place"},
-        {"topic": "return heard if __input.text is None else answer"},
+        {"topic": "return heard if __input.text is None else item"},
     ],
 )  # fmt: skip
 def test_what_python_allows_is_not_told(texts):

@@ -1,9 +1,14 @@
 """Slips that C++ and Python take without a word, or tell only when a robot runs."""
 
+from pathlib import Path
+
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
 
+from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
+
+KETTLE = Path(__file__).parents[2] / "docs/examples/kettle-json"
 
 TEXT = MAPPING.replace("response: walked\nresponse_rule: True\n", "response_local_variable: steps\n")
 SIDES = f"{ENVIRONMENT}\ndefine_type: Side\nenum_members: Left, Right\nstate_variable: Side side\n"
@@ -141,3 +146,68 @@ def test_a_field_of_a_whole_compound_is_taken_by_brackets():
         mapping=MAPPING.replace("code:\nsteps", "code:\nsteps.x"),
     )
     assert (only.code, only.hint) == ("AOS121", "Write `steps['x']`")
+
+
+RESULT = "\nlocal_variable: {0}\ntype: float\nfrom_ros_service_response: true\ncode:\n{0} = {1}\n"
+NUMBERS = RESULT.format("a", "__input.a") + RESULT.format("b", "__input.b")
+TWO = SKILL.replace("= walked;", "= AOS.Bernoulli(0.5) ? walked : stuck;")
+
+
+def ruled(first: str, second: str) -> str:
+    rules = f"response: walked\nresponse_rule: {first}\nresponse: stuck\nresponse_rule: {second}\n"
+    return MAPPING.replace("response: walked\nresponse_rule: True\n", rules) + NUMBERS
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        ("a > 4", "a < 4 and b", ""),
+        ("a > 4", "a <= 4", ""),
+        ("0 < a < 4", "a >= 4", ""),
+        ("a > 4", "a < 4", "AOS118 no rule holds where a is 4: what comes back is then unknown"),
+        ("0 < a < 4", "a >= 5", "AOS118 no rule holds where a is 4: what comes back is then unknown"),
+        ("a > 4 & b", "True", "AOS149 `&` binds before the comparison: this compares with `4 & b`"),
+        ("a & 4 == 4 or (a > 4) & b or a == (4 | b)", "True", ""),
+    ],
+)
+def test_rules_that_leave_a_number_out_or_compare_with_bits_are_told(first, second, told):
+    mapping = ruled(first, second)
+    found_ = [text for text in finding_texts(skill=TWO, mapping=mapping) if "AOS133" not in text]
+    assert [text.partition(" ")[2].split(". ")[0] for text in found_] == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
+    ("mapping", "place"),
+    [
+        (ruled("a > b", "True").replace("__input.a", "1 + b"), (20, 9)),
+        (ruled("a > b", "True").replace("code:\nsteps", "code:\nsteps + a"), (11, 9)),
+        (ruled("a > b", "True").replace("__input.a", "1 if b is None else b"), None),
+    ],
+)
+def test_a_result_that_is_read_before_it_is_set_is_told(mapping, place):
+    told = found(skill=TWO, mapping=mapping)
+    assert [(one.span.line, one.span.column) for one in told] == [place] * bool(place)
+    assert all("is `None` here: it is set later" in one.message for one in told)
+
+
+def test_keys_that_no_value_of_an_enum_has_and_values_without_a_key_are_told():
+    skill = SKILL.replace("int steps", "Side steps").replace("+ steps", "+ (steps == Left)")
+    environment = SIDES.replace("action_parameter: int near\ncode:\nstate.near = 1;\n", "")
+    for table, told in (
+        ("{'Left': 1, 'Rihgt': 2}", "no value of Side is called 'Rihgt'. Did you mean 'Right'?"),
+        ("{'Left': 1}", "there is no key for `Right` of Side, with which this fails"),
+        ("{'Left': 1, 'Right': 2}", ""),
+    ):
+        mapping = MAPPING.replace("code:\nsteps", f"code:\n{table}[steps]")
+        texts = finding_texts(environment=environment, skill=skill, mapping=mapping)
+        assert [told in text for text in texts if "AOS149" in text] == [True] * bool(told)
+
+
+def test_a_mistyped_key_that_others_build_on_is_one_mistake():
+    names = ("LocalVariablesInitialization", "GlobalVariablesDeclaration", "EnumValues", "ResponseRules")
+    for name in (*names, "NextStateAssignments", "ModuleResponse", "GlobalVariableTypes"):
+        files = {path.name: path.read_bytes() for path in KETTLE.iterdir() if path.is_file()}
+        (changed,) = [file for file, text in files.items() if text.count(f'"{name}"'.encode()) and file]
+        files[changed] = files[changed].replace(f'"{name}"'.encode(), f'"{name}x"'.encode(), 1)
+        (only,) = load_files(files).diagnostics
+        assert (only.code, only.hint, only.span.file) == ("AOS102", f"Did you mean `{name}`?", changed)

@@ -32,6 +32,8 @@ def check_enum_texts(
     kinds = {variable.name: _type_of(variable, model, scope) for variable in mapping.local_variables}
     enums = {name: scope.enums[kind] for name, kind in kinds.items() if kind in scope.enums}
     compounds = {name: scope.compounds[kind] for name, kind in kinds.items() if kind in scope.compounds}
+    # A skill may take some of the values alone.
+    takes_all = not model.possible_parameters and not any(v.is_constant for v in scope.variables.values())
     for snippet in snippets if enums or compounds else ():
         tree, lines_above = _tree(snippet)
         nodes = list(ast.walk(tree))
@@ -45,7 +47,7 @@ def check_enum_texts(
                     span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
                     message = f"`{value.id}` is a dict of the fields of {compound.name}"
                     findings.error("AOS121", message, span, f"Write `{value.id}['{node.attr}']`")
-            for name, message, hint in _mistakes(node, known):
+            for name, message, hint in _mistakes(node, known, takes_all):
                 span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
                 findings.warning("AOS149", message, span, hint)
 
@@ -76,7 +78,9 @@ def _type_of(variable: LocalVariable, model: SkillModel, scope: Scope) -> str:
     return kind
 
 
-def _mistakes(node: ast.AST, enums: dict[str, EnumType]) -> Iterator[tuple[ast.Name, str, str]]:
+def _mistakes(
+    node: ast.AST, enums: dict[str, EnumType], takes_all: bool
+) -> Iterator[tuple[ast.expr, str, str]]:
     """The name, the message and the hint of each mistake in one node of the syntax tree."""
 
     def name_of(part: ast.AST) -> ast.Name | None:
@@ -93,13 +97,36 @@ def _mistakes(node: ast.AST, enums: dict[str, EnumType]) -> Iterator[tuple[ast.N
                 yield name, *_no_number(name.id, enums[name.id])
     elif (
         isinstance(node, ast.Subscript)
+        and isinstance(node.value, ast.Dict)
+        and (name := name_of(node.slice)) is not None
+    ):
+        yield from _looked_up(name, node.value, enums[name.id], takes_all)
+    elif (
+        isinstance(node, ast.Subscript)
         and isinstance(node.value, (ast.List, ast.Tuple))
         and (name := name_of(node.slice)) is not None
     ):
         yield name, *_no_number(name.id, enums[name.id])
 
 
-def _compared(name: ast.Name, other: ast.AST, enum: EnumType) -> Iterator[tuple[ast.Name, str, str]]:
+def _looked_up(
+    name: ast.Name, table: ast.Dict, enum: EnumType, takes_all: bool
+) -> Iterator[tuple[ast.expr, str, str]]:
+    """The keys of a dict that are no value of the enum; the values without a key, where all are written."""
+    keys = [key.value for key in table.keys if isinstance(key, ast.Constant)]
+    for key in table.keys:
+        if isinstance(key, ast.Constant) and key.value not in enum.values:
+            close = nearest(str(key.value), enum.values)
+            hint = f"Did you mean '{close}'?" if close else f"There are {quoted(enum.values)}"
+            yield key, f"no value of {enum.name} is called {key.value!r}", hint
+            return
+    missing = [value for value in enum.values if value not in keys]
+    if takes_all and missing and len(keys) == len(table.keys):
+        message = f"there is no key for {quoted(missing)} of {enum.name}, with which this fails"
+        yield name, message, "Add it, or write `.get(...)` with a value for what is missing"
+
+
+def _compared(name: ast.Name, other: ast.AST, enum: EnumType) -> Iterator[tuple[ast.expr, str, str]]:
     value = other.value if isinstance(other, ast.Constant) else None
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         yield name, *_no_number(name.id, enum, value)

@@ -15,6 +15,8 @@ from aos_language.check.python_names import (
     top_level_names,
 )
 from aos_language.check.python_parsed import parsed
+from aos_language.check.result_order import check_result_order
+from aos_language.check.rule_gaps import check_rule_gaps
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
@@ -49,6 +51,8 @@ def check_mapping(
     severity = Severity.ERROR if is_whole else Severity.WARNING
     _check_rules(mapping, model, names, scope, findings, severity)
     _check_order(mapping.rules, findings)
+    check_rule_gaps(mapping, findings)
+    check_result_order(mapping, findings)
     # Documents that are only planned with may have a request from elsewhere and nothing that it could name.
     of_request = severity if mapping.local_variables else Severity.WARNING
     names_of_fields: set[str] = set()

@@ -41,6 +41,7 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
     else:
         _check_lone_commas(snippet, tree, findings)
+        _check_bit_operators(snippet, tree, findings)
         return tree
     return None
 
@@ -63,3 +64,23 @@ def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> N
                 findings.warning(
                     "AOS149", message, span, "Leave it out", Mend(span, 1, "") if comma >= 0 else None
                 )
+
+
+def _check_bit_operators(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:
+    """Warns of `a > 4 & b`, which compares `a` with `4 & b`."""
+    lines = snippet.code.split("\n")
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Compare):
+            continue
+        for place, part in enumerate(node.comparators):
+            match part:
+                case ast.BinOp(op=ast.BitAnd() | ast.BitOr() as op, left=left):
+                    line, column = part.lineno, column_of(snippet, part.lineno, part.col_offset)
+                    is_bare = not lines[line - 1][: column - 1].rstrip().endswith("(")
+                    is_middle = place + 1 < len(node.comparators)
+                    if is_bare and (is_middle or isinstance(left, ast.Constant | ast.BinOp)):
+                        sign, word = ("&", "and") if isinstance(op, ast.BitAnd) else ("|", "or")
+                        message = (
+                            f"`{sign}` binds before the comparison: this compares with `{ast.unparse(part)}`"
+                        )
+                        findings.warning("AOS149", message, snippet.locate(line, column), f"Write `{word}`")

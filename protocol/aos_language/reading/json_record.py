@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
+from difflib import get_close_matches
 from functools import partial
 from typing import TypeVar
 
@@ -26,6 +28,21 @@ from aos_protocol.documents import Snippet
 
 T = TypeVar("T")
 
+_NEARLY = 0.85
+"""A share of a key, from 0 to 1: with so much of one that others build on it is that one, mistyped."""
+_BUILT_ON = frozenset(
+    re.findall(
+        r"\w+",
+        """AssignServiceFieldCode AssignmentCode Constants Default DefaultCode Discount DynamicModel EnumName
+    EnumValues EnvironmentGeneral FromGlobalVariable FromROSServiceResponse FromStringLocalVariable
+    GlobalVariableModuleParameters GlobalVariableTypes GlobalVariablesDeclaration Horizon Import InitCode
+    InputLocalVariable IsActionParameterValue IsGoalState ItemName LocalVariableName LocalVariableTypes
+    LocalVariablesInitialization ModuleActivation ModuleResponse Name NextStateAssignments Project Response
+    ResponseRules Reward RosAction RosService RosTopicPath ServiceFieldName ServiceName ServiceParameters
+    ServicePath SpecialStates StateConditionCode StateFunctionCode TempVar Type TypeName Value VarName
+    VariableType Variables""",
+    )
+)
 _BOOLEANS = {"true": True, "false": False}
 
 
@@ -53,7 +70,7 @@ class Record:
 
     def has(self, key: str) -> bool:
         """Returns whether the key is there, whatever its value."""
-        self._known[key] = None
+        self._ask(key)
         return key in self._members
 
     def is_text(self, key: str) -> bool:
@@ -212,9 +229,22 @@ class Record:
 
     # --- common ---
 
+    def _ask(self, key: str) -> None:
+        """Takes a key as known. One that others build on is read where it is mistyped too: that is one
+        mistake."""
+        self._known[key] = None
+        if key in self._members or key not in _BUILT_ON:
+            return
+        unknown = [name for name in self._members if name not in self._known and name not in _BUILT_ON]
+        for name in get_close_matches(key, unknown, 1, _NEARLY):
+            self._members[key] = self._members.pop(name)
+            message = f'unknown key "{name}" in {self.what}'
+            span = self.source.span(self._members[key][0].start + 1)
+            self.findings.unknown(name, (key,), message, span, code="AOS102")
+
     def _value(self, key: str) -> JsonValue | None:
         """The value of a key; null counts as absent."""
-        self._known[key] = None
+        self._ask(key)
         member = self._members.get(key)
         if member is None or (isinstance(member[1], JsonConstant) and member[1].value is None):
             return None
