@@ -18,7 +18,6 @@ from tests.wide.photo import photo
 from tests.wide.pipe import pipe
 from tests.wide.problems import PROBLEMS, SIZES
 from tests.wide.rescue import rescue
-from tests.wide.together import TOGETHER, TOGETHER_SIZES
 from tests.wide.towers import towers
 from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
 
@@ -63,8 +62,8 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | TOGETHER | LEAVING | _SINGLE
-    sizes = SIZES | UPKEEP_SIZES | TOGETHER_SIZES | LEAVING_SIZES | _SINGLE_SIZES
+    problems = PROBLEMS | UPKEEP | LEAVING | _SINGLE
+    sizes = SIZES | UPKEEP_SIZES | LEAVING_SIZES | _SINGLE_SIZES
     if name not in problems:
         return None
     written = scratch / name

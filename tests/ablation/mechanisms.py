@@ -110,7 +110,6 @@ BUNDLES = (
     BundleRoute("clutter", 1000, 60, ("options", "learned_values")),
     BundleRoute("lock", 4000, 80, ("goal_conditions",)),
     BundleRoute("towers", 4000, 80, ("goal_conditions", "whole_lists", "retries", "kept_ways")),
-    BundleRoute("tidy", 4000, 100, ("goal_conditions",)),
     BundleRoute("open_field", 1000, 60, ("options", "learned_values", "observation_cells")),
     BundleRoute("rescue", 1000, 40, ("options", "tests_first")),
     BundleRoute("pipe", 1000, 80, ("seek",)),

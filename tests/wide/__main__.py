@@ -18,8 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .apart import APART, APART_SIZES
-from .apart_rules import APART_RULES
+from .delivery import delivery, delivery_rule
 from .gauges import Gauges, gauges, gauges_rule
 from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
 from .lock import Lock, lock, lock_rule
@@ -30,13 +29,13 @@ from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
 from .sorting import Sorting, sorting, sorting_rule
-from .together import TOGETHER, TOGETHER_RULES, TOGETHER_SIZES, TOGETHER_WORLDS
 from .towers import Towers, towers, towers_rule
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 
 _STEPS = 120  # at most, in a mission
 
 _SINGLE = {
+    "delivery": delivery,
     "rescue": rescue,
     "lock": lock,
     "towers": towers,
@@ -45,22 +44,28 @@ _SINGLE = {
     "gauges": gauges,
     "pipe": pipe,
 }
-_BUNDLES = PROBLEMS | APART | UPKEEP | TOGETHER | LEAVING | _SINGLE
+_BUNDLES = PROBLEMS | UPKEEP | LEAVING | _SINGLE
 _SIZES = (
     SIZES
-    | APART_SIZES
     | UPKEEP_SIZES
-    | TOGETHER_SIZES
     | LEAVING_SIZES
-    | {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "sorting": 10, "gauges": 8, "pipe": 40}
+    | {
+        "delivery": 6,
+        "rescue": 3,
+        "lock": 5,
+        "towers": 10,
+        "photo": 12,
+        "sorting": 10,
+        "gauges": 8,
+        "pipe": 40,
+    }
 )
 _RULES = (
     RULES
-    | APART_RULES
     | UPKEEP_RULES
-    | TOGETHER_RULES
     | LEAVING_RULES
     | {
+        "delivery": delivery_rule,
         "rescue": rescue_rule,
         "lock": lock_rule,
         "towers": towers_rule,
@@ -70,19 +75,15 @@ _RULES = (
         "pipe": pipe_rule,
     }
 )
-_WORLDS = (
-    TOGETHER_WORLDS
-    | LEAVING_WORLDS
-    | {
-        "rescue": Rescue,
-        "lock": Lock,
-        "towers": Towers,
-        "photo": Photo,
-        "sorting": Sorting,
-        "gauges": Gauges,
-        "pipe": Pipe,
-    }
-)
+_WORLDS = LEAVING_WORLDS | {
+    "rescue": Rescue,
+    "lock": Lock,
+    "towers": Towers,
+    "photo": Photo,
+    "sorting": Sorting,
+    "gauges": Gauges,
+    "pipe": Pipe,
+}
 
 
 def write(folder: Path, problem: str, size: int) -> Path:
