@@ -62,7 +62,7 @@ def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[
 
 
 def _truth(node: tree_sitter.Node, null: Collection[str]) -> bool | None:
-    """Whether a condition holds; None where it depends on more than the null pointers."""
+    """Returns whether a condition holds; None where it depends on more than the null pointers."""
     match node.type:
         case "condition_clause" | "parenthesized_expression" if len(node.named_children) == 1:
             return _truth(node.named_children[0], null)
