@@ -14,6 +14,7 @@ import argparse
 import asyncio
 import random
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,7 @@ from .rules import RULES
 from .sorting import Sorting, sorting, sorting_rule
 from .towers import Towers, towers, towers_rule
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
+from .world import World
 
 _STEPS = 120  # at most, in a mission
 
@@ -75,7 +77,7 @@ _RULES = (
         "pipe": pipe_rule,
     }
 )
-_WORLDS = LEAVING_WORLDS | {
+_WORLDS: dict[str, Callable[[int, random.Random], World]] = LEAVING_WORLDS | {
     "rescue": Rescue,
     "lock": Lock,
     "towers": Towers,
