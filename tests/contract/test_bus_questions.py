@@ -1,6 +1,7 @@
 """Questions on the bus, against a real router: answers, and each way they can fail."""
 
 import asyncio
+import queue
 import sys
 from collections.abc import AsyncIterator, Awaitable
 from contextlib import asynccontextmanager, suppress
@@ -11,6 +12,7 @@ import zenoh
 from processes import HANG_S
 from zenoh.handlers import Callback
 
+from aos_protocol.access import ROUND_TRIP
 from aos_protocol.codec import encode
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import (
@@ -169,6 +171,33 @@ async def test_a_question_is_lost_once_its_server_has_left(endpoint: str, bus: B
             with await holder.held.get():
                 await holder.leave(other)
                 assert isinstance(await asked, NobodyAnswersError)
+
+
+async def test_a_question_is_lost_whose_server_left_before_it_was_watched_and_another_came(
+    endpoint: str, bus: Bus, other: Bus, keys: Keys, monkeypatch: pytest.MonkeyPatch
+):
+    async with outsider_on(endpoint) as outsider:
+        questions: queue.Queue[zenoh.Query] = queue.Queue()
+        queryable = outsider.declare_queryable(keys.project, Callback(questions.put, indirect=False))
+        watch, held, is_watched = ServerWatch.__init__, [], asyncio.Event()
+
+        def watch_late(self: ServerWatch, session: zenoh.Session, key: str) -> None:
+            held.append(questions.get(timeout=HANG_S))
+            queryable.undeclare()
+            list(outsider.liveliness().get(ROUND_TRIP))
+            watch(self, session, key)
+            is_watched.set()
+
+        list(outsider.liveliness().get(ROUND_TRIP))
+        monkeypatch.setattr(ServerWatch, "__init__", watch_late)
+        async with asyncio.TaskGroup() as tasks:
+            question = bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=5)
+            asked = tasks.create_task(_error_of(question))
+            await is_watched.wait()
+            await asyncio.sleep(0.2)
+            await other.answer(keys.project, ProjectQuery, list_catalogue)
+        assert isinstance(asked.result(), NobodyAnswersError)
+        held[0].drop()
 
 
 async def test_a_key_that_is_served_again_is_not_served_for_who_watched_its_server_leave(

@@ -103,6 +103,21 @@ async def test_documents_with_mistakes_are_refused_before_a_service_starts(tmp_p
     assert {"world/2", "skills/4"} <= places
 
 
+@pytest.mark.parametrize(("named", "column"), [("robot: barn", 8), ("robot: yard\nproject: barn", 10)])
+async def test_another_project_than_the_documents_is_refused_before_a_service_starts(tmp_path, named, column):
+    bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
+    deploy = tmp_path / "yard.yaml"
+    deploy.write_text(f"aos: 1\n{named}\nbundles: [yard]\nbind: {{/push: model}}\n")
+    events: list[Event] = []
+    run = MissionRun(read_deploy_file(deploy), events.append, SystemClock())
+    await run.run()
+    assert not [event for event in events if isinstance(event, ServiceChanged)]
+    assert isinstance(run.error, DeployError)
+    (found,) = run.error.diagnostics
+    assert (found.span.line, found.span.column) == (named.count("\n") + 2, column)
+    assert found.message == "the documents are of the project yard, not barn"
+
+
 def test_mistakes_in_constraints_and_in_what_is_set_are_told_together(tmp_path):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"

@@ -9,9 +9,10 @@ from aos_deploy.deployment.constraints import constrained
 from aos_deploy.deployment.folder import deploy_file_at, deploy_files_in
 from aos_deploy.deployment.mission_values import with_values
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
+from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
 from aos_deploy.printing import from_here
 from aos_language.load import load_files, read_bundle_files
-from aos_language.merge import merge
+from aos_language.merge import merge, pushed_project
 from aos_language.mission_parameters import declared_values, parameter_leaves
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Diagnostic, has_errors
@@ -53,6 +54,22 @@ def files_of_bundles(bundles: tuple[Path, ...], leave_out: tuple[str, ...]) -> B
     return together
 
 
+def files_of_deployment(deployment: Deployment) -> BundledFiles:
+    """Puts the documents of a deployment's bundles together, as `files_of_bundles` does; DeployError AOS801
+    where they are of another project than the deploy file says."""
+    together = files_of_bundles(deployment.bundles, deployment.file.leave_out)
+    name = pushed_project(together.files)
+    if name and name != deployment.project:
+        place = deployment.project_place
+        findings = findings_of([place.file])
+        message = f"the documents are of the project {name}, not {deployment.project}"
+        write = f"Write `project: {name}`"
+        hint = f"{write} here" if deployment.file.project else f"{write} below it: else the robot's name counts"
+        findings.error("AOS106", message, place, hint)
+        refuse_errors(findings, f"the deploy file {from_here(deployment.path)} has errors")
+    return together
+
+
 def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
     """The documents in a bundle's folder or archive by name, without those of skills that are left out."""
     files, remarks = read_bundle_files(bundle)
@@ -87,7 +104,7 @@ def planned_of(path: Path) -> Planned:
         files, remarks = read_bundle_files(path)
         return Planned(files, tuple(remarks))
     deployment = read_deploy_file(path)
-    together = files_of_bundles(deployment.bundles, deployment.file.leave_out)
+    together = files_of_deployment(deployment)
     return Planned(
         together.files,
         constraints=deployment.constraints,
@@ -115,9 +132,9 @@ def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
     """Reads the project that all bundles make together, with the mission's constraints and values.
 
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
-    constraints and what is set. Documents that only play the world need not have every mission parameter.
+    deploy file's project, its constraints and what it sets. Documents that only play the world need not have every mission parameter.
     """
-    together = files_of_bundles(deployment.bundles, deployment.file.leave_out)
+    together = files_of_deployment(deployment)
     loaded = load_files(together.files, name=deployment.path.name)
     if loaded.project is None:
         named = ", ".join(str(from_here(bundle)) for bundle in deployment.bundles)

@@ -34,11 +34,15 @@ _LAST_PORT = 65535
 
 
 class Deployment(msgspec.Struct, frozen=True, kw_only=True):
-    """A deploy file that holds together, its paths absolute."""
+    """A deploy file that holds together, its paths absolute.
+
+    `project_place` is where it names the project: its robot, if that has the project's name.
+    """
 
     path: Path
     file: DeployFile
     project: str
+    project_place: Span
     bundles: tuple[Path, ...]
     world: Path | None
     adapters: tuple[AdapterPlan, ...]
@@ -138,6 +142,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         path=path,
         file=file,
         project=file.project or file.robot,
+        project_place=_place(node, "project" if file.project else "robot"),
         bundles=bundles,
         world=world,
         adapters=adapters,

@@ -223,12 +223,6 @@ class MissionRun:
             refused = f"bundles {named} are" if "," in named else f"bundle {named} is"
             raise DocumentError(f"the {refused} refused", code="AOS120", diagnostics=found)
         self._report(msgspec.structs.replace(report, diagnostics=found))
-        if report.project != self._deployment.project:
-            raise DeployError(
-                f"{named} holds the project {report.project}, not {self._deployment.project}",
-                code="AOS801",
-                hint=f"Write `project: {report.project}` into {self._deployment.path}",
-            )
 
     async def _follow(self, supervisor: Supervisor) -> None:
         async with asyncio.TaskGroup() as tasks:

@@ -54,6 +54,9 @@ _UNANSWERED_S = 1.0
 """An open question asks this often whether its key is served still, and waits this long for an answer under
 way whose giver has left."""
 
+_UNHEARD_S = 0.002
+"""It asks this often until it will hear that who serves its key leaves: another may serve the next moment."""
+
 _log = logging.getLogger("aos.bus")
 
 
@@ -309,7 +312,8 @@ class Bus(Closing):
         is_served = True
         while is_served:
             ends: set[asyncio.Future[Any]] = {answer, watch.has_left}
-            await asyncio.wait(ends, timeout=_UNANSWERED_S, return_when=asyncio.FIRST_COMPLETED)
+            pause_s = _UNANSWERED_S if watch.hears_of_leaving else _UNHEARD_S
+            await asyncio.wait(ends, timeout=pause_s, return_when=asyncio.FIRST_COMPLETED)
             if answer.done():
                 return
             has_other_router = self.router not in ("", router)

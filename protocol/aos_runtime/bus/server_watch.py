@@ -22,10 +22,11 @@ class ServerWatch:
     def __init__(self, session: zenoh.Session, key: str) -> None:
         loop = asyncio.get_running_loop()
         self.has_left: asyncio.Future[None] = loop.create_future()
+        self.hears_of_leaving = False
+        """True once Zenoh has told of a server: only then does it tell that there is none any more."""
 
         def on_change(status: Any) -> None:  # Zenoh's stub names no type.
-            if not status.matching:
-                loop.call_soon_threadsafe(self._leave)
+            loop.call_soon_threadsafe(self._hear if status.matching else self._leave)
 
         self._is_ended = False
         self._querier = session.declare_querier(key)
@@ -49,6 +50,9 @@ class ServerWatch:
             self._is_ended = True
             self._listener.undeclare()
             self._querier.undeclare()
+
+    def _hear(self) -> None:
+        self.hears_of_leaving = True
 
     def _leave(self) -> None:
         if not self._is_ended:
