@@ -64,7 +64,9 @@ def files_of_deployment(deployment: Deployment) -> BundledFiles:
         findings = findings_of([place.file])
         message = f"the documents are of the project {name}, not {deployment.project}"
         write = f"Write `project: {name}`"
-        hint = f"{write} here" if deployment.file.project else f"{write} below it: else the robot's name counts"
+        hint = (
+            f"{write} here" if deployment.file.project else f"{write} below it: else the robot's name counts"
+        )
         findings.error("AOS106", message, place, hint)
         refuse_errors(findings, f"the deploy file {from_here(deployment.path)} has errors")
     return together
@@ -132,7 +134,8 @@ def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
     """Reads the project that all bundles make together, with the mission's constraints and values.
 
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
-    deploy file's project, its constraints and what it sets. Documents that only play the world need not have every mission parameter.
+    deploy file's project, its constraints and what it sets. Documents that only play the world need not have
+    every mission parameter.
     """
     together = files_of_deployment(deployment)
     loaded = load_files(together.files, name=deployment.path.name)
