@@ -38,7 +38,7 @@ SHARED = {
 constexpr double gain = 0.125;
 const vector<double> loads = {0.25, 0.5, 0.25};
 bool moves(Place from) { return AOS.Bernoulli(from == Dock ? 0.5 : 0.75); }
-bool sees(bool is_so) { return AOS.Bernoulli(1 - gain) == is_so; }
+bool sees(bool is_so) { return is_so == AOSUtils::SampleDiscrete({gain, 1 - gain}); }
 int carried(const auto& state) { return state.load[Ramp] + state.load[Door]; }
 void advance(auto& state__, Place from) {
     if (moves(from)) state__.at = Place((from + 1) % 3);

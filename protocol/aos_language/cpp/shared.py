@@ -339,4 +339,5 @@ def _parameter_name(parameter: tree_sitter.Node) -> str:
 
 
 def _identifiers(node: tree_sitter.Node) -> Iterator[str]:
-    return (text_of(part) for part in below(node) if part.type in ("identifier", "type_identifier"))
+    kinds = ("identifier", "type_identifier", "namespace_identifier")
+    return (text_of(part) for part in below(node) if part.type in kinds)
