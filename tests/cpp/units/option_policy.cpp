@@ -66,6 +66,32 @@ TEST("Before a robot leaves for what may be better elsewhere it looks where it i
   }
 }
 
+// A thing is in one of 15 rooms, but not in the first one, where the robot is. No look pays for itself, and each step costs 1.
+TEST("A robot looks elsewhere before it looks for ever where it knows that nothing is") {
+  constexpr std::uint32_t rooms = 15, end = rooms * rooms;
+  Problem problem = units::world(end + 2, 3, 0.98);
+  problem.endings[end] = 1;
+  problem.endings[end + 1] = 2;
+  problem.horizon = 40;
+  problem.sensings.push_back({{0, 0.95}, {1, 0.05}});
+  problem.sensings.push_back({{0, 0.05}, {1, 0.95}});
+  problem.starts.clear();
+  for (std::uint32_t thing = 1; thing < rooms; ++thing) problem.starts.push_back({thing, 1.0 / (rooms - 1)});
+  for (std::uint32_t state = 0; state < end; ++state) {
+    const std::uint32_t room = state / rooms, thing = state % rooms;
+    units::row(problem, state, look) = {{1.0, state, room == thing ? 1u : 2u, -1}};
+    units::row(problem, state, go) = {{1.0, (room + 1) % rooms * rooms + thing, 0, -1}};
+    units::row(problem, state, take) = {{1.0, room == thing ? end : end + 1, 0, room == thing ? 20.0 : -20.0}};
+  }
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  aos::OptionPolicy<TableModel> policy;
+  EXPECT(policy.prepare(belief, 1e6, 0, random).empty());
+  policy.search(belief, problem.horizon, random, {});
+  EXPECT(policy.estimates()[go].q > policy.estimates()[look].q);
+}
+
 // Two jobs, each done by its action, which earns 20; the mission ends when both are done. A state has a bit for each.
 TEST("A reward that an action has earned does not count again where the mission may end with it") {
   Problem problem = units::world(4, 2, 0.95);

@@ -76,19 +76,6 @@ class OptionMoves {
     if (view.test >= 0) add_way(candidates, {view.move, view.test}, steps, random);
   }
 
-  // Adds ways of one or two moves with a test after them that is made several times in a row: a lens is wiped where the robot
-  // goes, before it looks. What the moves tell by themselves, and what the next states are worth, does not count.
-  void add_detours(std::vector<OptionCandidate>& candidates, const std::vector<int>& moves, const BarredActions& barred, double& steps, Sampler& random) {
-    for (const int first : moves) {
-      const Ahead one = after(Ahead{{}, belief_.states()}, first, steps, random);
-      add_tests_after(candidates, one, barred, steps, random);
-      for (const int second : moves) {
-        if (steps <= 0 || tests_.clock().is_over()) return;
-        if (regret_.value_seen() + one.paid > 0) add_tests_after(candidates, after(one, second, steps, random), barred, steps, random);
-      }
-    }
-  }
-
   // How much of the regret an observation spares after one of the likely options, but for what it tells of that option; as much as `here` for a test that
   // tells the same there.
   double spared_after(const Option& option, std::size_t likely, const Option& way, double here, double& steps, Sampler& random) {
@@ -121,53 +108,6 @@ class OptionMoves {
   }
 
  private:
-  // Where some moves lead, which go on for certain if `goes_on`.
-  struct Ahead {
-    Option way;
-    std::vector<State> states;
-    double paid = 0;
-    double discount = 1;
-    bool goes_on = true;
-  };
-
-  Ahead after(Ahead ahead, int move, double& steps, Sampler& random) {
-    StepReports unread;
-    ahead.way.push_back(move);
-    for (std::size_t k = 0; k < ahead.states.size(); ++k) {
-      if (!ahead.goes_on) break;
-      ahead.paid += ahead.discount * belief_.weights()[k] * step_.take(ahead.states[k], move, unread, steps, random);
-      ahead.goes_on = Model::ending(ahead.states[k]) == Ending::running;
-    }
-    ahead.discount *= Model::discount;
-    return ahead;
-  }
-
-  void add_tests_after(std::vector<OptionCandidate>& candidates, const Ahead& ahead, const BarredActions& barred, double& steps, Sampler& random) {
-    constexpr int most_repeats = 4;
-    for (int test = 0; test < Model::action_count() && ahead.goes_on && regret_.value_seen() + ahead.paid > 0; ++test) {
-      if (barred.contains(static_cast<std::size_t>(test)) || tests_.is_move(test)) continue;
-      if (steps <= 0 || tests_.clock().is_over()) return;
-      std::vector<StepReports> reports(ahead.states.size());
-      double reward = 0;
-      for (std::size_t k = 0; k < ahead.states.size(); ++k) {
-        State state = ahead.states[k];
-        reward += belief_.weights()[k] * step_.take(state, test, reports[k], steps, random);
-      }
-      const RepeatedObservation observation{reports};
-      if (observation.tells_nothing()) continue;
-      double paid = ahead.paid, discount = ahead.discount;
-      Option way = ahead.way;
-      for (int times = 1; times <= most_repeats && observation.is_listed(times); ++times) {
-        paid += discount * reward;
-        discount *= Model::discount;
-        way.push_back(test);
-        const auto told = regret_.after(observation, times, steps, random, [](std::size_t, StateWeights&) {});
-        candidates.push_back({way.front(), paid + discount * (regret_.value_seen() - told.regret), discount, "what can be observed after a detour",
-                              told.avoided, way, regret_.now() - told.regret});
-      }
-    }
-  }
-
   // Whether a test tells the same, as far as the mission goes on.
   static bool tells_alike(const std::vector<StepReports>& there, const std::vector<StepReports>& here) {
     return std::ranges::equal(there, here, [](const StepReports& one, const StepReports& other) { return one.branches().empty() || one.is_like(other); });

@@ -26,6 +26,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/options/option_detours.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/option_library.hpp"
 #include "aos/planning/options/option_moves.hpp"
@@ -79,8 +80,9 @@ class OptionPolicy {
     candidates_.clear();
     choose_moves(barred);
     regret_.begin();
-    double left = affordable_ - taken_;
-    clock_.end_at(of_all);
+    const double kept = was_idle_ ? of_detours : 0;
+    double left = (1 - kept) * affordable_ - taken_;
+    clock_.end_at(of_all - kept);
     values_.begin(belief_, horizon, tried_options + tried_moves_.size(), left, random);
     const std::vector<std::size_t> likely = likely_options(barred);
     regret_.watch(likely);
@@ -89,27 +91,21 @@ class OptionPolicy {
     for (std::size_t i = 0; i < likely.size(); ++i) add_option(likely[i], gained_after(likely[i], i, observing, left, random));
     note_way(likely, observing);
     if (switches::tests_first) pairs_.add_to(candidates_, observing, left, random);
-    if (switches::detours && is_idle()) moves_.add_detours(candidates_, tried_moves_, barred, left, random);
-    settle(belief.probability_of(Ending::running), horizon);
+    left += kept * affordable_;
+    clock_.end_at(of_all);
+    was_idle_ = switches::detours && is_idle();
+    if (was_idle_) take_detours(likely, horizon, barred, left, random);
+    settle(belief.probability_of(Ending::running));
     taken_ = affordable_ - left;
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
 
   const std::vector<ActionEstimate>& estimates() const { return estimates_; }
-  // What the best candidate is worth if nothing more is observed after it; a lost step costs as much at each decision.
+  // What the best candidate is worth if nothing more is observed after it.
   double least() const { return least_; }
-  // The plain plan that returns most from the states of the decision, or that follows the best option; and how much an action earns there.
-  PlainPlan plain_plan(int horizon, const BarredActions& barred, Sampler& random) {
-    PlainPlan plan = PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);
-    if (!switches::detours || plan.action < 0) return plan;
-    const PlainPlan alone = plan;
-    for (const std::size_t option : likely_options(barred)) {
-      const StateWeights after = gains_.after(option, belief_.weights());
-      const double later = gains_.discount(option) * std::accumulate(after.begin(), after.end(), 0.0) * alone.returned;
-      const double returned = gains_.earned(option, belief_.weights()) + later;
-      if (returned > plan.returned) plan = {library_.options()[option].front(), returned, std::hypot(alone.error, error_of(option))};
-    }
-    return plan;
+  // The plain plan that returns most from the states of the decision, and how much an action earns there.
+  PlainPlan plain_plan(int horizon, const BarredActions& barred, Sampler& random) const {
+    return PlainPlans<Model>::best(belief_, horizon, barred, of_plain * affordable_, random);
   }
   double reward_of(int action, Sampler& random) const { return PlainPlans<Model>::played(action, belief_, of_reward, 1, random).returned; }
   // Whether the world, left to itself, comes to cost more than ways earn where the state is seen. Ways do not tell then what to do.
@@ -137,6 +133,7 @@ class OptionPolicy {
     is_prepared_ = false;
     obstacle_.clear();
     taken_way_.clear();
+    was_idle_ = false;
     gains_ = {};
     library_.start_over();
     tests_.start_over();
@@ -150,7 +147,8 @@ class OptionPolicy {
   static constexpr double enough_found = 0.5;  // of the belief
   static constexpr double matters = 1e-6;       // of the value, as a regret
   static constexpr std::size_t tried_options = 8;
-  static constexpr double of_plain = 0.05;  // of the steps, where promises were not kept
+  static constexpr double of_detours = 0.4;  // of the steps and the time, after a lost step
+  static constexpr double of_plain = 0.05;   // of the steps, where promises were not kept, and before detours
   static constexpr std::size_t of_reward = 64;  // draws
   static constexpr std::size_t most_after = 4;  // observations that are tried after an option
 
@@ -259,16 +257,19 @@ class OptionPolicy {
     return views;
   }
 
-  // The standard error of what an option earns, since few states are drawn.
-  double error_of(std::size_t option) const {
-    const double mean = gains_.earned(option, belief_.weights());
-    double squares = 0;
-    for (std::size_t k = 0; k < belief_.size(); ++k) {
-      StateWeights one(belief_.size());
-      one[k] = 1;
-      squares += std::pow(belief_.weights()[k] * (gains_.earned(option, one) - mean), 2);
+  // Weighs detours and options by what they return if the robot waits for ever after them. Where to wait costs nothing, all else counts, too.
+  void take_detours(const std::vector<std::size_t>& likely, int horizon, const BarredActions& barred, double& left, Sampler& random) {
+    const double waiting = std::min(plain_plan(horizon, barred, random).returned, 0.0);
+    left -= of_plain * affordable_;
+    std::vector<OptionCandidate> found = detours_.find(tried_moves_, waiting, barred, left, random);
+    if (found.empty()) return;
+    if (waiting < 0) candidates_.clear();
+    candidates_.insert(candidates_.begin(), found.begin(), found.end());
+    if (waiting == 0) return;
+    for (const std::size_t option : likely) {
+      candidates_.push_back({library_.options()[option].front(), detours_.returned(option, belief_.weights()), gains_.discount(option), "what can be earned"});
     }
-    return std::sqrt(squares);
+    note_way(likely, found.size());
   }
 
   // Whether the best candidate observes, spares no regret by that, and costs more than is earned after it: a lost step.
@@ -279,7 +280,7 @@ class OptionPolicy {
 
   // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
   // they are seen. Half of that distance is what may be wrong about it.
-  void settle(double running, int horizon) {
+  void settle(double running) {
     estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
     const OptionCandidate* best = nullptr;
     for (const OptionCandidate& candidate : candidates_) {
@@ -296,8 +297,7 @@ class OptionPolicy {
       estimate.standard_error = running * error;
     }
     reason_ = best != nullptr ? best->reason : "nothing";
-    const double steps = Model::discount < 1 ? (1 - std::pow(Model::discount, horizon)) / (1 - Model::discount) : horizon;
-    least_ = best != nullptr ? running * best->value * (switches::detours && is_idle() ? steps : 1) : 0;
+    least_ = best != nullptr ? running * best->value : 0;
   }
 
   bool is_prepared_ = false;
@@ -314,6 +314,8 @@ class OptionPolicy {
   OptionTests<Model> tests_{belief_, regret_, changes_, clock_};
   OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
+  OptionDetours<Model> detours_{belief_, gains_, clock_};
+  bool was_idle_ = false;  // at the last decision; steps are kept for detours then
   OptionPairs<Model> pairs_{belief_, regret_, tests_, clock_};
   Option taken_way_;
   std::vector<int> tried_moves_;
