@@ -223,6 +223,7 @@ async def test_a_mistake_with_a_map_names_its_keys(
             "`missing` was not declared",
             "use of undeclared identifier `missing`",
         ),
+        ("Side one = 1;", *["a number is no value of Side"] * 2),
         ("state__.at(Left) = 2;", "this is an array, and no function", "this is an array, and no function"),
         (
             "std::pair<int, std::string> p; p = {1};",
@@ -239,6 +240,8 @@ async def test_types_are_told_by_their_names_in_documents(
     error = await build_error(emitted_skill(code, f"{HOME}\n{side}{variables}"), cache_dir)
     (only,) = error.diagnostics
     hint = "An element of it has square brackets: `[i]`" if "an array" in by_gcc else ""
+    if "a number" in by_gcc:
+        hint = "Write `(Side)` before it; a draw is `AOS.SampleDiscrete(Side, {...})`"
     assert (only.message, only.hint) == (await said(by_gcc, by_clang), hint)
 
 

@@ -279,6 +279,12 @@ def test_a_draw_that_is_written_as_the_emitted_model_writes_it_is_told_how_docum
     assert only.mend.text == "AOS.SampleDiscrete(Side, "
 
 
+@pytest.mark.parametrize("given", ["3, {0.5, 0.5}", "0.5, 0.5, 1", "{near, near}, {0.5, 0.5}", ""])
+def test_draws_of_neither_an_enum_nor_values_are_told(given):
+    (only,) = found(skill=SKILL.replace("state.second.x + steps", f"AOS.SampleDiscrete({given})"))
+    assert only.message == "SampleDiscrete takes an enum or values, and a list of weights"
+
+
 @pytest.mark.parametrize(
     "code",
     [

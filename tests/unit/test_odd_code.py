@@ -205,6 +205,8 @@ label = out.str();
 string key = label + "-" + std::to_string(*owned);
 if (label.rfind(hand, 0) == 0 && label.find_first_of("0123456789") != string::npos) label = key;
 else label.clear();
+if (state.item2.label.find_last_not_of("?") == 2 && state.item2.label.back() == '?')
+    label = string(state.item2.label.rbegin(), state.item2.label.rend()) + state.item2.label.front();
 __reward = -fabs(best.second) - 10 * (int)both.size() - 100 * (int)groups["one"].size() - 1000 * spots.size();
 __moduleResponseStr = out.str();
 if (__moduleResponseStr.size() > 6) __moduleResponseStr[0] = toupper(__moduleResponseStr[0]);

@@ -198,11 +198,23 @@ class _BlockCheck:
                 check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)
 
     def _check_enum(self, call: Call) -> None:
-        """The first of two arguments of SampleDiscrete is an enum."""
-        if call.name[1] != "SampleDiscrete" or len(call.arguments) != 2:
+        """SampleDiscrete takes weights, and before them an enum or the values that are drawn."""
+        if call.name[1] != "SampleDiscrete":
             return
-        place = call.arguments[0]
+        place = call.arguments[0] if call.arguments else call.function
         name = self._cpp.code[place.start : place.end].strip()
+        is_list = name.startswith("{")
+        if len(call.arguments) not in (1, 2) or name[:1].isdigit() or (is_list and len(call.arguments) == 2):
+            hint = "Write `AOS.SampleDiscrete(Enum, {0.5, 0.5})`"
+            hint = "Write the values with their type: `vector<Type>{...}`" if is_list else hint
+            message = "SampleDiscrete takes an enum or values, and a list of weights"
+            self._findings.error("AOS110", message, self._span(place), hint)
+            return
+        if len(call.arguments) == 1:
+            if name in self._enum_sizes:
+                message, hint = "the weights are missing", f"Write `AOS.SampleDiscrete({name}, {{0.5, 0.5}})`"
+                self._findings.error("AOS110", message, self._span(place), hint)
+            return
         declared = {declaration.name for declaration in self._cpp.declarations} | self._declared
         if name.isidentifier() and name not in self._enum_sizes and name not in declared:
             otherwise = listing("The enums are", sorted(self._enum_sizes))

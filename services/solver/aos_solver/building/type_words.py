@@ -25,6 +25,11 @@ _PARAMETERS = re.compile(
 )
 _ARRAY = r"(?:const )?(?:array of |vector<)"
 _CALLED = re.compile(rf"no match for call to `\({_ARRAY}|type `{_ARRAY}.*` does not provide a call operator")
+_NUMBER_FOR_ENUM = re.compile(
+    r"invalid conversion from `(?:int|long int)` to `(\w+)`"
+    r"|(?:cannot initialize a (?:variable|parameter) of|assigning to) (?:type )?`(\w+)` "
+    r"(?:with an? [lr]value of type|from incompatible type) `(?:int|long)`"
+)
 _NOT_ASSIGNED = "no viable overloaded `=`"
 """Clang's words, without the types."""
 
@@ -46,6 +51,10 @@ def in_words(text: str) -> tuple[str, str]:
             f"the parameters of this skill are ({taken}), and these values are ({given})",
             "Give `std::make_tuple` one value for each parameter, in their order",
         )
+    if (enum := _NUMBER_FOR_ENUM.search(plain)) is not None:
+        name = enum[1] or enum[2]
+        hint = f"Write `({name})` before it; a draw is `AOS.SampleDiscrete({name}, {{...}})`"
+        return f"a number is no value of {name}", hint
     if (refused := _ASSIGNED.fullmatch(plain)) is None:
         # Only a refused assignment has its literals put in words.
         for pattern, word in _WORDS[:-2]:

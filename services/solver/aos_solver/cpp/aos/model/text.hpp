@@ -68,12 +68,16 @@ class Text {
   const char& at(std::size_t index) const { return (*this)[index]; }
   char& front() { return (*this)[0]; }
   char& back() { return (*this)[length_ - std::size_t{1}]; }
+  const char& front() const { return (*this)[0]; }
+  const char& back() const { return (*this)[length_ - std::size_t{1}]; }
   char* begin() { return characters_; }
   char* end() { return characters_ + length_; }
   const char* begin() const { return characters_; }
   const char* end() const { return characters_ + length_; }
   const char* cbegin() const { return begin(); }
   const char* cend() const { return end(); }
+  auto rbegin() const { return view().rbegin(); }
+  auto rend() const { return view().rend(); }
   std::string substr(std::size_t from = 0, std::size_t count = npos) const { return str().substr(from, count); }
   std::size_t find(std::string_view part, std::size_t from = 0) const { return view().find(part, from); }
   std::size_t find(char part, std::size_t from = 0) const { return view().find(part, from); }
@@ -83,6 +87,9 @@ class Text {
   std::size_t find_last_of(std::string_view any, std::size_t from = npos) const { return view().find_last_of(any, from); }
   std::size_t find_first_not_of(std::string_view any, std::size_t from = 0) const {
     return view().find_first_not_of(any, from);
+  }
+  std::size_t find_last_not_of(std::string_view any, std::size_t from = npos) const {
+    return view().find_last_not_of(any, from);
   }
   bool starts_with(std::string_view part) const { return view().starts_with(part); }
   bool ends_with(std::string_view part) const { return view().ends_with(part); }
