@@ -106,6 +106,7 @@ def finding_texts(**texts: str) -> list[str]:
         {"code": "match __input.answer:\n    case [one, *rest]:\n        answer = (one, rest)"},
         {"initial": "home.x if parameters else Place"},
         {"topic": "return heard if __input.text is None else item"},
+        {"topic": "input = __input\nreturn input.text"},
     ],
 )  # fmt: skip
 def test_what_python_allows_is_not_told(texts):
@@ -171,3 +172,8 @@ def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning():
     assert "goal_x" not in error.message
     warned = [finding.message for finding in loaded.diagnostics if finding.severity is Severity.WARNING]
     assert "no local variable gives `goal_x`" in warned
+
+
+def test_the_function_input_in_the_place_of_the_message_is_told():
+    (only,) = finding_texts(topic="return input.text")
+    assert "`input` is a function of Python, which has no message. Write `__input`" in only

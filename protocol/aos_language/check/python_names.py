@@ -18,7 +18,7 @@ import msgspec
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.findings import Findings
 from aos_language.python_syntax import module_of, names_bound_by, own_scope
-from aos_protocol.diagnostics import Severity
+from aos_protocol.diagnostics import Mend, Severity
 from aos_protocol.documents import (
     AbstractionMapping,
     Import,
@@ -28,7 +28,7 @@ from aos_protocol.documents import (
     SkillModel,
     Snippet,
 )
-from aos_protocol.spelling import nearest, quoted
+from aos_protocol.spelling import quoted
 
 _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """The names by which rules read how a skill has failed."""
@@ -151,13 +151,20 @@ def check_names(
 ) -> None:
     """Reports AOS110 for each name of the snippet that nothing gives, and warns (AOS121) of messages that are
     made by position."""
+    bound = _bound_names(tree)
+    own = bound.union(names.local_names)
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Name(id=name), args=[_, *_]) if name in names.messages:
                 span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
                 message = f"{name} is given fields by position, which fails where it cannot be imported"
                 findings.warning("AOS121", message, span, f"Give them by name: `{name}(field=...)`")
-    known = names.known | _bound_names(tree)
+            case ast.Attribute(value=ast.Name(id="input") as name) if "input" not in own:
+                span = snippet.locate(name.lineno, column_of(snippet, name.lineno, name.col_offset))
+                mend = Mend(span, len("input"), _INPUT)
+                message = "`input` is a function of Python, which has no message"
+                findings.error("AOS121", message, span, f"Write `{_INPUT}`", mend)
+    known = names.known | bound
     is_open = names.is_open or "*" in known
     for node in nodes_read(tree):
         if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load) or node.id in known:
@@ -169,9 +176,8 @@ def check_names(
             if not close and node.id.lower() not in _OF_OTHER_LANGUAGES:
                 continue
             severity = Severity.WARNING
-        candidates = () if hint else names.local_names
-        if not hint and not nearest(node.id, names.local_names):
-            candidates, hint = tuple(sorted(known - _BUILT_IN_NAMES)), _local_variables(names)
+        known_here = (*names.local_names, *sorted(known - _BUILT_IN_NAMES))
+        candidates, hint = (() if hint else known_here), hint or _local_variables(names)
         message = f"no local variable gives `{node.id}`"
         findings.unknown(node.id, candidates, message, span, hint, severity=severity)
 
