@@ -29,7 +29,6 @@ from .pipe import Pipe, pipe, pipe_rule
 from .problems import PROBLEMS, SIZES
 from .rescue import Rescue, rescue, rescue_rule
 from .rules import RULES
-from .sorting import Sorting, sorting, sorting_rule
 from .towers import Towers, towers, towers_rule
 from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
 from .world import World
@@ -42,7 +41,6 @@ _SINGLE = {
     "lock": lock,
     "towers": towers,
     "photo": photo,
-    "sorting": sorting,
     "gauges": gauges,
     "pipe": pipe,
 }
@@ -51,16 +49,7 @@ _SIZES = (
     SIZES
     | UPKEEP_SIZES
     | LEAVING_SIZES
-    | {
-        "delivery": 6,
-        "rescue": 3,
-        "lock": 5,
-        "towers": 10,
-        "photo": 12,
-        "sorting": 10,
-        "gauges": 8,
-        "pipe": 40,
-    }
+    | {"delivery": 6, "rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8, "pipe": 40}
 )
 _RULES = (
     RULES
@@ -72,7 +61,6 @@ _RULES = (
         "lock": lock_rule,
         "towers": towers_rule,
         "photo": photo_rule,
-        "sorting": sorting_rule,
         "gauges": gauges_rule,
         "pipe": pipe_rule,
     }
@@ -82,7 +70,6 @@ _WORLDS: dict[str, Callable[[int, random.Random], World]] = LEAVING_WORLDS | {
     "lock": Lock,
     "towers": Towers,
     "photo": Photo,
-    "sorting": Sorting,
     "gauges": Gauges,
     "pipe": Pipe,
 }
