@@ -223,8 +223,8 @@ class AosClient(SteeringQuestions):
         """The revision that the middleware runs, and the skills that nobody can run."""
         return await self._ask(self.keys.mapping_state, MappingQuery(), MappingState)
 
-    async def _ask(self, key: str, query: Message, reply: type[R], timeout_s: float = _ANSWER_S) -> R:
-        return await self.bus.ask(key, query, reply, timeout_s=timeout_s)
+    async def _ask(self, key: str, query: Message, reply: type[R], timeout_s: float | None = None) -> R:
+        return await self.bus.ask(key, query, reply, timeout_s=timeout_s or _ANSWER_S)
 
     async def missions(self) -> Missions:
         """The missions of the system so far."""

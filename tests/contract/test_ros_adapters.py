@@ -288,7 +288,7 @@ async def test_documents_name_the_paths_and_topics(lab: Lab):
     assert result.published["/lab/said"] >= 1
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["ros2", "ros1"])  # What a node of ROS 2 is asked is one function.
 @pytest.mark.parametrize("path", ["/lab/add", "/lab/count"])
 async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_add(
     kind: str, path: str, request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path

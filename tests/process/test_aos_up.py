@@ -336,11 +336,3 @@ def test_mistakes_in_documents_are_shown_at_their_places(
     assert result.status == 1
     for *_, place in mistakes:
         assert place in result.text
-
-
-def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path):
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
-        result = refused(deploy_file, deploy_file.read_text(), "--listen", endpoint)
-    assert result.status == 3
-    assert f"cannot listen at {endpoint}: Address already in use. `aos runs` lists what runs" in result.text
