@@ -81,18 +81,17 @@ struct HistoryStep {
 // As long as this object lives, the numbers of replayed steps are weighed as those of the step were.
 class NumbersOf {
  public:
-  NumbersOf(const HistoryStep& step, Replay& replay) : replay_(replay) {
-    if (step.numbers != nullptr) weighed_.emplace(*step.numbers, true, step.log_scale);
-    replay_.report_to(sink());
-  }
-  NumbersOf(const NumbersOf&) = delete;
-  NumbersOf& operator=(const NumbersOf&) = delete;
-  ~NumbersOf() { replay_.report_to(nullptr); }
+  NumbersOf(const HistoryStep& step, Replay& replay) : reporting_(replay, weighed_by(step)) {}
   NumberSink* sink() { return weighed_ ? &*weighed_ : nullptr; }
 
  private:
-  Replay& replay_;
+  NumberSink* weighed_by(const HistoryStep& step) {
+    if (step.numbers != nullptr) weighed_.emplace(*step.numbers, true, step.log_scale);
+    return sink();
+  }
+
   std::optional<WeighedNumbers> weighed_;
+  ReportingTo<Replay> reporting_;
 };
 
 template <class Model>

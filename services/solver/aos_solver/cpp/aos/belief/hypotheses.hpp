@@ -115,12 +115,7 @@ class Hypotheses {
 
   // After the time of a step in which nothing was done: extrinsic changes alone.
   Hypotheses passed(Sampler& random) const {
-    Hypotheses after = *this;
-    for (Hypothesis& each : after.all_) each.belief = each.belief.predicted(no_action, random);
-    after.mix();
-    after.cautious_.reset();
-    if (cautious_) after.keep_cautious(cautious_->predicted(no_action, random));
-    return after;
+    return changed([&](const Belief<Model>& belief) { return belief.predicted(no_action, random); });
   }
 
   // After an end that nobody observed, of an action that ran with this probability.
@@ -151,12 +146,7 @@ class Hypotheses {
 
   // At the start of the next mission: see Belief::begun.
   Hypotheses begun(int idle_steps, Sampler& random) const {
-    Hypotheses after = *this;
-    for (Hypothesis& each : after.all_) each.belief = each.belief.begun(idle_steps, random);
-    after.mix();
-    after.cautious_.reset();
-    if (cautious_) after.keep_cautious(cautious_->begun(idle_steps, random));
-    return after;
+    return changed([&](const Belief<Model>& belief) { return belief.begun(idle_steps, random); });
   }
 
   // Given what somebody knows, which is possible: `found` are the posteriors by it. It closes no row. The cautious belief
@@ -264,6 +254,16 @@ class Hypotheses {
     return after;
   }
 
+  // After what changes each belief and tells nothing.
+  template <class Change>
+  Hypotheses changed(Change&& change) const {
+    Hypotheses after = *this;
+    for (Hypothesis& each : after.all_) each.belief = change(each.belief);
+    after.mix();
+    after.cautious_.reset();
+    if (cautious_) after.keep_cautious(change(*cautious_));
+    return after;
+  }
   // The hypotheses after what was found, without those of less weight than `least`.
   Hypotheses weighed(Posteriors& found, double log_total, double least) const {
     Hypotheses after = without_beliefs();

@@ -47,7 +47,7 @@ class Listing {
     }
     if (!file.flush()) throw std::runtime_error("the listing cannot be written");
     json.begin_object().member("model_bytes", static_cast<std::uint64_t>(model_bytes));
-    space_.observations().write(json.key("observations"));
+    json.key("observations").values(space_.observations().texts());
     left_out.write_names(json.key("left_out"));
     json.end_object();
   }

@@ -172,8 +172,7 @@ class PlanningCommands {
     const bool idles = is_idle(belief, best);
     json.member("planner", name).member("why", search.why() + (idles ? idle_text : "")).member("is_idle", idles);
     json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
-    write_numbers(json.key("by_thread"), search.simulations_by_thread());
-    write_numbers(json.key("pondered"), std::exchange(pondered_simulations_, {}));
+    json.key("by_thread").values(search.simulations_by_thread()).key("pondered").values(std::exchange(pondered_simulations_, {}));
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       const auto& value = values[static_cast<std::size_t>(action)];
@@ -205,11 +204,6 @@ class PlanningCommands {
     return barred;
   }
 
-  static void write_numbers(JsonWriter& json, const std::vector<std::uint64_t>& numbers) {
-    json.begin_array();
-    for (const std::uint64_t number : numbers) json.value(number);
-    json.end_array();
-  }
 
   static Budget budget_of(const Command& command) {
     const int threads = command.number<int>("threads");

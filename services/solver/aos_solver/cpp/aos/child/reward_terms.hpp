@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aos/base/reward_ledger.hpp"
+#include "aos/base/set_for_now.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -21,8 +22,7 @@ class RewardTerms {
   // Adds the expected rewards of a step, so many times, and returns how many paths it has. Throws NotEnumerable.
   int add(const typename Model::State& state, int action, double times, int max_paths = path_budget) {
     RewardLedger ledger;
-    reward_ledger = &ledger;
-    const Using done;
+    const SetForNow using_it{reward_ledger, &ledger};
     typename Model::State next{};
     Step step;
     const auto run = [&](Enumerator& path) {
@@ -43,8 +43,7 @@ class RewardTerms {
   // Adds the rewards of a step that is drawn, so many times.
   void add_drawn(typename Model::State state, int action, double times, Sampler& random) {
     RewardLedger ledger;
-    reward_ledger = &ledger;
-    const Using done;
+    const SetForNow using_it{reward_ledger, &ledger};
     const Step step = Model::step(state, action, random);
     count(ledger, step, times);
     ++drawn_;
@@ -61,10 +60,6 @@ class RewardTerms {
   }
 
  private:
-  struct Using {
-    ~Using() { reward_ledger = nullptr; }
-  };
-
   void count(const RewardLedger& ledger, const Step& step, double times) {
     for (const RewardTerm& term : ledger.terms()) {
       terms_[{term.place, term.skill == nullptr ? "" : term.skill}] += times * term.amount;

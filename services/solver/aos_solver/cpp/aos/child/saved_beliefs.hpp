@@ -26,19 +26,15 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
                  std::size_t max_answer = max_answer_bytes) {
   constexpr std::size_t least_bytes_of_particle = 8;
   const auto& particles = belief.particles();
-  if (particles.size() * least_bytes_of_particle > max_answer && max_answer < max_answer_bytes) {
-    json.begin_object().member("error_bound", belief.error_bound()).member("is_drawn", belief.is_drawn());
-    json.member("states", particles.size()).key("constants").begin_object().end_object();
-    json.member("history", "").key("particles").begin_array().end_array().end_object();
-    return;
-  }
-  const SavedConstants constants = first == 0 ? Model::save_constants() : SavedConstants{};
+  const bool is_too_long = particles.size() * least_bytes_of_particle > max_answer && max_answer < max_answer_bytes;
+  const bool has_head = first == 0 && !is_too_long;
+  const SavedConstants constants = has_head ? Model::save_constants() : SavedConstants{};
   json.begin_object().member("error_bound", belief.error_bound()).member("is_drawn", belief.is_drawn());
   json.member("states", particles.size()).key("constants").begin_object();
   for (const auto& [name, text] : constants.texts()) json.member(name, text);
-  json.end_object().member("history", first == 0 ? to_base64(saved_history(belief)) : std::string{});
+  json.end_object().member("history", has_head ? to_base64(saved_history(belief)) : std::string{});
   json.key("particles").begin_array();
-  const std::size_t max_bytes = max_answer < max_answer_bytes ? max_answer : json.text().size() + max_answer_bytes;
+  const std::size_t max_bytes = is_too_long ? 0 : max_answer < max_answer_bytes ? max_answer : json.text().size() + max_answer_bytes;
   for (std::size_t number = first; number < particles.size() && json.text().size() < max_bytes; ++number) {
     const auto& [state, weight] = particles[number];
     json.begin_array().value(weight).value(Model::save_state(shown(state))).end_array();

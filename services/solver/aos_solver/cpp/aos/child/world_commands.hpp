@@ -44,7 +44,7 @@ class WorldCommands {
   void step(JsonWriter& json, const Command& command) {
     const int action = action_of<Model>(command);
     RecordedNumbers recorded{random_};
-    const ReportingTo reporting{random_, recorded};
+    const ReportingTo reporting{random_, &recorded};
     const State before = hidden_;
     const Step step = Model::step(hidden_, action, random_);
     json.begin_object().member("reward", step.reward).member("response", text_of_response<Model>(action, step.observation));

@@ -37,7 +37,7 @@ class Worlds {
       worlds_.push_back({State{}, Sampler{seed}});
       start(worlds_.back());
     }
-    observed_.write(json.begin_object().key("observations"));
+    json.begin_object().key("observations").values(observed_.texts());
     json.member("has_texts", has_texts_).end_object();
   }
 
@@ -55,9 +55,7 @@ class Worlds {
     number_values_.clear();
     for (std::size_t number = 0; number < worlds_.size(); ++number) advance(number, actions[number]);
     json.begin_object().member("endings", to_base64(endings_)).member("rewards", to_base64(rewards_));
-    json.member("observations", to_base64(observations_)).key("texts").begin_array();
-    for (const std::string& text : texts_) json.value(text);
-    json.end_array();
+    json.member("observations", to_base64(observations_)).key("texts").values(texts_);
     if (!number_keys_.empty()) {
       json.member("number_worlds", to_base64(number_worlds_)).member("number_keys", to_base64(number_keys_));
       json.member("number_values", to_base64(number_values_));
@@ -83,7 +81,7 @@ class Worlds {
       start(world);
     } else {
       RecordedNumbers recorded{world.random};
-      const ReportingTo reporting{world.random, recorded};
+      const ReportingTo reporting{world.random, &recorded};
       step = Model::step(world.state, action, world.random);
       for (const auto& [key, value] : recorded.numbers()) {
         number_worlds_.push_back(static_cast<std::int32_t>(number));

@@ -166,11 +166,11 @@ class IgnoredNumbers final : public NumberSink {
 };
 inline IgnoredNumbers ignored_numbers;
 
-// As long as this object lives, a sink takes the numbers that the source's steps report.
+// As long as this object lives, a sink takes the numbers that the source's steps report; null takes none.
 template <class Source>
 class ReportingTo {
  public:
-  ReportingTo(Source& source, NumberSink& sink) : source_(source), before_(source.report_to(&sink)) {}
+  ReportingTo(Source& source, NumberSink* sink) : source_(source), before_(source.report_to(sink)) {}
   ReportingTo(const ReportingTo&) = delete;
   ReportingTo& operator=(const ReportingTo&) = delete;
   ~ReportingTo() { source_.report_to(before_); }

@@ -14,8 +14,10 @@
 #include <unordered_set>
 
 #include "aos/base/mixed.hpp"
+#include "aos/base/set_for_now.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_heads.hpp"
+#include "aos/draws/observed_numbers.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/build_kind.hpp"
 #include "aos/model/reflection.hpp"
@@ -54,25 +56,6 @@ namespace detail {
 // makes it more.
 std::uint32_t& rounds_before_a_look(std::uint32_t loop);
 
-// As long as this object lives, loops may take so many rounds.
-class AllowedRounds {
- public:
-  explicit AllowedRounds(std::uint32_t rounds) { allowed_rounds = rounds; }
-  AllowedRounds(const AllowedRounds&) = delete;
-  AllowedRounds& operator=(const AllowedRounds&) = delete;
-  ~AllowedRounds() { allowed_rounds = before_; }
-
- private:
-  std::uint32_t before_ = allowed_rounds;
-};
-
-// Takes numbers that a step reports and leaves them alone.
-class UnusedNumbers final : public NumberSink {
- public:
-  void take(std::uint32_t, const Distribution&) override {}
-  bool write_taken(std::string&) const override { return true; }
-};
-
 }  // namespace detail
 
 // Runs the phases of a step, which may have no end.
@@ -82,7 +65,7 @@ struct LoopingSteps {
     const State before = next;
     bool meets_precondition = true;
     try {
-      const detail::AllowedRounds rounds{long_loop};
+      const SetForNow rounds{allowed_rounds, long_loop};
       return phases(next, random, meets_precondition);
     } catch (const EndlessPath& endless) {
       return end(next, before, endless.loop, meets_precondition ? 0 : penalty);
@@ -93,7 +76,7 @@ struct LoopingSteps {
     }
     next = before;
     meets_precondition = true;
-    const detail::AllowedRounds rounds{any_rounds};
+    const SetForNow rounds{allowed_rounds, any_rounds};
     return phases(next, random, meets_precondition);
   }
 
@@ -125,7 +108,6 @@ struct LoopingSteps {
     blame::over();
     bool has = false;
     bool is_endless = false;
-    detail::UnusedNumbers unused;
     std::uint32_t& rounds = detail::rounds_before_a_look(loop);
     const auto run = [&](Enumerator& path) {
       ModelSource<DirectedDraws> draws{path};
@@ -141,7 +123,7 @@ struct LoopingSteps {
     try {
       for (std::uint64_t luck = 1; luck <= lucks_of_long_loop && !has; ++luck) {
         Enumerator paths;
-        paths.report_to(&unused);
+        paths.report_to(&ignored_numbers);
         paths.leave_numbers_to(luck);
         paths.for_nearly_each_path(run, [&](Enumerator&) { has = has || is_endless; }, paths_of_long_loop);
       }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/set_for_now.hpp"
 #include "aos/model/model_table.hpp"
 #include "aos/model/states.hpp"
 #include "aos/model/values.hpp"
@@ -109,12 +110,8 @@ struct ErasedModel {
     return functions<Random>().step(state.bytes, action, random);
   }
   // As long as this object lives, directed steps are corrected where they give this observation. Belief updates use it.
-  class Correcting {
-   public:
-    explicit Correcting(Observation made) { corrected_ = made; }
-    Correcting(const Correcting&) = delete;
-    Correcting& operator=(const Correcting&) = delete;
-    ~Correcting() { corrected_.reset(); }
+  struct Correcting : SetForNow<std::optional<Observation>> {
+    explicit Correcting(Observation made) : SetForNow(corrected_, made) {}
   };
   // As long as this object lives, the model has only the actions that are not left out: their numbers are then those in
   // the shorter list. Searches use it, one at a time.

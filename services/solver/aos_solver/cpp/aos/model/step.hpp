@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "aos/base/set_for_now.hpp"
+
 namespace aos {
 
 // How a state has ended. A running state goes on; `over` is neither a goal nor a failure.
@@ -43,24 +45,16 @@ inline thread_local const std::string* response_text = nullptr;
 inline thread_local std::string* finished_text = nullptr;
 
 // As long as this object lives, the complete texts of responses are stored in `place`.
-class WholeText {
- public:
-  explicit WholeText(std::string& place) { finished_text = &place; }
-  WholeText(const WholeText&) = delete;
-  WholeText& operator=(const WholeText&) = delete;
-  ~WholeText() { finished_text = nullptr; }
+struct WholeText : SetForNow<std::string*> {
+  explicit WholeText(std::string& place) : SetForNow(finished_text, &place) {}
 };
 
 // Whether this thread remembers the texts of text observations.
 inline thread_local bool remembers_texts = true;
 
 // As long as this object lives, texts are not remembered. It serves long runs whose texts nobody asks for.
-class ForgottenTexts {
- public:
-  ForgottenTexts() { remembers_texts = false; }
-  ForgottenTexts(const ForgottenTexts&) = delete;
-  ForgottenTexts& operator=(const ForgottenTexts&) = delete;
-  ~ForgottenTexts() { remembers_texts = true; }
+struct ForgottenTexts : SetForNow<bool> {
+  ForgottenTexts() : SetForNow(remembers_texts, false) {}
 };
 
 // The number of a text observation: 63 bits of FNV-1a, the same in every process.

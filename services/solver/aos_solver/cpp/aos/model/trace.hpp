@@ -13,6 +13,7 @@
 
 #include "aos/base/fault.hpp"
 #include "aos/base/reward_ledger.hpp"
+#include "aos/base/set_for_now.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/reflection.hpp"
 
@@ -77,9 +78,6 @@ struct Shown {
 class Showing {
  public:
   explicit Showing(std::initializer_list<Shown> copies) : copies_(copies) { tells_state = true; }
-  Showing(const Showing&) = delete;
-  Showing& operator=(const Showing&) = delete;
-  ~Showing() { innermost = before_; }
 
   // Tells the state, at the first of the statements that go on running: the head of their loop.
   static void tell(std::uint32_t place) {
@@ -111,7 +109,7 @@ class Showing {
  private:
   inline static thread_local const Showing* innermost = nullptr;
   std::vector<Shown> copies_;
-  const Showing* before_ = std::exchange(innermost, this);
+  SetForNow<const Showing*> now_{innermost, this};
 };
 
 // Notes the statement that runs. Where the watchdog waits for code to end, that is told with the state.

@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <optional>
 
-#include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
-#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
 
 namespace aos {
@@ -25,7 +24,8 @@ bool is_idle(const Belief<Model>& belief, int action) {
   typename Model::State next{};
   Step step;
   std::optional<Observation> told;
-  try {
+  bool changes_nothing = true;
+  const bool is_certain = comes_to_an_end([&] {
     for (const auto& [state, weight] : belief.particles()) {
       if (Model::ending(state) != Ending::running) continue;
       const auto run = [&](Enumerator& path) {
@@ -34,16 +34,11 @@ bool is_idle(const Belief<Model>& belief, int action) {
       };
       draws.for_each_path(run, [](Enumerator&) {}, /*max_paths=*/1);
       if (!told) told = step.observation;
-      if (step.reward > 0 || step.observation != *told || Model::ending(next) != Ending::running || !numbers.are_same(state, next)) return false;
+      changes_nothing = step.reward <= 0 && step.observation == *told && Model::ending(next) == Ending::running && numbers.are_same(state, next);
+      if (!changes_nothing) return;
     }
-  } catch (const NotEnumerable&) {
-    blame::at(0);
-    return false;
-  } catch (const ModelFault&) {
-    blame::at(0);
-    return false;
-  }
-  return told.has_value();
+  });
+  return is_certain && changes_nothing && told;
 }
 
 }  // namespace aos

@@ -61,6 +61,12 @@ class JsonWriter {
     text_ += '"';
     return *this;
   }
+  // An array of these values.
+  JsonWriter& values(const auto& all) {
+    begin_array();
+    for (const auto& each : all) value(each);
+    return end_array();
+  }
   const std::string& text() const { return text_; }
   void clear() { text_.clear(); }
 

@@ -7,10 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "aos/base/fault.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/draws/enumerator.hpp"
-#include "aos/model/blame.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "point_based/flat_model.hpp"
 
@@ -24,19 +22,15 @@ class NearStates {
   bool reach(const Belief<Model>& belief, int decisions) {
     if (decisions_from(belief) >= decisions) return true;
     if (2 * belief.particles().size() > given_up_with_) return false;
-    try {
+    const bool is_listed = comes_to_an_end([&] {
       space_.limit(lists_ == 0 ? first_limits : later_limits);
       ++lists_;
       decisions_ = space_.reach_near(belief, decisions, decisions + (decisions + 1) / 2);
       measure_distances(belief);
-      given_up_with_ = any_number;
-      return true;
-    } catch (const NotEnumerable&) {
-      give_up(belief);
-    } catch (const ModelFault&) {
-      give_up(belief);
-    }
-    return false;
+    });
+    given_up_with_ = is_listed ? any_number : belief.particles().size();
+    if (!is_listed) decisions_ = 0;
+    return is_listed;
   }
 
   // The listed states. Those that are reached last have no outcomes and earn nothing.
@@ -73,12 +67,6 @@ class NearStates {
         distances_[outcome.next] = std::min(distances_[outcome.next], distances_[state] + 1);
       }
     }
-  }
-
-  void give_up(const Belief<Model>& belief) {
-    blame::at(0);
-    given_up_with_ = belief.particles().size();
-    decisions_ = 0;
   }
 
   StateSpace<Model> space_;

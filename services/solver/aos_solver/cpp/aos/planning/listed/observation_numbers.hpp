@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "aos/model/step.hpp"
-#include "aos/text/json.hpp"
 
 namespace aos {
 
@@ -37,11 +36,7 @@ class ObservationNumbers {
 
   std::size_t size() const { return texts_.size(); }
   const std::string& operator[](std::uint32_t number) const { return texts_[number]; }
-  void write(JsonWriter& json) const {
-    json.begin_array();
-    for (const std::string& text : texts_) json.value(text);
-    json.end_array();
-  }
+  const std::vector<std::string>& texts() const { return texts_; }
 
  private:
   static constexpr std::uint32_t unknown = 0xffffffffu;

@@ -9,14 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/fault.hpp"
 #include "aos/draws/described_distribution.hpp"
 #include "aos/draws/distributions.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
-#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 
 namespace aos {
 
@@ -125,8 +124,8 @@ class ReportedStep {
     double reward = 0;
     double sum = 0;
     paths_.leave_numbers_to(random.bits());
-    try {
-      const State start = state;
+    const State start = state;
+    const bool are_few = comes_to_an_end([&] {
       Step step;
       const auto run = [&](Enumerator& path) {
         next_ = start;
@@ -140,12 +139,8 @@ class ReportedStep {
         sum += probability;
         if (random.uniform() * sum <= probability) state = next_;
       }, max_paths);
-      if (sum > 0) return reward / sum;
-    } catch (const NotEnumerable&) {
-    } catch (const ModelFault&) {  // on a path that may never be drawn
-    }
-    blame::at(0);
-    return drawn(state, action, reports, steps, random);
+    });
+    return are_few && sum > 0 ? reward / sum : drawn(state, action, reports, steps, random);
   }
 
  private:
@@ -159,7 +154,7 @@ class ReportedStep {
     double reward = 0;
     for (int i = 0; i < draws; ++i) {
       next_ = start;
-      const ReportingTo reporting{random, kept_};
+      const ReportingTo reporting{random, &kept_};
       kept_.begin();
       const Step step = Model::step(next_, action, random);
       reports.add(1.0 / draws, step.observation, kept_.kept());

@@ -15,14 +15,13 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/fault.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/random.hpp"
-#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/pomcp/observation_doubts.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 #include "aos/planning/values/few_outcomes.hpp"
@@ -44,12 +43,7 @@ class InformationPrice {
     if (entropy < least_entropy) return price_;
     values_ = &values;
     horizon_ = horizon;
-    try {
-      price_ = best(belief, entropy);
-    } catch (const NotEnumerable&) {
-    } catch (const ModelFault&) {  // a search may well not meet it
-    }
-    blame::at(0);
+    comes_to_an_end([&] { price_ = best(belief, entropy); });
     return price_;
   }
 

@@ -285,7 +285,7 @@ class TreeSearch {
   [[gnu::always_inline]] Step step_of(SimulatedState& state, int action, Sampler& random, std::optional<ObservationCells::Drawn>& drawn) const {
     if (!reports_numbers_) return state.step(action, random);
     drawn->clear();
-    const ReportingTo reporting{random, *drawn};
+    const ReportingTo reporting{random, &*drawn};
     return state.step(action, random);
   }
 

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/fault.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/pomcp/pomcp_constants.hpp"
 
 namespace aos {
@@ -24,14 +24,9 @@ class FewOutcomes {
   template <class Visit>
   bool visit_each(const typename Model::State& state, int action, Visit&& visit) {
     if (is_left_out_[static_cast<std::size_t>(action)]) return false;
-    try {
-      walk(state, action, visit);
-      return true;
-    } catch (const NotEnumerable&) {
-    } catch (const ModelFault&) {  // a path that may never be drawn
-    }
-    leave_out(action);
-    return false;
+    const bool are_few = comes_to_an_end([&] { walk(state, action, visit); });
+    if (!are_few) leave_out(action);
+    return are_few;
   }
   // The same, and throws what a step throws, or NotEnumerable.
   template <class Visit>

@@ -18,15 +18,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/fault.hpp"
 #include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
-#include "aos/draws/enumerator.hpp"
 #include "aos/draws/random.hpp"
-#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/step_cost.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/random_walk.hpp"
@@ -64,15 +62,11 @@ class GroupMissions {
     saved_ = 0;
     is_first_ = false;
     const ForgottenTexts forgotten;
-    try {
+    comes_to_an_end([&] {
       gather(belief, static_cast<std::size_t>(affordable), horizon);
       follow(action, horizon);
       settle();
-    } catch (const ModelFault&) {  // a search may well not meet it
-      blame::at(0);
-    } catch (const NotEnumerable&) {
-      blame::at(0);
-    }
+    });
   }
 
   // Whether a group was played to its end in this mission.

@@ -13,13 +13,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/fault.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/observed_numbers.hpp"
-#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/coming_to_an_end.hpp"
 #include "aos/planning/listed/state_lister.hpp"
 #include "aos/planning/listed/state_numbers.hpp"
 #include "aos/planning/values/mdp_values.hpp"
@@ -51,15 +50,11 @@ class WideValues final : public StateValues<Model> {
     for (int action = 0; action < Model::action_count(); ++action) {
       if (!is_like_the_one_before(action)) actions_.push_back(action);
     }
-    try {
-      if (is_affordable(belief, horizon)) {
-        list(belief);
-        values_ = rows_.values(Model::discount, horizon);
-      }
-    } catch (const NotEnumerable&) {
-    } catch (const ModelFault&) {
-    }
-    blame::at(0);
+    comes_to_an_end([&] {
+      if (!is_affordable(belief, horizon)) return;
+      list(belief);
+      values_ = rows_.values(Model::discount, horizon);
+    });
     rows_ = {};
     if (values_.empty()) {
       *this = WideValues{lister_.limits()};
