@@ -105,6 +105,7 @@ def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running
     assert "AOS505: no adapter serves /lok. Did you mean `look`?" in nobody
     assert "there is no skill tke" in mission.aos("skill", "info", "tke")
     assert mission.aos("skill", "cancel") == "nothing was moving\n"
+    assert mission.aos("skill", "cancel", "--json") == '{"stopped": []}\n'
 
     (folder / "dirty").unlink()
     assert mission.aos("resume") == "the mission goes on\n"

@@ -148,6 +148,14 @@ def test_what_a_robot_says_is_one_line_without_commands_to_the_terminal(capsys):
     assert reason.isprintable()
 
 
+def test_of_a_robots_long_error_the_beginning_is_told_and_where_all_of_it_is(capsys):
+    lost = Outcome(OUTCOME.id, "pick", "failed", fault=Fault("AOS510", "車輪" * 4000))
+    PlainView()(replace(OBSERVED, outcome=lost, remark="車輪" * 4000))
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.count("車輪... and 7400 letters more: aos decisions --json") == 2
+    assert len(line) < 1500
+
+
 def test_an_empty_text_as_a_response_is_seen(capsys):
     PlainView()(replace(OBSERVED, outcome=replace(OUTCOME, response="")))
     assert 'pick -> ""  surprise' in capsys.readouterr().out

@@ -297,6 +297,10 @@ def test_a_folder_of_runs_names_all_of_them(tmp_path):
     assert chosen_runs([tmp_path / "runs"], None) == [runs[1], runs[0]]
     with pytest.raises(DeployError, match="is not a run directory"):
         chosen_runs([tmp_path / "runs" / "other"], None)
+    (runs[0] / "missions" / "2").mkdir(parents=True)
+    with pytest.raises(DeployError, match="not a run") as refused:
+        chosen_runs([runs[0] / "missions" / "2"], None)
+    assert f"Name {runs[0]} instead, and --mission 2" in refused.value.hint
 
 
 def test_a_file_that_was_damaged_on_its_way_is_opened_or_refused(run: Path, tmp_path):

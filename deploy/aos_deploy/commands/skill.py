@@ -136,6 +136,7 @@ def cancel(
     name: Annotated[
         str, typer.Argument(metavar="[PATH]", help="Only what runs there, or that skill; else whatever moves")
     ] = "",
+    as_json: AsJson = False,
 ) -> None:
     """Stop what moves; the mission goes on with that outcome."""
 
@@ -144,7 +145,8 @@ def cancel(
         paths = [await _served_path(aos, name)] if name else sorted(everything)
         answers = await asyncio.gather(*(_stop(aos, path) for path in paths), return_exceptions=True)
         stopped = {id for answer in answers if isinstance(answer, Cancelled) for id in answer.ids}
-        typer.echo(f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving")
+        told = f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving"
+        typer.echo(json.dumps({"stopped": sorted(stopped)}) if as_json else told)
         for answered in answers:
             if isinstance(answered, AosError) and name:
                 raise answered

@@ -33,7 +33,7 @@ from aos_deploy.runs.summary import Summary
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
-from aos_runtime.disk.mission_folders import mission_folder
+from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 from aos_runtime.failpoints import reach
 from aos_runtime.processes.settings import fault_path
 from aos_runtime.whole_file import PRIVATE, write_whole
@@ -197,10 +197,13 @@ class RunDirectory:
         try:
             return msgspec.json.decode(path.read_bytes(), type=RunRecord)
         except OSError as error:
+            run, hint = self.path.parent.parent, "`aos runs` lists the runs"
+            if self.path in mission_folders(run).values():
+                hint = f"Name {run} instead, and --mission {self.path.name} where the command takes it"
             raise DeployError(
                 f"{self.path} is not a run directory: {path.name} cannot be read, {error.strerror}",
                 code="AOS801",
-                hint="`aos runs` lists the runs",
+                hint=hint,
             ) from error
         except UNREADABLE as error:
             raise DeployError(f"{path}: {error}", code="AOS801") from error

@@ -24,6 +24,9 @@ _SHOWN_MOVES = 8
 _SHOWN_ACTIONS = 6
 """The best of them; with more, a line of a terminal becomes a paragraph. `--json` has all."""
 
+_LONGEST_WORDS = 600
+"""A robot's error may have kilobytes. With hints, and errors of several skills, ours have less."""
+
 
 class PlainView:
     """Prints `lines_of` each event but a skill's progress. Of a mission's state it prints what is news.
@@ -86,6 +89,12 @@ def on_one_line(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text)
 
 
+def shortened(text: str) -> str:
+    """The text, of a long one its beginning, and where all of it is."""
+    left = len(text) - _LONGEST_WORDS
+    return text if left <= 0 else f"{text[:_LONGEST_WORDS]}... and {left} letters more: aos decisions --json"
+
+
 def _lines(event: Event) -> list[str]:
     match event:
         case ServiceChanged():
@@ -96,7 +105,8 @@ def _lines(event: Event) -> list[str]:
         case DecisionRecord():
             return [*([] if event.adopted is None else [adopted_line(event.adopted)]), decision_line(event)]
         case MissionState():
-            return [f"mission {event.phase}: {event.remark}" if event.remark else f"mission {event.phase}"]
+            remark = shortened(event.remark)
+            return [f"mission {event.phase}: {remark}" if remark else f"mission {event.phase}"]
         case BundleReport():
             return _report_lines(event)
         case SkillProgress():
@@ -137,10 +147,10 @@ def decision_line(record: DecisionRecord) -> str:
     if outcome.stopped_by:
         what = f"{what} (stopped by {outcome.stopped_by})"
     if outcome.fault is not None:
-        what = f"{what} ({outcome.fault.message})"
+        what = f"{what} ({shortened(outcome.fault.message)})"
     what += "".join(f", {monitor}: {response}" for monitor, response in outcome.monitors.items())
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
-    remark = f"  ({record.remark})" if record.remark else ""
+    remark = f"  ({shortened(record.remark)})" if record.remark else ""
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
 
 

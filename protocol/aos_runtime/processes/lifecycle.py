@@ -76,9 +76,9 @@ class Service(Generic[S]):
         async with self.bus.presence(key) as present:
             if present.has_items:
                 raise DeployError(
-                    f"a {self.settings.service} for robot {self.settings.robot} is already on this bus",
+                    f"{self.settings.service} of the robot {self.settings.robot} is on this bus already",
                     code="AOS803",
-                    hint="Stop the other system, or give this one another robot name or endpoint",
+                    hint="Stop the other one, or give this one another robot name or endpoint",
                 )
         await self.bus.announce(key)
         gc.freeze()  # What is there now stays; looking through it again and again takes milliseconds.
