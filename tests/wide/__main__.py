@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .arms import arms, arms_rule
 from .delivery import delivery, delivery_rule
 from .gauges import Gauges, gauges, gauges_rule
 from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
@@ -36,6 +37,7 @@ from .world import World
 _STEPS = 120  # at most, in a mission
 
 _SINGLE = {
+    "arms": arms,
     "delivery": delivery,
     "rescue": rescue,
     "lock": lock,
@@ -49,13 +51,14 @@ _SIZES = (
     SIZES
     | UPKEEP_SIZES
     | LEAVING_SIZES
-    | {"delivery": 6, "rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8, "pipe": 40}
+    | {"arms": 8, "delivery": 6, "rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8, "pipe": 40}
 )
 _RULES = (
     RULES
     | UPKEEP_RULES
     | LEAVING_RULES
     | {
+        "arms": arms_rule,
         "delivery": delivery_rule,
         "rescue": rescue_rule,
         "lock": lock_rule,
