@@ -179,23 +179,31 @@ async def test_a_question_is_lost_whose_server_left_before_it_was_watched_and_an
     async with outsider_on(endpoint) as outsider:
         questions: queue.Queue[zenoh.Query] = queue.Queue()
         queryable = outsider.declare_queryable(keys.project, Callback(questions.put, indirect=False))
-        watch, held, is_watched = ServerWatch.__init__, [], asyncio.Event()
+        watch, held, is_missed = ServerWatch.__init__, [], asyncio.Event()
 
         def watch_late(self: ServerWatch, session: zenoh.Session, key: str) -> None:
             held.append(questions.get(timeout=HANG_S))
             queryable.undeclare()
             list(outsider.liveliness().get(ROUND_TRIP))
             watch(self, session, key)
-            is_watched.set()
 
+        def looked(self: ServerWatch) -> bool:
+            is_served: bool = look(self)
+            if not is_served:
+                is_missed.set()
+            return is_served
+
+        look = vars(ServerWatch)["is_served"].fget
         list(outsider.liveliness().get(ROUND_TRIP))
         monkeypatch.setattr(ServerWatch, "__init__", watch_late)
-        question = bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=5)
-        asked = asyncio.create_task(_error_of(question))
-        await is_watched.wait()
-        await asyncio.sleep(0.2)
-        await other.answer(keys.project, ProjectQuery, list_catalogue)
-        assert isinstance(await asked, NobodyAnswersError)
+        monkeypatch.setattr(ServerWatch, "is_served", property(looked))
+        async with asyncio.TaskGroup() as tasks:
+            question = bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=5)
+            asked = tasks.create_task(_error_of(question))
+            with suppress(TimeoutError):
+                await asyncio.wait_for(is_missed.wait(), 0.5)  # Another serves half a second later at most.
+            await other.answer(keys.project, ProjectQuery, list_catalogue)
+        assert isinstance(asked.result(), NobodyAnswersError)
         held[0].drop()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from difflib import get_close_matches
 from functools import partial
@@ -30,19 +29,18 @@ T = TypeVar("T")
 
 _NEARLY = 0.85
 """A share of a key, from 0 to 1: with so much of one that others build on it is that one, mistyped."""
-_BUILT_ON = frozenset(
-    re.findall(
-        r"\w+",
-        """AssignServiceFieldCode AssignmentCode Constants Default DefaultCode Discount DynamicModel EnumName
-    EnumValues EnvironmentGeneral FromGlobalVariable FromROSServiceResponse FromStringLocalVariable
-    GlobalVariableModuleParameters GlobalVariableTypes GlobalVariablesDeclaration Horizon Import InitCode
-    InputLocalVariable IsActionParameterValue IsGoalState ItemName LocalVariableName LocalVariableTypes
-    LocalVariablesInitialization ModuleActivation ModuleResponse Name NextStateAssignments Project Response
-    ResponseRules Reward RosAction RosService RosTopicPath ServiceFieldName ServiceName ServiceParameters
-    ServicePath SpecialStates StateConditionCode StateFunctionCode TempVar Type TypeName Value VarName
-    VariableType Variables""",
-    )
-)
+_BUILT_ON = frozenset({
+    "AssignServiceFieldCode", "AssignmentCode", "Constants", "Default", "DefaultCode", "Discount",
+    "DynamicModel", "EnumName", "EnumValues", "EnvironmentGeneral", "FromGlobalVariable",
+    "FromROSServiceResponse", "FromStringLocalVariable", "GlobalVariableModuleParameters",
+    "GlobalVariableTypes", "GlobalVariablesDeclaration", "Horizon", "Import", "InitCode",
+    "InputLocalVariable", "IsActionParameterValue", "IsGoalState", "ItemName", "LocalVariableName",
+    "LocalVariableTypes", "LocalVariablesInitialization", "ModuleActivation", "ModuleResponse", "Name",
+    "NextStateAssignments", "Project", "Response", "ResponseRules", "Reward", "RosAction", "RosService",
+    "RosTopicPath", "ServiceFieldName", "ServiceName", "ServiceParameters", "ServicePath",
+    "SpecialStates", "StateConditionCode", "StateFunctionCode", "TempVar", "Type", "TypeName", "Value",
+    "VarName", "VariableType", "Variables",
+})  # fmt: skip
 _BOOLEANS = {"true": True, "false": False}
 
 
