@@ -11,21 +11,10 @@ from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from tests.wide.gauges import gauges
-from tests.wide.leaving import LEAVING, LEAVING_SIZES
-from tests.wide.lock import lock
-from tests.wide.photo import photo
-from tests.wide.pipe import pipe
-from tests.wide.problems import PROBLEMS, SIZES
-from tests.wide.rescue import rescue
-from tests.wide.towers import towers
-from tests.wide.upkeep import UPKEEP, UPKEEP_SIZES
+from tests.wide.kept import KEPT
 
 from .losses import error_of_mean
 from .mechanisms import BUNDLES, BundleRoute
-
-_SINGLE = {"rescue": rescue, "lock": lock, "towers": towers, "photo": photo, "gauges": gauges, "pipe": pipe}
-_SINGLE_SIZES = {"rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8, "pipe": 40}
 
 _HERE = Path(__file__).parents[2] / "deploy" / "bundles" / "bench"
 
@@ -62,15 +51,7 @@ def _found(name: str, folder: Path | None, scratch: Path) -> Path | None:
     for place in (*([folder] if folder else []), _HERE):
         if (place / name).is_dir():
             return place / name
-    problems = PROBLEMS | UPKEEP | LEAVING | _SINGLE
-    sizes = SIZES | UPKEEP_SIZES | LEAVING_SIZES | _SINGLE_SIZES
-    if name not in problems:
-        return None
-    written = scratch / name
-    written.mkdir(exist_ok=True)
-    for file, text in problems[name](sizes[name]).items():
-        (written / file).write_text(text)
-    return written
+    return KEPT[name].write(scratch / name, KEPT[name].size) if name in KEPT else None
 
 
 def _returns(

@@ -5,7 +5,7 @@ from statistics import fmean
 
 from models import built_text, engine_of, engine_of_text
 from wide.cleaning import cleaning
-from wide.upkeep import greenhouse
+from wide.greenhouse import greenhouse
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search

@@ -14,77 +14,15 @@ import argparse
 import asyncio
 import random
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from .arms import arms, arms_rule
-from .delivery import delivery, delivery_rule
-from .gauges import Gauges, gauges, gauges_rule
-from .leaving import LEAVING, LEAVING_RULES, LEAVING_SIZES, LEAVING_WORLDS
-from .lock import Lock, lock, lock_rule
+from .kept import KEPT, Problem
 from .missions import Played, played
-from .photo import Photo, photo, photo_rule
-from .pipe import Pipe, pipe, pipe_rule
-from .problems import PROBLEMS, SIZES
-from .rescue import Rescue, rescue, rescue_rule
-from .rules import RULES
-from .towers import Towers, towers, towers_rule
-from .upkeep import UPKEEP, UPKEEP_RULES, UPKEEP_SIZES
-from .world import World
 
 _STEPS = 120  # at most, in a mission
-
-_SINGLE = {
-    "arms": arms,
-    "delivery": delivery,
-    "rescue": rescue,
-    "lock": lock,
-    "towers": towers,
-    "photo": photo,
-    "gauges": gauges,
-    "pipe": pipe,
-}
-_BUNDLES = PROBLEMS | UPKEEP | LEAVING | _SINGLE
-_SIZES = (
-    SIZES
-    | UPKEEP_SIZES
-    | LEAVING_SIZES
-    | {"arms": 8, "delivery": 6, "rescue": 3, "lock": 5, "towers": 10, "photo": 12, "gauges": 8, "pipe": 40}
-)
-_RULES = (
-    RULES
-    | UPKEEP_RULES
-    | LEAVING_RULES
-    | {
-        "arms": arms_rule,
-        "delivery": delivery_rule,
-        "rescue": rescue_rule,
-        "lock": lock_rule,
-        "towers": towers_rule,
-        "photo": photo_rule,
-        "gauges": gauges_rule,
-        "pipe": pipe_rule,
-    }
-)
-_WORLDS: dict[str, Callable[[int, random.Random], World]] = LEAVING_WORLDS | {
-    "rescue": Rescue,
-    "lock": Lock,
-    "towers": Towers,
-    "photo": Photo,
-    "gauges": Gauges,
-    "pipe": Pipe,
-}
-
-
-def write(folder: Path, problem: str, size: int) -> Path:
-    """Writes the bundle of a problem into a folder of its own and returns that."""
-    bundle = folder / f"{problem}{size}"
-    bundle.mkdir(parents=True, exist_ok=True)
-    for name, text in _BUNDLES[problem](size).items():
-        (bundle / name).write_text(text)
-    return bundle
+_MISSIONS = 200  # by hand
 
 
 def main() -> None:
@@ -99,33 +37,33 @@ def main() -> None:
     parser.add_argument("--planner", default="auto")
     arguments = parser.parse_args()
     if arguments.problem[:1] == ["write"]:
-        for problem, size in _SIZES.items():
-            write(Path(arguments.problem[1]), problem, arguments.size or size)
+        for name, problem in KEPT.items():
+            size = arguments.size or problem.size
+            problem.write(Path(arguments.problem[1]) / f"{name}{size}", size)
         return
-    for problem in arguments.problem or _BUNDLES:
+    for name in arguments.problem or KEPT:
         seeds = range(arguments.seed, arguments.seed + arguments.runs)
         with tempfile.TemporaryDirectory() as folder:
-            bundle, rule = Path(problem), ""
-            if problem in _BUNDLES:
-                size = arguments.size or _SIZES[problem]
-                mean, error = ruled(problem, size, 200, arguments.seed)
-                bundle, rule = write(Path(folder), problem, size), f"rule {mean:.1f} +- {error:.1f}, "
-                if problem in _WORLDS:
-                    mean, error = at_random(problem, size, 200, arguments.seed)
-                    rule += f"random {mean:.1f} +- {error:.1f}, "
+            bundle, rule = Path(name), ""
+            if name in KEPT:
+                problem, size = KEPT[name], arguments.size or KEPT[name].size
+                bundle = problem.write(Path(folder) / f"{name}{size}", size)
+                rule = "".join(
+                    f"{what} {mean:.1f} +- {error:.1f}, "
+                    for what, (mean, error) in by_hand(problem, size, arguments.seed).items()
+                )
             found = asyncio.run(played(bundle, arguments.planner, arguments.time, seeds, _STEPS))
         print(f"{bundle.name}: {rule}{_text(found)}", flush=True)
 
 
-def ruled(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
-    """The mean discounted return of a rule over missions, and its standard error."""
-    return _mean([_RULES[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)])
-
-
-def at_random(problem: str, size: int, missions: int, seed: int) -> tuple[float, float]:
-    """The mean discounted return of random actions over missions, and its standard error."""
-    worlds = [_WORLDS[problem](size, random.Random(f"{seed}/{mission}")) for mission in range(missions)]
-    return _mean([world.play_at_random() for world in worlds])
+def by_hand(problem: Problem, size: int, seed: int) -> dict[str, tuple[float, float]]:
+    """The mean discounted return of the rule and of random actions, each with its standard error."""
+    seeds = [f"{seed}/{mission}" for mission in range(_MISSIONS)]
+    returns = {"rule": [problem.rule(size, random.Random(each)) for each in seeds]}
+    if problem.world is not None:
+        worlds = [problem.world(size, random.Random(each)) for each in seeds]
+        returns["random"] = [world.play_at_random() for world in worlds]
+    return {what: _mean(values) for what, values in returns.items()}
 
 
 def _mean(returns: list[float]) -> tuple[float, float]:

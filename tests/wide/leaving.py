@@ -4,7 +4,6 @@ Values of seen states promise much in all of them.
 """
 
 import random
-from collections.abc import Callable
 
 import numpy as np
 
@@ -173,9 +172,3 @@ def questions_rule(lamps: int, rng: random.Random) -> float:
         odds *= np.where((np.arange(_NUMBERS) > limit) == is_above, _RIGHT, 1 - _RIGHT)
         odds /= odds.sum()
     return world.earned
-
-
-LEAVING: dict[str, Callable[[int], Bundle]] = {"survey": survey, "questions": questions}
-LEAVING_SIZES = {"survey": 12, "questions": _LAMPS}
-LEAVING_RULES = {"survey": survey_rule, "questions": questions_rule}
-LEAVING_WORLDS: dict[str, type[Survey] | type[Questions]] = {"survey": Survey, "questions": Questions}

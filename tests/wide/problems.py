@@ -1,8 +1,5 @@
 """The documents of the problems: bundles as texts, in the sizes that are asked for."""
 
-from collections.abc import Callable
-
-from .shelf import shelf
 from .writing import Bundle, BundleWriter
 
 
@@ -140,12 +137,3 @@ __observed.north = AOS.SampleNormal(state__.y, deviation);"""
     writer.skill("move", ["moved"], move, over={"direction": "4"}, numbers=["east", "north"])
     writer.skill("stop", ["stopped"], "state__.has_stopped = true;\n__moduleResponse = stopped;")
     return writer.files
-
-
-PROBLEMS: dict[str, Callable[[int], Bundle]] = {
-    "parcels": parcels,
-    "clutter": clutter,
-    "open_field": open_field,
-    "shelf": shelf,
-}
-SIZES = {"parcels": 14, "clutter": 40, "open_field": 9, "shelf": 7}

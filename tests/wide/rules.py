@@ -1,11 +1,8 @@
 """Rules by hand for the problems, played in simulations of their own, which share nothing with the engine."""
 
 import random
-from collections.abc import Callable
 
 import numpy as np
-
-from .shelf import shelf_rule
 
 
 def parcels(count: int, rng: random.Random) -> float:
@@ -83,11 +80,3 @@ def open_field(light: int, rng: random.Random) -> float:
         )
         discount *= 0.97
     return discount * (100 if (at[0] - 9) ** 2 + (at[1] - 1) ** 2 < 1 else -100)
-
-
-RULES: dict[str, Callable[[int, random.Random], float]] = {
-    "parcels": parcels,
-    "clutter": clutter,
-    "open_field": open_field,
-    "shelf": shelf_rule,
-}

@@ -1,9 +1,7 @@
-"""Problems that reward nothing: what is neglected costs. The documents, and rules by hand."""
+"""Plants that dry out and a tank: nothing is rewarded, what is neglected costs. The documents, and a rule."""
 
 import random
-from collections.abc import Callable
 
-from .cleaning import cleaning, cleaning_rule
 from .writing import Bundle, BundleWriter
 
 _TANK = 6  # fillings that the robot carries
@@ -96,8 +94,3 @@ def greenhouse_rule(bays: int, rng: random.Random) -> float:
         earned += discount * (reward - moisture.count(0))
         discount *= 0.97
     return earned
-
-
-UPKEEP: dict[str, Callable[[int], Bundle]] = {"greenhouse": greenhouse, "cleaning": cleaning}
-UPKEEP_SIZES = {"greenhouse": 5, "cleaning": 7}
-UPKEEP_RULES = {"greenhouse": greenhouse_rule, "cleaning": cleaning_rule}
