@@ -103,17 +103,18 @@ async def test_documents_with_mistakes_are_refused_before_a_service_starts(tmp_p
     assert {"world/2", "skills/4"} <= places
 
 
-@pytest.mark.parametrize(
-    ("named", "place"), [("robot: barn", (2, 8)), ("robot: yard\nproject: barn", (3, 10))]
-)
-def test_another_project_than_the_documents_is_refused_where_it_stands(tmp_path, named, place):
+@pytest.mark.parametrize(("named", "column"), [("robot: barn", 8), ("robot: yard\nproject: barn", 10)])
+async def test_another_project_than_the_documents_is_refused_before_a_service_starts(tmp_path, named, column):
     bundle(tmp_path, "yard", yard_ef=ENVIRONMENT, push_sd=SKILL)
     deploy = tmp_path / "yard.yaml"
-    deploy.write_text(f"aos: 1\n{named}\nbundles: [yard]\n")
-    with pytest.raises(DeployError) as refused:
-        project_of(read_deploy_file(deploy))
-    (found,) = refused.value.diagnostics
-    assert (found.span.line, found.span.column) == place
+    deploy.write_text(f"aos: 1\n{named}\nbundles: [yard]\nbind: {{/push: model}}\n")
+    events: list[Event] = []
+    run = MissionRun(read_deploy_file(deploy), events.append, SystemClock())
+    await run.run()
+    assert not [event for event in events if isinstance(event, ServiceChanged)]
+    assert isinstance(run.error, DeployError)
+    (found,) = run.error.diagnostics
+    assert (found.span.line, found.span.column) == (named.count("\n") + 2, column)
     assert found.message == "the documents are of the project yard, not barn"
 
 
