@@ -44,12 +44,6 @@ def refusal_of(mapping: AbstractionMapping) -> DocumentError:
     return refusal.value
 
 
-def function(python: str, name: str) -> str:
-    """The text of one generated function."""
-    start = python.index(f"def {name}(")
-    return python[start:].split("\n\n\n")[0].rstrip()
-
-
 def test_a_mapping_without_rules_has_the_default_observation():
     assert 'return "DefaultObservation"' in emitted(HEAD).python
 
@@ -76,7 +70,7 @@ code:
 \tif __input.text in known:
 \t\treturn __input.text
 """).python
-    lines = function(python, "word_from_topic").splitlines()
+    lines = python[python.index("def word_from_topic(") :].splitlines()
     assert lines[2:5] == ["    known = '''one", "  two'''", "    if __input.text in known:"]
 
 

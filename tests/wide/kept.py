@@ -8,7 +8,6 @@ from typing import NamedTuple
 from . import rules
 from .arms import arms, arms_rule
 from .cleaning import cleaning, cleaning_rule
-from .delivery import delivery, delivery_rule
 from .gauges import Gauges, gauges, gauges_rule
 from .greenhouse import greenhouse, greenhouse_rule
 from .leaving import Questions, Survey, questions, questions_rule, survey, survey_rule
@@ -49,7 +48,6 @@ KEPT = {
     "survey": Problem(survey, 12, survey_rule, Survey),
     "questions": Problem(questions, 18, questions_rule, Questions),
     "arms": Problem(arms, 8, arms_rule),
-    "delivery": Problem(delivery, 6, delivery_rule),
     "rescue": Problem(rescue, 3, rescue_rule, Rescue),
     "lock": Problem(lock, 5, lock_rule, Lock),
     "towers": Problem(towers, 10, towers_rule, Towers),

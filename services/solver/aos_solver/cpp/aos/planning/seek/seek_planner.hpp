@@ -1,5 +1,5 @@
 // Seeking as a planner: where no way to a reward tells what to do, POMCP is asked, and decides unless to seek returns more
-// (seek_policy.hpp). Where a mission has sought, and that no longer pays, it is brought to its end.
+// (seek_policy.hpp). Where to seek no longer pays, POMCP goes on: it tells less than it returns, and may find the thing.
 #pragma once
 
 #include <algorithm>
@@ -27,17 +27,14 @@ class SeekPlanner final : public Planner<Model> {
 
   SeekPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
 
-  const char* name() const override { return "seek"; }
+  const char* name() const override { return seeks_ ? "seek" : pomcp_.name(); }
 
   bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) override {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
     if (!switches::seek || is_by_name || is_listed || horizon == 1 || Model::has_rollout_policy) return false;
     if (belief.probability_of(Ending::running) < 1 || pomcp_.has_wide_values(belief, horizon) || !looks_.is_due()) return false;
     seek(belief, horizon, barred, share * affordable_.of(budget, horizon), random, choosing);
-    const Sought given_up = policy_.given_up(random);
-    is_over_ = sought_.action < 0 || sought_.returned - (has_sought_ ? 0 : sought_.error) <= given_up.returned;
-    if (is_over_ && (!has_sought_ || given_up.action < 0)) return false;
-    if (is_over_) sought_ = given_up;
+    if (sought_.action < 0 || sought_.returned - (has_sought_ ? 0 : sought_.error) <= policy_.returned_at_once()) return false;
     pomcp_.prepare(question, random, choosing);
     return true;
   }
@@ -48,11 +45,9 @@ class SeekPlanner final : public Planner<Model> {
     const auto chosen = static_cast<std::size_t>(pomcp_.choice(estimates_, question.horizon, question.barred));
     // A tree that ends in values of seen states promises what no robot returns that does not see them.
     estimates_ = pomcp_.values(question.belief, std::move(estimates_), static_cast<int>(chosen));
-    if (sought_.returned <= estimates_[chosen].q) {
-      why += is_over_ ? "; to end the mission returns less" : "; to seek returns less";
-      return simulations;
-    }
-    why += is_over_ ? "; nothing that can be sought pays any more, and to end the mission returns more" : "; to seek what is somewhere returns more, and decides";
+    seeks_ = sought_.returned > estimates_[chosen].q;
+    why += seeks_ ? "; to seek what is somewhere returns more, and decides" : "; to seek returns less";
+    if (!seeks_) return simulations;
     has_sought_ = true;
     estimates_.assign(estimates_.size(), {});
     estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
@@ -87,8 +82,8 @@ class SeekPlanner final : public Planner<Model> {
   Sought sought_;
   Estimates estimates_;
   Backoff looks_;
+  bool seeks_ = false;       // in the last decision
   bool has_sought_ = false;  // in this mission
-  bool is_over_ = false;     // since nothing that can be sought pays any more
 };
 
 }  // namespace aos

@@ -1,4 +1,4 @@
-// Looks for one thing among many places: goes where a nat is cheapest, looks there, and ends in time.
+// Looks for one thing among many places: goes where a nat is cheapest, looks there, and stops in time.
 //
 // States of the belief stand for it, one for all that differ by what runs down alone. From them the places are found that moves
 // lead to (seek_places.hpp). In each place each action that tells something is a test. A state wins by a test if the best end after
@@ -64,8 +64,8 @@ class SeekPolicy {
     const double mean = sum / count;
     return {first, mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1)), static_cast<int>(count)};
   }
-  // To bring the mission to its best end at once. None where no way to an end is known.
-  Sought given_up(Sampler random) { return {ended(0, any_state(), random).action, given_up_, 0, static_cast<int>(belief_.size())}; }
+  // What the best end at once returns on average; 0 without an end.
+  double returned_at_once() const { return returned_at_once_; }
   void start_over() { is_prepared_ = false; }
 
  private:
@@ -86,8 +86,8 @@ class SeekPolicy {
     std::vector<End>& ends = places_.ends();
     std::ranges::stable_sort(ends, [](const End& one, const End& other) { return one.reward > other.reward; });
     if (ends.size() > most_ends) ends.resize(most_ends);
-    given_up_ = 0;
-    for (std::size_t k = 0; k < belief_.size(); ++k) given_up_ += belief_.weights()[k] * ended(0, belief_.states()[k], random).returned;
+    returned_at_once_ = 0;
+    for (std::size_t k = 0; k < belief_.size(); ++k) returned_at_once_ += belief_.weights()[k] * ended(0, belief_.states()[k], random).returned;
   }
 
   struct Ended {
@@ -259,7 +259,7 @@ class SeekPolicy {
   std::size_t classes_ = 0;
   std::vector<double> prior_;  // by class
   double stake_ = 0;           // what a win is worth, on average
-  double given_up_ = 0;
+  double returned_at_once_ = 0;
   std::vector<double> seen_;
   std::vector<std::pair<double, const Test*>> ranked_;
 };
