@@ -204,7 +204,6 @@ class PlanningCommands {
     return barred;
   }
 
-
   static Budget budget_of(const Command& command) {
     const int threads = command.number<int>("threads");
     return {command.number<std::uint64_t>("simulations"), command.number<double>("seconds"),
