@@ -30,6 +30,9 @@ from aos_runtime.client import AosClient
 from aos_runtime.parties.served import served
 
 _ASK_S = 5.0
+_LAST_S = 0.5
+"""The progress of a call that has ended may be under way for so long."""
+_GOING_ON = ("accepted", "executing", "cancelling")
 
 skill_app = typer.Typer(
     no_args_is_help=True,
@@ -114,11 +117,12 @@ def call(
         path = await _served_path(aos, name)
         request = SkillCall(ActivationId("by-hand", time.time_ns()), path, _values(fields or []), deadline)
         async with aos.bus.listen(aos.keys.progress(path), SkillProgress) as progress:
-            telling = asyncio.create_task(_tell(progress, as_json))
+            telling = asyncio.create_task(_tell(progress, request.id, as_json))
             try:
                 result = await aos.bus.ask(
                     aos.keys.call(path), request, SkillResult, timeout_s=deadline + _ASK_S
                 )
+                await asyncio.wait([telling], timeout=_LAST_S)
             except asyncio.CancelledError:
                 await _stop(aos, path, request.id)
                 raise
@@ -205,12 +209,15 @@ async def _stop(aos: AosClient, path: str, id: ActivationId | None = None) -> Ca
     )
 
 
-async def _tell(progress: Subscription[tuple[str, SkillProgress]], as_json: bool) -> None:
+async def _tell(progress: Subscription[tuple[str, SkillProgress]], id: ActivationId, as_json: bool) -> None:
+    """Prints progress until that of the call's end."""
     async for _, report in progress:
         if as_json:
             typer.echo(msgspec.json.encode(report), err=True)
         else:
             typer.echo(f"{report.state:10} {report.progress:4.0%}  {report.text}", err=True)
+        if report.id == id and report.state not in _GOING_ON:
+            return
 
 
 def _row(skill: str, path: str, state: MappingState, servers: list[Serving]) -> dict[str, Any]:
