@@ -5,7 +5,7 @@ from typing import Any
 
 from rich.progress import Progress, TaskID
 
-from aos_deploy.terminal import TimedLines
+from aos_deploy.timed_lines import TimedLines
 
 
 class ToldProgress(Progress):

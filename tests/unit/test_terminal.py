@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from aos_deploy import terminal
+from aos_deploy import terminal, timed_lines
 
 
 def test_long_work_tells_a_log_now_and_then_how_far_it_is(capsys, monkeypatch):
@@ -20,7 +20,7 @@ def test_long_work_tells_a_log_now_and_then_how_far_it_is(capsys, monkeypatch):
 
 
 def test_counted_work_tells_a_log_now_and_then_how_much_is_done(capsys, monkeypatch):
-    monkeypatch.setattr(terminal, "LINE_EVERY_S", 0.0)
+    monkeypatch.setattr(timed_lines, "LINE_EVERY_S", 0.0)
     with terminal.progress() as bar:
         task = bar.add_task("hard-table", total=10)
         bar.advance(task)
@@ -46,7 +46,7 @@ class Log(io.StringIO):
 def test_work_that_tells_nothing_is_told_of_all_the_same(monkeypatch):
     log = Log()
     monkeypatch.setattr("sys.stderr", log)
-    monkeypatch.setattr(terminal, "TICK_S", 0.01)
+    monkeypatch.setattr(timed_lines, "TICK_S", 0.01)
     with terminal.waiting("looking", first_s=0.02):
         assert log.has_a_line.wait(30)
     assert log.getvalue() == "aos: looking for 0 s\n"

@@ -14,7 +14,8 @@ from rich.progress import Progress
 from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
 from aos_deploy.places import shipped
 from aos_deploy.printing import count, from_here, json_text, print_json
-from aos_deploy.terminal import LINE_EVERY_S, progress
+from aos_deploy.terminal import progress
+from aos_deploy.timed_lines import LINE_EVERY_S
 from aos_lab.commands.interrupted import interruption_among_missions
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import pip_install

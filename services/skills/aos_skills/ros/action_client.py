@@ -1,18 +1,13 @@
 """Running an action of a ROS 2 node: goal, feedback, result, and the handshake of cancelling."""
 
-from __future__ import annotations
-
 import asyncio
 import uuid
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from aos_protocol.errors import AosError, SkillError
 from aos_skills.ros.faults import CANCEL_S, goal_forgotten, node_lost, not_cancelled, not_ended
 from aos_skills.ros.node import DISCOVERY_S, ActionEnd, ActionRequest, Fields, ServiceRequest
-
-if TYPE_CHECKING:
-    from aos_skills.ros.ros2_node import Ros2Node  # It has a client.
+from aos_skills.ros.ros2_services import Ros2Services
 
 _ASKED_S = 24 * 3600.0
 """A goal that did not end when it was told to may take this long to end after all."""
@@ -24,7 +19,7 @@ ENDED = {4: "succeeded", 5: "canceled", 6: "aborted"}
 class ActionClient:
     """A node's runs of actions, with one subscription to feedback for each action, however many goals run."""
 
-    def __init__(self, node: Ros2Node) -> None:
+    def __init__(self, node: Ros2Services) -> None:
         self._node = node
         self._takers: dict[str, dict[bytes, Callable[[Fields], None]]] = {}
 

@@ -1,48 +1,24 @@
 """The common part of all ROS 2 nodes: actions stand on services and topics, whatever carries these."""
 
 import logging
-from abc import abstractmethod
 from collections.abc import Callable
 
 from aos_protocol.errors import AosError
 from aos_skills.ros.action_client import ActionClient
 from aos_skills.ros.action_server import ActionServer
-from aos_skills.ros.node import ActionEnd, ActionRequest, Fields, RosNode, RunGoal, named_skills
+from aos_skills.ros.node import ActionEnd, ActionRequest, Fields, RunGoal, named_skills
+from aos_skills.ros.ros2_services import Ros2Services
 from aos_skills.ros.types import RosTypes
 
 _log = logging.getLogger("aos.ros2")
 
 
-class Ros2Node(RosNode):
+class Ros2Node(Ros2Services):
     """A node over a transport that gives topics, services and who is there."""
 
     def __init__(self, types: RosTypes) -> None:
-        super().__init__()
-        self.types = types
+        super().__init__(types)
         self._actions = ActionClient(self)
-
-    # --- by the transport ---
-
-    @abstractmethod
-    async def until_heard(self, topic: str) -> None:
-        """Returns when whoever publishes a topic knows of the subscription to it, as far as can be known."""
-
-    @abstractmethod
-    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
-        """The type of a service that some node serves, which is as it is defined here, and the given one.
-
-        The errors are those of `call`.
-        """
-
-    @abstractmethod
-    def serves(self, service: str) -> bool:
-        """Returns whether some node serves it now."""
-
-    @abstractmethod
-    def services(self) -> list[str]:
-        """The names of all that some node serves now."""
-
-    # --- the same for all ---
 
     async def run_action(self, request: ActionRequest) -> ActionEnd:
         return await self._actions.run(request)
@@ -62,11 +38,6 @@ class Ros2Node(RosNode):
         if self.kind_of(name) == "action":
             name, type_name = f"{name}/_action/send_goal", f"{type_name}_SendGoal" if type_name else ""
         await self.service_type(name, type_name, 0.0)
-
-    async def service_gone(self, service: str) -> None:
-        """Returns when nobody serves it."""
-        while self.serves(service):
-            await self.changed()
 
     def _decoding(
         self, topic: str, type_name: str, take: Callable[[Fields], None]
