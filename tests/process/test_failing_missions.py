@@ -86,12 +86,13 @@ async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel):
     assert [record.skill for record in around.decisions].count("take") == 3
 
 
-async def test_beside_a_camera_that_always_fails_the_robot_asks(cache_dir: Path):
+@pytest.mark.parametrize("look", [jammed, lambda request: observed(request, "fine_weather")])
+async def test_beside_a_camera_that_always_fails_or_says_words_of_no_document_the_robot_asks(look, cache_dir):
     built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
     answers = {"ask": "said_right", "take": "taken"}
 
     def robot(request: Activate) -> Outcome:
-        return jammed(request) if request.skill == "look" else observed(request, answers[request.skill])
+        return look(request) if request.skill == "look" else observed(request, answers[request.skill])
 
     state, around = await run_mission(built, robot, limits=LIMITS)
     skills = [record.skill for record in around.decisions]
@@ -198,19 +199,6 @@ async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_tak
     skills = [record.skill for record in around.decisions]
     assert (state.ending, skills[-1]) == ("goal", "grab")
     assert skills.count("take") == 3
-
-
-async def test_a_skill_that_answers_with_words_of_no_document_is_set_aside(cache_dir: Path):
-    built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
-    answers = {"look": "fine_weather", "ask": "said_right", "take": "taken"}
-
-    state, around = await run_mission(
-        built, lambda request: observed(request, answers[request.skill]), limits=LIMITS
-    )
-    skills = [record.skill for record in around.decisions]
-    assert state.ending == "goal"
-    assert skills[:4] == ["look", "look", "look", "ask"]
-    assert around.outcomes[2].remark.startswith("look is set aside for 300 s after 3 failures in a row")
 
 
 async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason(cache_dir: Path):

@@ -33,6 +33,7 @@ from aos_protocol.messages import (
     BeliefSummary,
     Cancel,
     DecisionRecord,
+    Fault,
     Marginal,
     MissionState,
     Outcome,
@@ -86,7 +87,9 @@ def make_run(folder: Path) -> Path:
     with Journal.open(run / "journal.db") as journal:
         for step in range(1, STEPS + 1):
             outcome = Outcome(
-                ActivationId("a-run", step), "go", "observed", "arrived", ended_ns=step * 10**9 + 5
+                *(ActivationId("a-run", step), "go", "observed", "arrived"),
+                ended_ns=step * 10**9 + 5,
+                fault=Fault("AOS510", "it slips") if step == 2 else None,
             )
             journal.append("decision", decided(step))
             journal.append("intended", Activate(outcome.id, "go", {"to": "a"}, 10.0, 1))
@@ -138,14 +141,8 @@ def test_a_run_is_read_back_from_its_mcap_file(run: Path, tmp_path):
     assert {topic for topic in by_topic if len(by_topic[topic]) == 1} == {
         *("/aos/mission", "/aos/steered", "/aos/of_a_later_version", "/aos/picture")
     }
-    plain = len(
-        [
-            topic
-            for topic, *_ in messages
-            if topic not in ("/aos/plot/belief", "/aos/plot/values", "/aos/picture")
-        ]
-    )
-    assert plain == len(rows)
+    added = ("/aos/plot/belief", "/aos/plot/values", "/aos/picture")
+    assert sum(topic not in added for topic, *_ in messages) == len(rows)
     first = msgspec.convert(by_topic["/aos/decision"][0], DecisionRecord)
     assert (first.action, first.belief) == ("go(to=a)", belief(0))
     assert by_topic["/aos/plot/values"][1]["q"] == {"go_to_a": 3.0, "look": -1.0}
@@ -212,14 +209,11 @@ def test_tables_hold_each_step_prediction_value_and_belief(run: Path, tmp_path):
         "beliefs": 6 * STEPS,
         "quantiles": 10 * STEPS,
     }
-    assert [tables["quantiles"][2][name] for name in ("variable", "probability", "value")] == [
-        "depth",
-        "0.5",
-        "0.0",
-    ]
+    third = tables["quantiles"][2]
+    assert (third["variable"], third["probability"], third["value"]) == ("depth", "0.5", "0.0")
     step = tables["steps"][1]
-    told = [step[name] for name in ("step", "action", "response", "chosen_by")]
-    assert told == ["2", "go(to=a)", "arrived", "planner"]
+    told = [step[name] for name in ("step", "action", "response", "error", "chosen_by")]
+    assert told == ["2", "go(to=a)", "arrived", "AOS510: it slips", "planner"]
     assert json.loads(step["parameters"]) == {"to": "a"}
     assert (tables["missions"][0]["ending"], tables["missions"][0]["steps"]) == ("goal", "3")
     assert [(row["response"], row["is_seen"]) for row in tables["predictions"][:2]] == [

@@ -32,7 +32,6 @@ from aos_runtime.parties.served import served
 _ASK_S = 5.0
 _LAST_S = 0.5
 """The progress of a call that has ended may be under way for so long."""
-_GOING_ON = ("accepted", "executing", "cancelling")
 
 skill_app = typer.Typer(
     no_args_is_help=True,
@@ -216,7 +215,7 @@ async def _tell(progress: Subscription[tuple[str, SkillProgress]], id: Activatio
             typer.echo(msgspec.json.encode(report), err=True)
         else:
             typer.echo(f"{report.state:10} {report.progress:4.0%}  {report.text}", err=True)
-        if report.id == id and report.state not in _GOING_ON:
+        if report.id == id and not report.goes_on:
             return
 
 

@@ -22,7 +22,6 @@ _FIXED_ROWS = 11
 _FEWEST_ROWS = 3
 _GAP_CELLS = 4
 _SPINNER_CELLS = 2
-_RUNNING = ("executing", "cancelling")
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
 
@@ -143,9 +142,10 @@ class Screen:
     def _of_the_skill(self) -> Text:
         """Shows how far the skill of this step is; empty before a skill says so, and when it has ended."""
         state, progress = self.state, self.progress
-        if state is None or progress is None or state.phase != "acting" or progress.state not in _RUNNING:
+        if state is None or progress is None or state.phase != "acting" or not progress.goes_on:
             return Text()
-        is_of_this_step = (progress.id.mission, progress.id.step) == (state.mission, state.step)
+        has_begun = progress.state != "accepted"
+        is_of_this_step = has_begun and (progress.id.mission, progress.id.step) == (state.mission, state.step)
         return Text("  ").append_text(progress_text(progress)) if is_of_this_step else Text()
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:

@@ -1,7 +1,6 @@
 """The traces of missions in a simulated world besides actions: how fast they were, and pictures."""
 
 import json
-import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,12 +20,16 @@ def simulated_speed(trials: Sequence[Trial]) -> float | None:
 
 
 def keep_picture(runs: Path, seeds: Sequence[int], target: Path) -> Path | None:
-    """A copy of what the first mission with pictures looked like at its end; None where there are none."""
+    """The first mission with pictures as it looked at its end, without loss; None where there are none."""
     for seed in seeds:
         pictures = sorted(runs.glob(f"seed-{seed}/*/pictures/*.png"))
         if pictures:
+            from PIL import Image  # Whoever has pictures has it.
+
             target.parent.mkdir(parents=True, exist_ok=True)
-            return Path(shutil.copy(pictures[-1], target))
+            with Image.open(pictures[-1]) as picture:
+                picture.save(target, lossless=True)
+            return target
     return None
 
 

@@ -26,7 +26,7 @@ def write_report(results: Results, plots: Mapping[str, Path], folder: Path) -> t
 
 
 def _embedded(path: Path) -> str:
-    return f'<img alt="the world" src="data:image/png;base64,{b64encode(path.read_bytes()).decode()}">'
+    return f'<img alt="the world" src="data:image/webp;base64,{b64encode(path.read_bytes()).decode()}">'
 
 
 def _svg(path: Path) -> str:

@@ -56,7 +56,7 @@ class ExperimentRun(msgspec.Struct, frozen=True):
             except IntractableError as error:
                 return msgspec.structs.replace(result, no_optimum=error.message)
             return msgspec.structs.replace(result, regret=regret_of(optimum, played.trials))
-        target = self.folder / "pictures" / f"{name}.png"
+        target = self.folder / "pictures" / f"{name}.webp"
         if by == "system" and keep_picture(out / "runs", result.seeds, target):
             return msgspec.structs.replace(result, picture=str(target.relative_to(self.folder)))
         return result

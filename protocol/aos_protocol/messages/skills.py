@@ -169,6 +169,11 @@ class SkillProgress(Message, frozen=True):
     progress: float = 0.0
     text: str = ""
 
+    @property
+    def goes_on(self) -> bool:
+        """True until the call has ended."""
+        return self.state in ("accepted", "executing", "cancelling")
+
 
 class TopicMessage(Message, frozen=True):
     """Raw data of the robot: the fields of one message, numbered from 1 for each topic."""

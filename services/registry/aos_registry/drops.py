@@ -25,8 +25,9 @@ class DroppedBundles:
     """Takes what is dropped into a folder, by `take`. `tell` hears what became of each bundle.
 
     A bundle that is refused because it lacks something waits, and is taken once more, as it then stands in
-    the folder, after each `project_changed`. Only a new answer is told. An acceptance ends the waiting and a
-    refusal changes no project, so that the bundles that wait cannot keep one another going.
+    the folder, after each `project_changed`. Only a new answer is told, and none of a bundle that was there
+    before and waits for the first project. An acceptance ends the waiting and a refusal changes no project,
+    so that the bundles that wait cannot keep one another going.
     """
 
     def __init__(
@@ -37,8 +38,9 @@ class DroppedBundles:
         self._take = take
         self._tell = tell
         self._changed: asyncio.Queue[Path] = asyncio.Queue()
-        self._waiting: dict[Path, BundleReport] = {}
+        self._waiting: dict[Path, BundleReport | None] = {}  # By what was told of them.
         self._again: set[Path] = set()
+        self._from_before = set(folder.iterdir())
 
     async def follow(self) -> None:
         """Follows the folder until it is cancelled."""
@@ -46,6 +48,7 @@ class DroppedBundles:
 
     def project_changed(self) -> None:
         """There is a new revision of a project: what waits is tried with it."""
+        self._from_before.clear()
         self._waiting = {path: report for path, report in self._waiting.items() if path.exists()}
         for path in self._waiting:
             self._again.add(path)
@@ -62,6 +65,9 @@ class DroppedBundles:
             diagnostic.code for diagnostic in report.diagnostics if diagnostic.is_error
         } & {*LACKING}:
             report = msgspec.structs.replace(report, is_waiting=True)
+            if path in self._from_before:
+                self._waiting[path] = None
+                return
             self._waiting[path] = report
         if not (is_again and was_waiting is not None and _says_the_same(report, was_waiting)):
             self._tell(report)

@@ -67,9 +67,9 @@ class _Registry:
         await self._bus.answer(self._keys.project, ProjectQuery, self._answer_project)
         await self._bus.answer(self._keys.catalogue, CatalogueQuery, self._answer_catalogue)
         await self._service.ready()
-        for recalled in self._intake.revisions.values():
+        for project in self._intake.revisions:
             # Who was there before, and found no registry, waits for this.
-            self._bus.tell(self._keys.announced, recalled)
+            self._announce(project)
         await self._dropped.follow()
 
     # --- answers ---
