@@ -83,5 +83,5 @@ def _checked_decode(payload: bytes | msgspec.Raw, kind: type[M]) -> M:
     try:
         message: M = _decoder(kind).decode(payload)
     except UNREADABLE as error:
-        raise BusError(f"not a {kind.__name__}: {error}", code="AOS602") from error
+        raise BusError(f"no {kind.__name__}: {error}", code="AOS602") from error
     return message

@@ -311,9 +311,9 @@ async def test_a_question_or_answer_of_the_wrong_kind_is_malformed(bus: Bus, oth
 
     await other.answer(keys.project, TopicMessage, describe)
 
-    with pytest.raises(BusError, match="not a TopicMessage") as wrong_question:
+    with pytest.raises(BusError, match="no TopicMessage") as wrong_question:
         await bus.ask(keys.project, CatalogueQuery(), TopicMessage, timeout_s=2)
-    with pytest.raises(BusError, match="not a CatalogueEntry") as wrong_answer:
+    with pytest.raises(BusError, match=rf"the answer on {keys.project}: no CatalogueEntry") as wrong_answer:
         await bus.ask(keys.project, TopicMessage(1, {}), CatalogueEntry, timeout_s=2)
     assert wrong_question.value.code == wrong_answer.value.code == "AOS602"
 

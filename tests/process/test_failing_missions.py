@@ -76,11 +76,12 @@ def goals(around: Surroundings) -> list[float]:
     return [record.belief.goal_probability for record in around.records]
 
 
-async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel):
-    def robot(request: Activate) -> Outcome:
-        return jammed(request) if request.skill == "take" else observed(request, "seen_left")
+def sees_left_and(take: Callable[[Activate], Outcome]) -> Callable[[Activate], Outcome]:
+    return lambda request: take(request) if request.skill == "take" else observed(request, "seen_left")
 
-    state, around = await run_mission(tutorial, robot, limits=LIMITS)
+
+async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel):
+    state, around = await run_mission(tutorial, sees_left_and(jammed), limits=LIMITS)
     assert (state.ending, max(goals(around))) == ("skills_failed", 0.0)
     assert "take is set aside for 300 s after 3 failures in a row, the last failed, AOS510" in state.remark
     assert [record.skill for record in around.decisions].count("take") == 3
@@ -106,10 +107,7 @@ async def test_beside_a_camera_that_always_fails_or_says_words_of_no_document_th
 
 
 async def test_a_skill_of_which_nobody_knows_ran_always_or_never(tutorial: BuiltModel):
-    def robot(request: Activate) -> Outcome:
-        return timed_out(request) if request.skill == "take" else observed(request, "seen_left")
-
-    state, around = await run_mission(tutorial, robot, limits=LIMITS)
+    state, around = await run_mission(tutorial, sees_left_and(timed_out), limits=LIMITS)
     assert state.ending == "skills_failed"
     # Coins of their own would have it at 1 - 0.55**3 = 0.83 of what a look leaves.
     assert 0.3 < max(goals(around)) < 0.6
@@ -142,12 +140,9 @@ async def test_what_follows_from_the_remedy_of_nonsense_alone_is_not_claimed(cac
 
 
 async def test_where_the_mission_would_be_over_it_is_decided_as_if_nothing_had_run(tutorial: BuiltModel):
-    def robot(request: Activate) -> Outcome:
-        return timed_out(request) if request.skill == "take" else observed(request, "seen_left")
-
     rules = FailureRules(skills={"take": SkillRule(ran_probability=0.99)})
     limits = MissionLimits(goal_probability=0.8, step_limit=40)
-    state, around = await run_mission(tutorial, robot, limits=limits, rules=rules)
+    state, around = await run_mission(tutorial, sees_left_and(timed_out), limits=limits, rules=rules)
     assert max(goals(around)) > 0.8
     assert state.ending == "skills_failed"
     cautious = [record for record in around.decisions if record.is_cautious]
@@ -205,11 +200,8 @@ async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the
     dear = fetch(look=LOOK, take=TAKE, grab=GRAB.replace("-6", "-30"))
     built = await built_text(dear, cache_dir)
 
-    def robot(request: Activate) -> Outcome:
-        return jammed(request) if request.skill == "take" else observed(request, "seen_left")
-
     limits = MissionLimits(goal_probability=0.9, step_limit=40, stop_below_value=0.0)
-    state, around = await run_mission(built, robot, limits=limits)
+    state, around = await run_mission(built, sees_left_and(jammed), limits=limits)
     assert state.ending == "skills_failed"
     assert "take is set aside" in state.remark
     assert "grab" not in [record.skill for record in around.decisions]

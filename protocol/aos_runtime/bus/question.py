@@ -11,7 +11,7 @@ import zenoh
 from zenoh.handlers import Callback
 
 from aos_protocol.codec import decode, decode_fault
-from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError
+from aos_protocol.errors import AosError, BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
 
 R = TypeVar("R", bound=Message)
@@ -95,8 +95,13 @@ class Question(Generic[R]):
             hint = "Is the service that should answer running?"
             raise NobodyAnswersError(f"nobody answers {self._key}", hint=hint)
         is_answer, payload = result
-        if is_answer:
-            return decode(payload, self._reply)
-        if payload == _ZENOH_TIMEOUT:
+        if not is_answer and payload == _ZENOH_TIMEOUT:
             raise LateAnswerError(f"no answer on {self._key} within {self._timeout_s:g} s")
-        raise decode_fault(payload)
+        try:
+            if is_answer:
+                return decode(payload, self._reply)
+            fault = decode_fault(payload)
+        except BusError as error:
+            text = f"the answer on {self._key}: {error.message}"
+            raise BusError(text, code=error.code, hint=error.hint) from error
+        raise fault
