@@ -183,7 +183,7 @@ async def test_whoever_asks_for_an_action_hears_when_it_is_decided_for_or_why_no
 
 
 @pytest.mark.parametrize(
-    ("phase", "said"), [("waiting", "no mission has begun"), ("ended", "no mission runs")]
+    ("phase", "said"), [("waiting", "no mission has begun. Wait"), ("ended", "no mission runs")]
 )
 async def test_the_desk_says_whether_a_mission_is_over_or_has_not_begun(phase, said):
     missions: Any = create_autospec(MissionRunner, instance=True)

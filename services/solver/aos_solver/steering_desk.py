@@ -43,8 +43,10 @@ class SteeringDesk:
             )
         if mission is None:
             is_first_to_come = self._missions.state.phase in ("waiting", "compiling")
-            text = "no mission has begun" if is_first_to_come else "no mission runs"
-            raise SteeringError(text, hint="See `aos mission list`")
+            if is_first_to_come:
+                hint = "Wait until its model is compiled, or begin one by `aos mission start`"
+                raise SteeringError("no mission has begun", hint=hint)
+            raise SteeringError("no mission runs", hint="See `aos mission list`")
         if steer.mission not in ("", mission.state.mission):
             raise SteeringError(f"{steer.mission} does not run, {mission.state.mission} does")
         steer = msgspec.structs.replace(
