@@ -16,11 +16,12 @@
 
 namespace aos::point_based {
 
-// The bounds of an action's value, and how many trials began with the action.
+// The bounds of an action's value, how many trials began with it, and how probable it is at most that more can be earned after it.
 struct ActionBounds {
   double lower = 0;
   double upper = 0;
   std::uint32_t trials = 0;
+  double goes_on = 1;
 };
 
 // What the decisions of a mission lose of a lower bound, and the part of it that those lose which are not proven to be the best,

@@ -104,7 +104,10 @@ class Sarsop {
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       Branch& branch = root_branch(action);
       backups_.refresh(branch);
-      bounds[action] = {moved(weight * branch.lower, -1), moved(weight * branch.upper, 1), trial_.begun()[action]};
+      double goes_on = branch.rest;
+      for (const Successor& successor : branch.successors) goes_on += successor.probability;
+      bounds[action] = {moved(weight * branch.lower, -1), moved(weight * branch.upper, 1), trial_.begun()[action],
+                        std::min(moved(weight * goes_on, 1), 1.0)};
     }
     return bounds;
   }
@@ -246,8 +249,7 @@ class Sarsop {
   Branch opened(std::uint32_t number, std::uint32_t action) {
     Node& node = graph_[number];
     graph_.expand(node);
-    const auto known = std::find_if(node.branches.begin(), node.branches.end(),
-                                    [&](const Branch& branch) { return branch.action == action; });
+    const auto known = std::ranges::find(node.branches, action, &Branch::action);
     Branch branch = known != node.branches.end() ? *known : graph_.closed_branch(node, action, graph_.informed_values(node)[action]);
     graph_.open(node, branch);
     backups_.refresh(branch);

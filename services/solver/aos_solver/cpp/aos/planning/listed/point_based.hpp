@@ -81,6 +81,10 @@ class PointBased {
     const bool is_proven = is_endless_ && unknown >= bounds.upper - bounds.lower;
     return unknown > loss_error_ && !is_proven ? aos::unplayed_text(missions_) : std::string{};
   }
+  // How much of the bounds of the belief may come after the decisions that an action's value is of.
+  double later_at_most(int action) const {
+    return running_ <= 0 ? 0 : later().second * search_->action_bounds()[static_cast<std::size_t>(action)].goes_on;
+  }
   // How many simulations all searches took so far.
   std::uint64_t known_simulations() const { return known_; }
 
@@ -151,8 +155,8 @@ class PointBased {
     std::vector<ActionEstimate> result;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
       const double lower = bounds.lower - error_;
-      result.push_back({lower, bounds.trials + 1, 0, 0, lower - most_later});
-      if (!tells_by_cells()) result.back().at_most = bounds.upper + error_ - least_later;
+      result.push_back({lower, bounds.trials + 1, 0, 0, lower - bounds.goes_on * most_later});
+      if (!tells_by_cells()) result.back().at_most = bounds.upper + error_ - bounds.goes_on * least_later;
     }
     if (policy_) {
       // Missions that were lucky may have returned more than is possible.
@@ -162,9 +166,8 @@ class PointBased {
     }
     return result;
   }
-  // Estimates with a value between the bounds. With cells the upper one holds for a robot that observes cells only. Where
-  // the search has no horizon, missions tell what comes after the horizon. Without missions it is worth nothing at least, and
-  // as much as now at most.
+  // Estimates with a value between the bounds. Where the search has no horizon, missions tell what comes after the horizon.
+  // Without missions it is worth nothing at least, and as much as now at most.
   std::vector<ActionEstimate> values(std::vector<ActionEstimate> estimates, int choice) const {
     if (running_ <= 0) return estimates;
     const auto [worst, best] = search_->bounds();
@@ -172,8 +175,9 @@ class PointBased {
     const double lost = later_ + std::max(loss_, 0.0), gained = std::max(-loss_, 0.0);
     std::vector<double> lowers, uppers;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
-      uppers.push_back(bounds.upper + error_ - lost - left * std::min(worst, 0.0));
-      lowers.push_back(std::min(bounds.lower - error_ - lost + gained - left * std::max(best, 0.0), uppers.back()));
+      const double going_on = left * bounds.goes_on;
+      uppers.push_back(bounds.upper + error_ - lost - going_on * std::min(worst, 0.0));
+      lowers.push_back(std::min(bounds.lower - error_ - lost + gained - going_on * std::max(best, 0.0), uppers.back()));
     }
     if (policy_) lowers[policy_->action] = std::clamp(policy_->within, lowers[policy_->action], uppers[policy_->action]);
     set_between(estimates, lowers, uppers, choice);

@@ -1,6 +1,7 @@
 // SARSOP at every decision, with all states that can be reached, or else with those near the belief.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/planner.hpp"
 #include "aos/text/rounded_text.hpp"
+#include "point_based/constants.hpp"
 
 namespace aos {
 
@@ -45,6 +47,10 @@ class SarsopPlanner final : public Planner<Model> {
     const auto chosen = [&] { return this->choice(used().estimates(), question.horizon, question.barred); };
     const std::uint64_t simulations = used().search(question.budget, chosen);
     why += "; " + bounds_text(question);
+    const double later = used().later_at_most(chosen());
+    if (later > point_based::next_to_nothing * std::abs(used().bounds().second)) {
+      why += "; up to " + rounded_up(later) + " of it after the " + std::to_string(question.horizon) + " decisions that values count";
+    }
     if (const std::string unplayed = used().unplayed_text(chosen()); !unplayed.empty()) why += ", and " + unplayed;
     if (const auto& policy = used().policy()) {
       why += "; a simple policy decides, since it returns " + rounded_down(policy->value) + " in played missions";
