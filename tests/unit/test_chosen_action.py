@@ -57,10 +57,3 @@ def test_only_the_chosen_skill_is_seen(bird: ScriptedModel, action, seen):
 
 def test_a_skill_is_charged_for_itself_alone(bird: ScriptedModel):
     assert bird.play("fly", "rest", "fly", "sing").rewards == [-1, 0, -1, 0]
-
-
-def test_the_emitted_text_tells_skills_apart_by_their_names(bird: ScriptedModel):
-    chosen = bird.emitted.cpp.split("struct aos_Chosen {")[1].split("};")[0]
-    for skill in ("fly", "rest", "turn", "lean", "never"):
-        assert f"if constexpr (std::same_as<Skill, aos_skill_{skill}>) {skill} = &parameters;" in chosen
-    assert "sing" not in chosen

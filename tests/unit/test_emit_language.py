@@ -206,11 +206,6 @@ def test_an_initial_belief_may_draw_an_enum_and_change_what_it_iterates_over(mod
     assert played.initial["state"]["box_a.weight"] == "1"
 
 
-def test_a_type_may_have_a_name_that_the_emitted_file_uses_itself(model: ScriptedModel):
-    assert "struct State_ {" in model.emitted.cpp
-    assert "using State = model::State_;" in model.emitted.cpp
-
-
 def test_groundings_are_ordered_by_variable_name_and_the_first_parameter_is_outermost(model: ScriptedModel):
     actions = [name for name in model.describe() if name.startswith("paint")]
     assert actions == ["paint(colour=blue, box=p_box)", "paint(colour=red, box=p_box)"]

@@ -249,6 +249,9 @@ def test_parameters_of_a_skill_that_was_left_out_are_an_error_where_they_may_be_
     )
     unread = {"hall.ef": ENVIRONMENT + looking, "walk.sd": SKILL, "walk.am": MAPPING, "pour.sd": ""}
     assert [finding.code for finding in load_files(encoded(unread)).diagnostics] == ["AOS104"]
+    for leaving in ("if (pour == NULL) return;", "if (!pour) { return; }"):
+        (only,) = found(environment=f"{ENVIRONMENT}\nextrinsic_code:\n{leaving}\nstate_.second.x += pour->n;")
+        assert only.severity == Severity.WARNING
     pointer = "\nextrinsic_code:\nCell* cell = NULL;\nif (cell == NULL) state_.second.x = 1;\n"
     assert found(environment=ENVIRONMENT + pointer) == ()
 

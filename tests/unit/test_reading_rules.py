@@ -127,6 +127,7 @@ REFUSED = [
     Rule("go.json", "§{«0.9, 0.1→1»}", "AOS122"),
     Rule("go.json", "AOS.SampleDiscrete(§«tEnd→tEdn»", "AOS110"),
     Rule("go.sd", "parameter: Door §door«→-2»", "AOS126"),
+    Rule("go.sd", "parameter: §«Door door→door int»", "AOS104"),
     Rule("go glue.json", '«"ok"→["ok", "§) or (ok"]»}', "AOS121"),
     Rule("go glue.json", '§"«FromROSServiceResponse": true→RosParameter": "/ok"»', "AOS124"),
     Rule("room.ef", "is_open« true→[2]»", "AOS104"),

@@ -1,10 +1,8 @@
 """Numbers beside a response in the documents: how they are read, emitted, and taken from local variables."""
 
-from pathlib import Path
-
 import pytest
 from mappings import mapping_text
-from scripted_models import bundle_project, json_text, lowered, text_project
+from scripted_models import json_text, lowered, text_project
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.observed import misuses_of, reported_numbers, reports_in
@@ -88,8 +86,6 @@ def test_a_reported_draw_is_emitted_as_its_distribution(dialect):
         "aos::at(__observed.echoes, i) = aos::Discrete(aos::normalised, {0.5, 0.5});",
         "__observed.echoes.push_back( aos::Discrete({1.0}) );",
         "case 1: __observed.loud = aos::Bernoulli(0.2);",
-        "aos::ReportedNumber<Source> depth;",
-        "aos::ReportedNumbers<Source> echoes;",
     ):
         assert line in emitted.cpp
     assert emitted.observed == {
@@ -119,12 +115,6 @@ def test_a_variable_matters_that_only_a_number_depends_on():
         }
     )
     assert irrelevant_variables(project) == {"spare"}
-
-
-def test_a_model_that_reports_none_has_no_code_for_it(bundles: Path):
-    emitted, _ = lowered(bundle_project(bundles / "bench" / "tiger"))
-    assert "bserved" not in emitted.cpp.replace("__observed", "")
-    assert emitted.observed == {}
 
 
 def test_numbers_are_taken_from_local_variables_that_hold_some():

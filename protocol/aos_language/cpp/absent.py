@@ -10,6 +10,7 @@ from aos_language.cpp.tree import tree_of
 
 _BEFORE = "void f() {"
 _NULLS = ("NULL", "nullptr", "0")
+_LEAVING = {"return_statement", "continue_statement", "break_statement"}
 _EFFECTS = ("call_expression", "assignment_expression", "update_expression")
 
 
@@ -37,6 +38,13 @@ def without_null(code: str, null: Collection[str]) -> str:
 def _never_run(node: tree_sitter.Node, null: Collection[str]) -> Iterator[tuple[int, int, str]]:
     """The bytes below a node that never run, with what stands in their place."""
     match node.type:
+        case "compound_statement":
+            for part in node.named_children[:-1]:
+                if part.type == "if_statement" and _truth(child_of(part, "condition"), null):
+                    body = child_of(part, "consequence")
+                    if _LEAVING & {body.type, *(each.type for each in body.named_children[-1:])}:
+                        yield part.end_byte, node.end_byte - 1, ""
+                        return
         case "if_statement":
             truth = _truth(child_of(node, "condition"), null)
             body, otherwise = child_of(node, "consequence"), node.child_by_field_name("alternative")

@@ -13,6 +13,7 @@ _DECLARATION = re.compile(
     r"((?:(?:unsigned|signed|long|short)(?:\s+(?:unsigned|signed|long|short|int|char|double)\b)*(?=\s)"
     r"|[A-Za-z_][\w:]*)(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[=]+)(\s*)"
 )
+_BASIC = ("int", "float", "double", "bool", "string")
 _TRUTHS = {"true": True, "false": False}
 
 
@@ -32,9 +33,12 @@ def read_declaration(part: Part, what: str, findings: Findings) -> Declaration |
         message = f"`{part.word}:` needs a type and a name"
         findings.error("AOS104", message, part.value.span if part.value.text else part.span)
         return None
-    type_text = part.value.after(0)
-    type_text = Text(match.group(1), type_text.span)
+    type_text = Text(match.group(1), part.value.after(0).span)
     name = Text(match.group(3), part.value.after(match.start(3)).span)
+    if name.text in _BASIC and type_text.text not in _BASIC:
+        message = f"the type comes first: `{name.text} {type_text.text}`"
+        findings.error("AOS104", message, type_text.span)
+        return None
     check_name(name, what, findings)
     kind = normal_type(type_text, findings)
     return Declaration(kind, type_text, name, part.value.after(match.end()).strip())
