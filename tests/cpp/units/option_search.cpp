@@ -78,6 +78,17 @@ TEST("No new value and no new pair of values leads to a reward that asks for fiv
   EXPECT(ways<SilentLock>(problem, steps).empty());
 }
 
+TEST("An exit that earns nothing ends no search for what pays, and a search heeds what no walk has changed") {
+  double steps = 20'000;
+  const units::Problem problem = units::corridor_with_exits(6, 3);
+  const auto found = ways<SilentLock>(problem, steps);
+  EXPECT((!found.empty() && found.front() == aos::Option(6, 3)));
+  aos::Sampler random{1};
+  aos::LeafCells<SilentLock> cells;
+  cells.prepare(aos::Belief<SilentLock>::initial(random), random);
+  EXPECT_EQUAL(cells.with_resting().size(), cells.size() + 1);
+}
+
 // Action 0 goes on to the next of four places, and action 1 ends the mission, which pays 8 for each place behind it, less 12.
 TEST("Before an end that can be had at once comes what makes it earn more") {
   units::Problem problem = units::world(5, 2, 0.95);

@@ -28,6 +28,8 @@ class OptionLibrary {
 
   const std::vector<Option>& options() const { return options_; }
   const LeafCells<Model>& cells() const { return cells_; }
+  // Those by which searches for ways tell what is new.
+  const LeafCells<Model>& searched_cells() const { return searched_cells_; }
   // Whether ways are found only by how many conditions of rewards and goals hold.
   bool counts() const { return counts_; }
   // Whether an action of a way is taken again where it changes nothing: such ways have many actions.
@@ -44,6 +46,7 @@ class OptionLibrary {
   void prepare(const Belief<Model>& belief, Sampler& random) {
     options_.clear();
     cells_.prepare(belief, random);
+    searched_cells_ = cells_.with_resting();
   }
 
   // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
@@ -63,7 +66,7 @@ class OptionLibrary {
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
       State& rest = rests[i];
-      while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{cells_, clock_, false}.narrow(rest, steps, random), max_options)) {
+      while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{searched_cells_, clock_, false}.narrow(rest, steps, random), max_options)) {
         if (!follow(rest, steps, random)) break;
       }
     }
@@ -97,7 +100,7 @@ class OptionLibrary {
 
   // The same for those from a state. Of ways that were searched for by conditions no rests are added.
   bool add_from(const State& state, double& steps, Sampler& random) {
-    return add(OptionSearch<Model>{cells_, clock_, counts_}.from(state, steps, random), counts_ ? 1 : max_options);
+    return add(OptionSearch<Model>{searched_cells_, clock_, counts_}.from(state, steps, random), counts_ ? 1 : max_options);
   }
 
   // Adds the way that earns most before an end that can be had at once. Returns whether there is one.
@@ -141,6 +144,7 @@ class OptionLibrary {
 
   const DecisionClock& clock_;
   LeafCells<Model> cells_;
+  LeafCells<Model> searched_cells_;
   std::vector<Option> options_;
   bool counts_ = false;
 };

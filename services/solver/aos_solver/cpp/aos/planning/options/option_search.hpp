@@ -1,4 +1,4 @@
-// A search for ways from a state to something that is earned: a step with a reward above 0, or a goal.
+// A search for ways from a state to something that is earned: a step with a reward above 0. A goal that pays nothing is none.
 //
 // The search is breadth first, and goes on only from states with something new (iterated width: Lipovetzky and Geffner,
 // 2012). At width 1 a value of a variable has to be new, at width 2 a pair of values. So it finds what is far away, where
@@ -245,8 +245,7 @@ class OptionSearch {
   bool take(WayNode<State>& node, double discount, Sampler& random) {
     const Step step = Model::step(node.state, node.action, random);
     node.earned += discount * step.reward;
-    const Ending ending = Model::ending(node.state);
-    const bool earns = (step.reward > 0 && ending != Ending::failure) || ending == Ending::goal;
+    const bool earns = step.reward > 0 && Model::ending(node.state) != Ending::failure;
     if (earns) found_.push_back({node.before, node.action, node.earned, income<Model>(node.earned, node.depth)});
     return earns;
   }

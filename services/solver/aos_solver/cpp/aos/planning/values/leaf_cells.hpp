@@ -46,12 +46,23 @@ class LeafCells {
       }
     }
     std::vector<Place> moving;
+    resting_.clear();
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      if (!has_changed[leaves_[i].list]) continue;
+      if (!has_changed[leaves_[i].list]) {
+        if (!leaves_[i].is_real) resting_.push_back(leaves_[i]);
+        continue;
+      }
       if (leaves_[i].is_real) leaves_[i].width = width_of(changes[leaves_[i].list]);
       moving.push_back(leaves_[i]);
     }
     leaves_ = std::move(moving);
+  }
+
+  // The same with the variables that no walk has changed, but for real ones: what a key opens moves in few walks.
+  LeafCells with_resting() const {
+    LeafCells all = *this;
+    all.leaves_.insert(all.leaves_.end(), resting_.begin(), resting_.end());
+    return all;
   }
 
   std::size_t size() const { return leaves_.size(); }
@@ -107,6 +118,7 @@ class LeafCells {
   }
 
   std::vector<Place> leaves_;
+  std::vector<Place> resting_;
   RandomWalk<Model> walk_;
 };
 
