@@ -4,6 +4,7 @@ import re
 
 import pytest
 from msgspec.structs import replace
+from PIL import Image
 
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_lab.experiments.optimum import Optimum, regret_of
@@ -131,14 +132,13 @@ def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_pa
 
 
 def test_the_picture_is_the_last_one_of_the_first_mission_that_has_some(tmp_path):
-    image = pytest.importorskip("PIL.Image", reason="no Pillow")
     for seed, steps in ((2, 2), (3, 1)):
         pictures = tmp_path / "runs" / f"seed-{seed}" / "a-run" / "pictures"
         pictures.mkdir(parents=True)
         for step in range(1, steps + 1):
-            image.new("RGB", (2, 1), (seed, step, 9)).save(pictures / f"step-{step:03}.png")
+            Image.new("RGB", (2, 1), (seed, step, 9)).save(pictures / f"step-{step:03}.png")
     kept = keep_picture(tmp_path / "runs", (1, 2, 3), tmp_path / "kept" / "one.webp")
-    assert image.open(kept).getpixel((1, 0)) == (2, 2, 9)
+    assert Image.open(kept).getpixel((1, 0)) == (2, 2, 9)
     assert keep_picture(tmp_path / "runs", (1,), tmp_path / "other.webp") is None
 
 
