@@ -205,13 +205,13 @@ class _BlockCheck:
         name = self._cpp.code[place.start : place.end].strip()
         is_list = name.startswith("{")
         if len(call.arguments) not in (1, 2) or name[:1].isdigit() or (is_list and len(call.arguments) == 2):
-            typed, named = (
-                "the values with their type: `vector<Type>{...}`",
-                "`AOS.SampleDiscrete(Enum, {0.5, 0.5})`",
+            right = (
+                "the values with their type: `vector<Type>{...}`"
+                if is_list
+                else "`AOS.SampleDiscrete(Enum, {0.5, 0.5})`"
             )
-            hint = f"Write {typed if is_list else named}"
             message = "SampleDiscrete takes an enum or values, and a list of weights"
-            self._findings.error("AOS110", message, self._span(place), hint)
+            self._findings.error("AOS110", message, self._span(place), f"Write {right}")
             return
         if len(call.arguments) == 1:
             if name in self._enum_sizes:
