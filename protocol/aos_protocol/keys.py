@@ -85,85 +85,74 @@ def instance_name(host: str, pid: int, session: str) -> str:
     return f"{re.sub('[^A-Za-z0-9_-]', '-', host)[:40]}-{pid}-{session[:8]}"
 
 
+class FixedKey:
+    """A key expression that only the robot's name is missing from."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __get__(self, keys: Keys, _: type[Keys]) -> str:
+        return f"{keys.root}/{self._name}"
+
+
 class Keys:
     """The key expressions of one robot."""
 
+    all_live = FixedKey("live/*")
+    push_bundle = FixedKey("bundle/push")
+    remove_bundle = FixedKey("bundle/remove")
+    bundle_history = FixedKey("bundle/history")
+    project = FixedKey("bundle/project")
+    catalogue = FixedKey("bundle/list")
+    announced = FixedKey("bundle/announced")
+    bundle_report = FixedKey("bundle/report")
+    activate_any = FixedKey("activate/*")
+    mapping_state = FixedKey("middleware/ready")
+    all_progress = FixedKey("progress/**")
+    all_serve = FixedKey("serve/**")
+    all_lacks = FixedKey("lack/**")
+    all_returning = FixedKey("returning/*")
+    check_model = FixedKey("model/check")
+    start_mission = FixedKey("mission/start")
+    stop_mission = FixedKey("mission/stop")
+    missions = FixedKey("mission/list")
+    resume_mission = FixedKey("mission/resume")
+    steer_mission = FixedKey("mission/steer")
+    mission_state = FixedKey("mission/state")
+    decisions = FixedKey("decision/record")
+    decision_history = FixedKey("decision/history")
+    study_why = FixedKey("study/why")
+    study_whatif = FixedKey("study/whatif")
+    study_tree = FixedKey("study/tree")
+
     def __init__(self, robot: str) -> None:
         self.robot = _checked(_NAME, robot, "robot name")
-        self._root = f"aos/{self.robot}"
+        self.root = f"aos/{self.robot}"
 
     def live(self, service: str) -> str:
-        return f"{self._root}/live/{_checked(_NAME, service, 'service name')}"
-
-    @property
-    def all_live(self) -> str:
-        return f"{self._root}/live/*"
-
-    @property
-    def push_bundle(self) -> str:
-        return f"{self._root}/bundle/push"
-
-    @property
-    def remove_bundle(self) -> str:
-        return f"{self._root}/bundle/remove"
-
-    @property
-    def bundle_history(self) -> str:
-        return f"{self._root}/bundle/history"
-
-    @property
-    def project(self) -> str:
-        return f"{self._root}/bundle/project"
-
-    @property
-    def catalogue(self) -> str:
-        return f"{self._root}/bundle/list"
-
-    @property
-    def announced(self) -> str:
-        return f"{self._root}/bundle/announced"
-
-    @property
-    def bundle_report(self) -> str:
-        return f"{self._root}/bundle/report"
+        return f"{self.root}/live/{_checked(_NAME, service, 'service name')}"
 
     def activate(self, skill: str) -> str:
-        return f"{self._root}/activate/{_checked(_NAME, skill, 'skill name')}"
-
-    @property
-    def activate_any(self) -> str:
-        return f"{self._root}/activate/*"
-
-    @property
-    def mapping_state(self) -> str:
-        return f"{self._root}/middleware/ready"
+        return f"{self.root}/activate/{_checked(_NAME, skill, 'skill name')}"
 
     def call(self, path: str) -> str:
-        return f"{self._root}/call/{_path(path)}"
+        return f"{self.root}/call/{_path(path)}"
 
     def cancel(self, path: str) -> str:
-        return f"{self._root}/cancel/{_path(path)}"
+        return f"{self.root}/cancel/{_path(path)}"
 
     def progress(self, path: str) -> str:
-        return f"{self._root}/progress/{_path(path)}"
-
-    @property
-    def all_progress(self) -> str:
-        return f"{self._root}/progress/**"
+        return f"{self.root}/progress/{_path(path)}"
 
     def serve(self, serving: Serving) -> str:
         adapter = _checked(_NAME, serving.adapter, "adapter name")
         version = _checked(_VERSION, serving.version, "version")
         instance = _checked(_NAME, serving.instance, "instance name")
-        return f"{self._root}/serve/{adapter}/{version}/{instance}/{_path(serving.path)}"
-
-    @property
-    def all_serve(self) -> str:
-        return f"{self._root}/serve/**"
+        return f"{self.root}/serve/{adapter}/{version}/{instance}/{_path(serving.path)}"
 
     def serving_of(self, serve_key: str) -> Serving | None:
         """Returns the contents of a token; None for one that says nothing."""
-        head = f"{self._root}/serve/"
+        head = f"{self.root}/serve/"
         parts = serve_key.removeprefix(head).split("/", 3)
         if len(parts) != 4 or not serve_key.startswith(head):
             return None
@@ -173,86 +162,30 @@ class Keys:
     def lack(self, lack: Lack) -> str:
         adapter = _checked(_NAME, lack.adapter, "adapter name")
         reason = quote(lack.reason[:999], safe="") or "-"  # Zenoh panics at keys of 64 kB.
-        return f"{self._root}/lack/{adapter}/{reason}/{_path(lack.path)}"
-
-    @property
-    def all_lacks(self) -> str:
-        return f"{self._root}/lack/**"
+        return f"{self.root}/lack/{adapter}/{reason}/{_path(lack.path)}"
 
     def lack_of(self, lack_key: str) -> Lack | None:
         """Returns the contents of a token; None for one that says nothing."""
-        head = f"{self._root}/lack/"
+        head = f"{self.root}/lack/"
         parts = lack_key.removeprefix(head).split("/", 2)
         if len(parts) != 3 or not lack_key.startswith(head):
             return None
         return Lack(parts[0], unquote(parts[1]), "/" + parts[2])
 
     def returning(self, program: str) -> str:
-        return f"{self._root}/returning/{_checked(_NAME, program, 'adapter name')}"
-
-    @property
-    def all_returning(self) -> str:
-        return f"{self._root}/returning/*"
+        return f"{self.root}/returning/{_checked(_NAME, program, 'adapter name')}"
 
     def returning_of(self, key: str) -> str | None:
         """Returns the adapter that a token says to be expected back; None for a key of another kind."""
         head, _, program = key.rpartition("/")
-        return program if head == f"{self._root}/returning" else None
+        return program if head == f"{self.root}/returning" else None
 
     def topic(self, path: str) -> str:
-        return f"{self._root}/topic/{_path(path)}"
-
-    @property
-    def check_model(self) -> str:
-        return f"{self._root}/model/check"
-
-    @property
-    def start_mission(self) -> str:
-        return f"{self._root}/mission/start"
-
-    @property
-    def stop_mission(self) -> str:
-        return f"{self._root}/mission/stop"
-
-    @property
-    def missions(self) -> str:
-        return f"{self._root}/mission/list"
-
-    @property
-    def resume_mission(self) -> str:
-        return f"{self._root}/mission/resume"
-
-    @property
-    def steer_mission(self) -> str:
-        return f"{self._root}/mission/steer"
-
-    @property
-    def mission_state(self) -> str:
-        return f"{self._root}/mission/state"
-
-    @property
-    def decisions(self) -> str:
-        return f"{self._root}/decision/record"
-
-    @property
-    def decision_history(self) -> str:
-        return f"{self._root}/decision/history"
-
-    @property
-    def study_why(self) -> str:
-        return f"{self._root}/study/why"
-
-    @property
-    def study_whatif(self) -> str:
-        return f"{self._root}/study/whatif"
-
-    @property
-    def study_tree(self) -> str:
-        return f"{self._root}/study/tree"
+        return f"{self.root}/topic/{_path(path)}"
 
     def service_of(self, live_key: str) -> str:
         """The service name in a liveliness key."""
-        return live_key.removeprefix(f"{self._root}/live/")
+        return live_key.removeprefix(f"{self.root}/live/")
 
 
 def _path(path: str) -> str:

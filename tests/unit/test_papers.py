@@ -15,7 +15,7 @@ from packaging.requirements import Requirement
 from aos_deploy.deployment.parts import BusPart, DeployFile, MissionPart, SkillPart, SolverPart
 from aos_protocol import __version__, keys, messages
 from aos_protocol.errors import CODES
-from aos_protocol.keys import Keys, Lack, Serving
+from aos_protocol.keys import FixedKey, Keys, Lack, Serving
 
 LOCKS = ("build", "runtime", "dev", "compiler")
 FIRST_SCREEN_LINES = 30
@@ -63,7 +63,7 @@ def test_the_table_of_keys_holds_every_key_that_can_be_built():
     built |= {robot.cancel("PATH"), robot.progress("PATH")}
     built |= {robot.serve(Serving("ADAPTER", "VERSION", "INSTANCE", "PATH"))}
     built |= {robot.lack(Lack("ADAPTER", "REASON", "PATH")), robot.returning("PROGRAM")}
-    built |= {getattr(robot, name) for name, kind in vars(Keys).items() if isinstance(kind, property)}
+    built |= {getattr(robot, name) for name, kind in vars(Keys).items() if isinstance(kind, FixedKey)}
     stand_ins = [("ROBOT", "<robot>"), ("SERVICE", "<service>"), ("SKILL", "<skill>"), ("PATH", "<path>")]
     stand_ins += [
         ("ADAPTER", "<adapter>"),
