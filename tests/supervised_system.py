@@ -6,7 +6,6 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
-from processes import kill
 
 from aos_deploy.events import Event, ServiceChanged
 from aos_deploy.processes.endpoint import hold_endpoint
@@ -64,7 +63,6 @@ class System:
         with hold_endpoint("tcp/127.0.0.1:0") as endpoint:
             self.endpoint = endpoint
         self.events: list[ServiceChanged] = []
-        self.pids: list[int] = []
         self.ends: list[ProcessEnd] = []
         self._news = asyncio.Event()
 
@@ -83,14 +81,11 @@ class System:
         except BaseExceptionGroup as group:
             raise root_cause(group) from group
 
-    async def error(self, *programs: Program, victim: str = "") -> AosError:
-        """Returns the error of a system of these programs, after the victim is killed if there is one."""
+    async def error(self, *programs: Program) -> AosError:
+        """Returns the error of a system of these programs."""
         try:
             async with self.up(*programs) as supervisor:
                 await supervisor.until_ready()
-                self.pids = list(supervisor.pids.values())
-                if victim:
-                    kill(supervisor.pids[victim])
                 await asyncio.Event().wait()
         except AosError as error:
             return error

@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 from commands import aos
-from processes import COMMAND_S, HANG_S, descendants, kill, until_ended
+from processes import COMMAND_S, HANG_S, descendants, kill
 from supervised_system import System, command, small
 
 from aos_deploy.deployment.own_programs import ReadyPart
@@ -169,23 +169,6 @@ async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
     assert (end.name, end.how, end.then) == ("nav", "killed by SIGKILL", then)
     detail = next(event.detail for event in system.events if (event.service, event.state) == ("nav", "ended"))
     assert detail == f"killed by SIGKILL; {then}"
-
-
-DEAF = "trap : TERM; while :; do sleep 1; done"
-TREE = f"setsid sh -c '{DEAF}' & echo up; {DEAF}"
-"""A shell and a grandchild in another session; neither ends by SIGTERM."""
-
-
-@pytest.mark.parametrize("how", ["stopped", "at once"])
-async def test_all_that_a_program_has_started_ends_with_the_run(system: System, how: str):
-    nav = own("sh", "-c", TREE, ready=ReadyPart(line="up"), stop_s=0.3 if how == "stopped" else HANG_S)
-    async with asyncio.timeout(HANG_S), system.up(nav) as supervisor:
-        await system.until("nav", "ready")
-        pids = descendants(supervisor.pids["nav"])
-        if how == "at once":
-            supervisor.kill()
-    assert len(pids) >= 2
-    await until_ended(pids)
 
 
 PUTS_DOWN = """

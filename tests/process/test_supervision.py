@@ -94,25 +94,6 @@ async def test_a_program_that_cannot_run_is_told(system: System):
     assert "No module named no_such_package" in error.hint
 
 
-async def test_the_death_of_a_service_that_is_not_started_again_ends_the_system(
-    system: System, programs: Callable[..., tuple[Program, ...]]
-):
-    error = await system.error(*programs(), victim="middleware")
-    assert error.message == "middleware ended unexpectedly: killed by SIGKILL"
-    assert error.code == "AOS804"
-    assert not any(is_running(pid) for pid in system.pids)
-
-
-@DEATHS
-async def test_a_service_that_dies_or_freezes_is_started_again(system: System, death: signal.Signals):
-    async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
-        await supervisor.until_ready()
-        os.kill(supervisor.pids["solver"], death)
-        await system.until("solver", "ready", times=2)
-    (end,) = system.ends
-    assert (end.name, end.how, end.then) == ("solver", "killed by SIGKILL", "it is started again")
-
-
 async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(system: System):
     async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
         await supervisor.until_ready()
@@ -240,6 +221,8 @@ async def test_an_adapter_is_expected_back_until_it_is_ready_again(system: Syste
             is_expected = True
             while is_expected or told.has_items:  # A silence and the end that follows are told apart.
                 _, is_expected = await anext(told)
+    (end,) = system.ends
+    assert (end.name, end.how, end.then) == ("robot", "killed by SIGKILL", "it is started again")
 
 
 async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System):
