@@ -12,6 +12,7 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error
 from aos_deploy.faults import print_fault
+from aos_deploy.marked_commands import add_commands
 from aos_deploy.options import HELP_NAMES, Version
 from aos_deploy.terminal import write_what_fits
 from aos_deploy.told_numbers import NumbersToldGroup
@@ -89,7 +90,7 @@ def aos_app(arguments: Sequence[str] | None = None) -> typer.Typer:
             app.command(name, help=sentence)(_only_named)
     else:
         for module in dict.fromkeys(_COMMANDS[name][0] for name in ([called] if called else _COMMANDS)):
-            import_module(module).register(app)
+            add_commands(app, import_module(module))
     return app
 
 
@@ -100,7 +101,7 @@ def up_main(has_imported: Callable[[], object] = lambda: None) -> NoReturn:
 
 def _up_app() -> typer.Typer:
     app = typer.Typer(**_STYLE)
-    import_module("aos_deploy.commands.up").register(app)
+    add_commands(app, import_module("aos_deploy.commands.up"))
     return app
 
 

@@ -1,13 +1,9 @@
 """`aos language-server`: what an editor starts to check documents while they are written."""
 
-import typer
+from aos_deploy.marked_commands import command
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command("language-server", epilog="Example: aos language-server")(serve)
-
-
+@command("Example: aos language-server", "language-server")
 def serve() -> None:
     """Check documents while they are written.
 

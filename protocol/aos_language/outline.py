@@ -2,28 +2,15 @@
 
 from collections.abc import Iterator
 
+from aos_protocol import documents
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import (
-    AbstractionMapping,
-    Assignment,
-    Environment,
-    Import,
-    LocalSource,
-    LocalVariable,
-    LowLevelDocument,
-    Project,
-    Skill,
-    Snippet,
-    SpecialState,
-    StateVariable,
-)
 
 _PLACE_COLUMN = 78
 _PLACE = "\0"
 """The mark between a line's text and its place, until all lines are there and can be aligned."""
 
 
-def outline(project: Project) -> str:
+def outline(project: documents.Project) -> str:
     """The whole project, environment first, then each skill with its mapping."""
     environment = project.environment
     title = f"project {project.name}: horizon {environment.horizon}, discount {environment.discount:g}"
@@ -39,7 +26,7 @@ def outline(project: Project) -> str:
     return "".join(f"{_aligned(line)}\n" for line in lines)
 
 
-def _environment(environment: Environment) -> Iterator[str]:
+def _environment(environment: documents.Environment) -> Iterator[str]:
     if environment.is_one_state_model:
         yield "one state model: state, state_ and state__ are the same"
     if environment.shared_code is not None:
@@ -70,7 +57,7 @@ def _environment(environment: Environment) -> Iterator[str]:
             yield from _code(assignment.code)
 
 
-def _variable(variable: StateVariable) -> Iterator[str]:
+def _variable(variable: documents.StateVariable) -> Iterator[str]:
     kind = "action parameter value" if variable.is_parameter_value else "variable"
     kind = "mission parameter" if variable.is_mission_parameter else kind
     keys = f" by ({', '.join(variable.key_types)})" if variable.key_types else ""
@@ -80,7 +67,7 @@ def _variable(variable: StateVariable) -> Iterator[str]:
     yield from _code(variable.default_code)
 
 
-def _special_state(special: SpecialState) -> Iterator[str]:
+def _special_state(special: documents.SpecialState) -> Iterator[str]:
     flags = ", goal" * special.is_goal + ", once" * special.is_one_time
     flags += "" if special.is_failure is None else ", failure" if special.is_failure else ", no failure"
     if special.condition is None:
@@ -90,7 +77,7 @@ def _special_state(special: SpecialState) -> Iterator[str]:
     yield from _code(special.condition)
 
 
-def _low_level(document: LowLevelDocument) -> Iterator[str]:
+def _low_level(document: documents.LowLevelDocument) -> Iterator[str]:
     for kind in document.types:
         fields = ", ".join(f"{field.type} {field.name}" for field in kind.fields)
         yield _placed(f"low-level type {kind.name}: {fields}", kind.span)
@@ -99,7 +86,7 @@ def _low_level(document: LowLevelDocument) -> Iterator[str]:
         yield from _code(constant.code)
 
 
-def _skill(skill: Skill) -> Iterator[str]:
+def _skill(skill: documents.Skill) -> Iterator[str]:
     model = skill.model
     parameters = ", ".join(f"{parameter.type} {parameter.name}" for parameter in model.parameters)
     yield _placed(f"skill {model.name}({parameters})", model.span)
@@ -113,7 +100,7 @@ def _skill(skill: Skill) -> Iterator[str]:
     yield from _indented(_mapping(skill.mapping))
 
 
-def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
+def _mapping(mapping: documents.AbstractionMapping) -> Iterator[str]:
     activation = mapping.activation
     fields = ", ".join(f"{field.name}={field.value.code}" for field in activation.fields)
     service = f" of type {activation.service_type}" if activation.service_type else ""
@@ -126,7 +113,7 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
     yield from _responses(mapping)
 
 
-def _responses(mapping: AbstractionMapping) -> Iterator[str]:
+def _responses(mapping: documents.AbstractionMapping) -> Iterator[str]:
     for rule in mapping.rules:
         condition = rule.condition.code if rule.condition else "True"
         yield _placed(f"response {rule.response} when {condition}", rule.span)
@@ -141,11 +128,11 @@ def _responses(mapping: AbstractionMapping) -> Iterator[str]:
         yield from _local_variable(variable)
 
 
-def _local_variable(variable: LocalVariable) -> Iterator[str]:
+def _local_variable(variable: documents.LocalVariable) -> Iterator[str]:
     origin = {
-        LocalSource.PARAMETER: f"parameter {variable.parameter_path}",
-        LocalSource.SERVICE_RESPONSE: "the service's response",
-        LocalSource.TOPIC: f"topic {variable.topic} ({variable.message_type or 'any message'})",
+        documents.LocalSource.PARAMETER: f"parameter {variable.parameter_path}",
+        documents.LocalSource.SERVICE_RESPONSE: "the service's response",
+        documents.LocalSource.TOPIC: f"topic {variable.topic} ({variable.message_type or 'any message'})",
     }[variable.source]
     kind = f"{variable.type} " if variable.type else ""
     initial = f", at first {variable.initial_value.code}" if variable.initial_value else ""
@@ -154,13 +141,13 @@ def _local_variable(variable: LocalVariable) -> Iterator[str]:
     yield from _code(variable.code)
 
 
-def _imports(imports: tuple[Import, ...]) -> Iterator[str]:
+def _imports(imports: tuple[documents.Import, ...]) -> Iterator[str]:
     for item in imports:
         names = ", ".join(item.names)
         yield f"  from {item.module} import {names}" if item.module else f"  import {names}"
 
 
-def _block(title: str, block: tuple[Assignment, ...]) -> Iterator[str]:
+def _block(title: str, block: tuple[documents.Assignment, ...]) -> Iterator[str]:
     for assignment in block:
         yield _placed(title, assignment.span)
         if assignment.temporary is not None:
@@ -175,7 +162,7 @@ def _block(title: str, block: tuple[Assignment, ...]) -> Iterator[str]:
         yield from _code(assignment.code)
 
 
-def _code(snippet: Snippet | None) -> Iterator[str]:
+def _code(snippet: documents.Snippet | None) -> Iterator[str]:
     if snippet is not None:
         for line in snippet.code.split("\n"):
             yield f"  | {line}".rstrip()

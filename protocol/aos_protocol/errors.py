@@ -292,34 +292,16 @@ _STATUS = {
 """The status of the skill by the code of an error; AOS606 is a defect of the adapter, in the middle of
 anything, and a reply that cannot be read (AOS602, AOS603) says nothing of the skill."""
 
-_BY_HUNDRED: dict[str, type[AosError]] = {
-    "1": DocumentError,
-    "2": ModelError,
-    "3": PlanningError,
-    "4": MappingError,
-    "5": SkillError,
-    "6": BusError,
-    "7": StorageError,
-    "8": DeployError,
-    "9": GatewayError,
-}
-
+_BY_HUNDRED: dict[str, type[AosError]] = {kind.code[3]: kind for kind in AosError.__subclasses__()}
 _SITUATIONS: dict[str, type[AosError]] = {
-    "AOS210": CodeFaultError,
-    "AOS211": EndlessCodeError,
-    "AOS214": CodeFaultError,
-    "AOS215": CodeFaultError,
-    "AOS216": EngineDefectError,
-    "AOS217": EngineDefectError,
-    "AOS220": IntractableError,
-    "AOS515": MissionRunsError,
-    "AOS517": SteeringError,
-    "AOS518": SteeringError,
-    "AOS530": StudyError,
-    "AOS601": LateAnswerError,
-    "AOS604": NobodyAnswersError,
-    "AOS607": LostAnswerError,
-}
+    kind.code: kind
+    for kind in (
+        CodeFaultError, EndlessCodeError, EngineDefectError, IntractableError, MissionRunsError, StudyError,
+        SteeringError, LateAnswerError, NobodyAnswersError, LostAnswerError,
+    )
+}  # fmt: skip
+_SITUATIONS |= {"AOS214": CodeFaultError, "AOS215": CodeFaultError, "AOS216": EngineDefectError}
+_SITUATIONS["AOS518"] = SteeringError
 
 
 def error_from_code(

@@ -5,18 +5,7 @@ Those are the rows of which a mission is taken up. Whole beliefs are there for w
 
 from typing import Final
 
-from aos_protocol.messages import (
-    ActionRefused,
-    Activate,
-    DecisionRecord,
-    DriftTests,
-    Message,
-    MissionBegun,
-    MissionState,
-    ModelAdopted,
-    Outcome,
-    Steer,
-)
+from aos_protocol import messages
 
 BEGUN: Final = "begun"
 """A solver begins, or takes up, the mission."""
@@ -36,14 +25,14 @@ REFUSED: Final = "refused"
 """An action was asked for and is not carried out."""
 DRIFT: Final = "drift"
 """The tests of a model begin, or go over to another mission."""
-MESSAGES: dict[str, type[Message]] = {
-    BEGUN: MissionBegun,
-    ADOPTED: ModelAdopted,
-    DECISION: DecisionRecord,
-    INTENDED: Activate,
-    OUTCOME: Outcome,
-    STATE: MissionState,
-    STEERED: Steer,
-    REFUSED: ActionRefused,
-    DRIFT: DriftTests,
+MESSAGES: dict[str, type[messages.Message]] = {
+    BEGUN: messages.MissionBegun,
+    ADOPTED: messages.ModelAdopted,
+    DECISION: messages.DecisionRecord,
+    INTENDED: messages.Activate,
+    OUTCOME: messages.Outcome,
+    STATE: messages.MissionState,
+    STEERED: messages.Steer,
+    REFUSED: messages.ActionRefused,
+    DRIFT: messages.DriftTests,
 }

@@ -3,13 +3,12 @@
 from pathlib import Path
 
 import pytest
+from commands import aos
 from dialects import converted, say_the_same
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from texts import encoded
-from typer.testing import CliRunner
 
-from aos_deploy.commands.convert import register
 from aos_language.convert import Dialect, convert
 from aos_language.load import load_files, read_bundle_files
 
@@ -94,16 +93,11 @@ def test_any_code_stays_as_it_is_or_is_refused(lines: list[str]):
 
 
 def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(bundles: Path, tmp_path):
-    from typer import Typer
-
-    app = Typer()
-    app.callback()(lambda: None)
-    register(app)
     out = tmp_path / "json"
     arguments = ["convert", str(bundles / "armadillo-finer"), "--to", "json", "--out", str(out)]
-    result = CliRunner().invoke(app, arguments)
+    result = aos(*arguments)
     assert result.exit_code == 0
     assert f"{out}: 11 documents" in result.stdout
     assert load_files({file.name: file.read_bytes() for file in out.iterdir()}).project is not None
-    again = CliRunner().invoke(app, arguments)
+    again = aos(*arguments)
     assert "is not empty" in str(again.exception)

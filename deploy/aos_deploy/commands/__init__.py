@@ -1,1 +1,1 @@
-"""The sub-commands of `aos`; each module has `register(app)`."""
+"""The sub-commands of `aos`, marked in each module by `marked_commands.command`."""

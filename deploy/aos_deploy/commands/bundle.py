@@ -21,6 +21,7 @@ from aos_protocol.errors import DocumentError
 from aos_protocol.messages import BundleReport
 
 bundle_app = typer.Typer(
+    name="bundle",
     no_args_is_help=True,
     help="Send documents to a running system, or list them.",
     epilog="Example: aos bundle push deploy/bundles/armadillo-finer",
@@ -28,11 +29,6 @@ bundle_app = typer.Typer(
 
 
 OneProject = Annotated[str, typer.Argument(help="The project; may be left out if there is one only")]
-
-
-def register(app: typer.Typer) -> None:
-    """Adds `aos bundle` to `aos`."""
-    app.add_typer(bundle_app, name="bundle")
 
 
 @bundle_app.command(epilog="Example: aos bundle push deploy/bundles/armadillo-finer")

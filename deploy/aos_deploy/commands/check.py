@@ -10,6 +10,7 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.history_check.files import check_run
 from aos_deploy.history_check.replayed import Replay, replayed
 from aos_deploy.history_check.rules import BY_TIME, RULES
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.living import chosen_run
@@ -17,11 +18,7 @@ from aos_deploy.terminal import waiting
 from aos_protocol.errors import DeployError
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos check runs/latest")(check)
-
-
+@command("Example: aos check runs/latest")
 def check(
     run: Annotated[
         Path | None, typer.Argument(metavar="RUN", help="A run directory, or a file of one; else the last")

@@ -7,18 +7,14 @@ import typer
 
 from aos_deploy.bundles.files import planned_of, refusal
 from aos_deploy.commands.documents import FolderOrDeployFile
+from aos_deploy.marked_commands import command
 from aos_deploy.printing import count, print_diagnostics
 from aos_language.convert import Dialect, convert
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DocumentError
 
 
-def register(app: typer.Typer) -> None:
-    """Adds `aos convert` to `aos`."""
-    example = "Example: aos convert deploy/bundles/armadillo-finer --to json --out converted"
-    app.command("convert", epilog=example)(convert_bundle)
-
-
+@command("Example: aos convert deploy/bundles/armadillo-finer --to json --out converted", "convert")
 def convert_bundle(
     path: FolderOrDeployFile,
     dialect: Annotated[Dialect, typer.Option("--to", help="The dialect to write")],

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import Mission
 from aos_deploy.printing import from_here
 from aos_deploy.running_system import System, on_system
@@ -25,15 +26,11 @@ if TYPE_CHECKING:
 Show = Callable[[DecisionRecord | MissionState], None]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos decisions --json | jq .action")(decisions)
-
-
 _SOLVER_S = 15.0
 """The solver may have gone since its run was found."""
 
 
+@command("Example: aos decisions --json | jq .action")
 @on_system
 def decisions(
     system: System,

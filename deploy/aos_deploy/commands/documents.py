@@ -11,6 +11,7 @@ import typer
 from aos_deploy.bundles.files import planned_of, project_at, refusal, with_mission
 from aos_deploy.bundles.sarif import sarif_log
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_language.load import load_files, with_excerpts
@@ -42,12 +43,7 @@ FolderOrDeployFile = Annotated[
 ]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos`."""
-    app.command(epilog="Example: aos lint deploy/bundles/armadillo-finer")(lint)
-    app.command(epilog="Example: aos inspect deploy/bundles/armadillo-finer --stage documents")(inspect)
-
-
+@command("Example: aos lint deploy/bundles/armadillo-finer")
 def lint(
     path: FolderOrDeployFile,
     form: Annotated[Format, typer.Option("--format", help="How to print the findings")] = Format.TEXT,
@@ -160,6 +156,7 @@ def _compiler_errors(files: Mapping[str, bytes], draft: Project) -> tuple[Diagno
     return ()
 
 
+@command("Example: aos inspect deploy/bundles/armadillo-finer --stage documents")
 def inspect(
     bundle: FolderOrDeployFile,
     stage: Annotated[Stage, typer.Option(help="Which stage to print")] = Stage.DOCUMENTS,

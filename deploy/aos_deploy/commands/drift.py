@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, print_json
 from aos_deploy.runs.living import chosen_runs
@@ -16,11 +17,7 @@ if TYPE_CHECKING:
     from aos_deploy.runs.drift import ModelTests
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos drift runs")(drift)
-
-
+@command("Example: aos drift runs")
 def drift(
     run: Annotated[
         list[Path] | None,

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.living import chosen_runs
@@ -14,11 +15,7 @@ from aos_protocol.errors import DeployError
 Format = Literal["mcap", "csv", "parquet", "bundle"]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos export runs/latest --format mcap")(export)
-
-
+@command("Example: aos export runs/latest --format mcap")
 def export(
     run: Annotated[
         list[Path] | None,

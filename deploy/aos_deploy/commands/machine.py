@@ -15,6 +15,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
@@ -38,11 +39,7 @@ class Finding(msgspec.Struct, frozen=True):
     advice: str = ""
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos doctor; aos doctor deploy/armadillo.yaml")(doctor)
-
-
+@command("Example: aos doctor; aos doctor deploy/armadillo.yaml")
 def doctor(
     deploy: Annotated[
         Path | None, typer.Argument(metavar="DEPLOY", help="A deploy file, whose needs are looked at, too")

@@ -12,6 +12,7 @@ import typer
 from aos_deploy.commands import steering
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
+from aos_deploy.marked_commands import add_commands
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, print_json
 from aos_deploy.running_system import System, on_system
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
 mission_app = typer.Typer(
+    name="mission",
     no_args_is_help=True,
     help="Start, stop, list and steer missions. Further missions need `aos-up --stay`.",
     epilog="Example: aos mission start --set target=bob --belief keep --given 'state.robot == kitchen'",
@@ -39,12 +41,6 @@ Given = Annotated[
 Idle = Annotated[
     int, typer.Option("--idle", min=0, max=10_000, metavar="N", help="Steps of extrinsic changes before it")
 ]
-
-
-def register(app: typer.Typer) -> None:
-    """Adds `aos mission` to `aos`."""
-    steering.register(mission_app)
-    app.add_typer(mission_app, name="mission")
 
 
 @mission_app.command(
@@ -158,3 +154,6 @@ def _line(entry: MissionEntry) -> str:
     ending = entry.ending or "running"
     steps = count(entry.steps, "step")
     return f"{ending:18} {steps:>9}  {begun}  {entry.mission}  seed {entry.seed}, {', '.join(began)}"
+
+
+add_commands(mission_app, steering)

@@ -25,15 +25,11 @@ from aos_protocol.spelling import did_you_mean
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,63}")
 
 new_app = typer.Typer(
+    name="new",
     no_args_is_help=True,
     help="Write documents, an adapter or a whole example.",
     epilog="Example: aos new project fetch, then aos plan fetch",
 )
-
-
-def register(app: typer.Typer) -> None:
-    """Adds `aos new` to `aos`."""
-    app.add_typer(new_app, name="new")
 
 
 @new_app.command(epilog="Example: aos new project fetch")

@@ -9,6 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy.deployment.mission_values import SetValues
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.planning_options import (
     Bundle,
@@ -42,12 +43,6 @@ from aos_solver.study.supposing import believe_all
 RATE_REPETITIONS = 10
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos`."""
-    app.command(epilog="Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")(plan)
-    app.command(epilog="Example: aos rate deploy/bundles/armadillo-finer")(rate)
-
-
 class Decision(msgspec.Struct):
     """The output of `aos plan --json`; the action worth most comes first."""
 
@@ -61,6 +56,7 @@ class Decision(msgspec.Struct):
     forbidden: list[str] = []
 
 
+@command("Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")
 def plan(
     bundle: Bundle,
     simulations: Simulations = 100_000,
@@ -175,6 +171,7 @@ class Rate(msgspec.Struct):
     seconds: float
 
 
+@command("Example: aos rate deploy/bundles/armadillo-finer")
 def rate(
     bundle: Bundle,
     seconds: Annotated[float, typer.Option(min=0.01, help="Length of one repetition")] = 1.0,

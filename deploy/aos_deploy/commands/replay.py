@@ -9,6 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Mission, Runs, TrustDocuments
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.difference import Difference, difference
@@ -17,12 +18,6 @@ from aos_deploy.runs.studied import StudiedRun
 from aos_deploy.terminal import waiting
 from aos_protocol.messages import ModelAdopted
 from aos_solver.study.comparing import Comparison, compared
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos`."""
-    app.command(epilog="Example: aos replay runs/latest --until 4")(replay)
-    app.command(epilog="Example: aos diff $(ls -d runs/2* | tail -2)")(diff)
 
 
 class Replayed(msgspec.Struct):
@@ -41,6 +36,7 @@ class Replayed(msgspec.Struct):
     first_difference: Comparison | None = None
 
 
+@command("Example: aos replay runs/latest --until 4")
 def replay(
     run: Annotated[Path | None, typer.Argument(metavar="RUN", help="A run directory; else the last")] = None,
     until: Annotated[
@@ -130,6 +126,7 @@ def _ranges(steps: list[int]) -> str:
     return ", ".join(f"{part[0]}-{part[-1]}" if len(part) > 1 else str(part[0]) for part in parts)
 
 
+@command("Example: aos diff $(ls -d runs/2* | tail -2)")
 def diff(
     first: Annotated[Path | None, typer.Argument(metavar="A", help="A run directory")] = None,
     second: Annotated[Path | None, typer.Argument(metavar="B", help="Another one")] = None,

@@ -18,12 +18,7 @@ from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import DeployError, StorageError
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 
-runs_app = typer.Typer()
-
-
-def register(app: typer.Typer) -> None:
-    """Adds `aos runs` to `aos`."""
-    app.add_typer(runs_app, name="runs", epilog="Example: aos runs --running")
+runs_app = typer.Typer(name="runs", epilog="Example: aos runs --running")
 
 
 class Entry(msgspec.Struct, omit_defaults=True):

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from aos_deploy.deployment.schemas import SCHEMAS
+from aos_deploy.marked_commands import command
 
 
 class Name(StrEnum):
@@ -15,11 +16,7 @@ class Name(StrEnum):
     DEPLOY = "deploy"
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos schema deploy > deploy.schema.json")(schema)
-
-
+@command("Example: aos schema deploy > deploy.schema.json")
 def schema(
     name: Annotated[
         Name, typer.Argument(help="plp: JSON of AOS 1.x, gsdl: the paper's JSON, deploy: the deploy file")

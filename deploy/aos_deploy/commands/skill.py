@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import msgspec
 import typer
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_json
 from aos_deploy.running_system import System, on_system
@@ -34,16 +35,11 @@ _LAST_S = 0.5
 """The progress of a call that has ended may be under way for so long."""
 
 skill_app = typer.Typer(
+    name="skill",
     no_args_is_help=True,
     help="See, call and stop the skills of a running system.",
     epilog="Example: aos skill list, then aos skill call /navigate x=1.5 y=0 yaw=0",
 )
-
-
-def register(app: typer.Typer) -> None:
-    """Adds `aos skill` and `aos resume` to `aos`."""
-    app.add_typer(skill_app, name="skill")
-    app.command(epilog="Example: aos resume")(resume)
 
 
 @skill_app.command("list", epilog="Example: aos skill list --json")
@@ -157,6 +153,7 @@ def cancel(
     system.do(work)
 
 
+@command("Example: aos resume")
 @on_system
 def resume(system: System) -> None:
     """Go on with a mission that holds."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, print_json
 from aos_deploy.running_system import System, on_system
@@ -20,17 +21,7 @@ if TYPE_CHECKING:
 Name = Annotated[str, typer.Argument(metavar="NAME", help="A skill, or a grounded action such as 'go(to=a)'")]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos mission`."""
-    app.command(epilog="Example: aos mission hold")(hold)
-    app.command(epilog="Example: aos mission step")(step)
-    app.command(epilog="Example: aos mission resume")(resume)
-    app.command("do", epilog="Example: aos mission do 'navigate(destination=corridor)'")(act)
-    app.command(epilog="Example: aos mission script docs/examples/actions.txt")(script)
-    app.command("leave-out", epilog="Example: aos mission leave-out pick")(leave_out)
-    app.command("take-back", epilog="Example: aos mission take-back pick")(take_back)
-
-
+@command("Example: aos mission hold")
 @on_system
 def hold(system: System, as_json: AsJson = False) -> None:
     """Decide nothing more, until `step`, `resume` or `do`.
@@ -40,18 +31,21 @@ def hold(system: System, as_json: AsJson = False) -> None:
     _steer(system, lambda aos: aos.hold(), as_json, _held)
 
 
+@command("Example: aos mission step")
 @on_system
 def step(system: System, as_json: AsJson = False) -> None:
     """Make one more decision, carry it out, and hold then."""
     _steer(system, lambda aos: aos.step(), as_json, lambda state: "one more decision, then it holds")
 
 
+@command("Example: aos mission resume")
 @on_system
 def resume(system: System, as_json: AsJson = False) -> None:
     """Go on with a mission, whoever or whatever holds it."""
     _steer(system, lambda aos: aos.resume(), as_json, lambda state: "the mission goes on")
 
 
+@command("Example: aos mission do 'navigate(destination=corridor)'", "do")
 @on_system
 def act(
     system: System,
@@ -69,6 +63,7 @@ def act(
     _steer(system, lambda aos: aos.act(action), as_json, lambda state: f"step {state.step}: {action}")
 
 
+@command("Example: aos mission script docs/examples/actions.txt")
 @on_system
 def script(
     system: System,
@@ -85,6 +80,7 @@ def script(
     _steer(system, lambda aos: aos.run_script(actions), as_json, lambda state: said)
 
 
+@command("Example: aos mission leave-out pick", "leave-out")
 @on_system
 def leave_out(system: System, name: Name, as_json: AsJson = False) -> None:
     """Decide without a skill or a grounded action.
@@ -94,6 +90,7 @@ def leave_out(system: System, name: Name, as_json: AsJson = False) -> None:
     _steer(system, lambda aos: aos.leave_out(name), as_json, _without)
 
 
+@command("Example: aos mission take-back pick", "take-back")
 @on_system
 def take_back(system: System, name: Name, as_json: AsJson = False) -> None:
     """Decide with what was left out again."""

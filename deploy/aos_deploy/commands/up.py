@@ -12,6 +12,7 @@ import typer
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
+from aos_deploy.marked_commands import command
 from aos_deploy.options import HELP_NAMES, TrustDocuments, Version
 from aos_deploy.told_numbers import NumbersToldCommand
 
@@ -66,11 +67,7 @@ Serve = Annotated[
 ]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`, or makes it the whole of `aos-up`."""
-    app.command(cls=NumbersToldCommand, epilog=_EPILOG, context_settings=HELP_NAMES)(up)
-
-
+@command(_EPILOG, cls=NumbersToldCommand, context_settings=HELP_NAMES)
 def up(
     deploy: DeployFile = None,
     resume: Resume = False,

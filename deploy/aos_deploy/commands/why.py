@@ -6,6 +6,7 @@ from typing import Annotated, TypeVar
 
 import typer
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Mission, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.running_system import System, on_system
@@ -22,12 +23,7 @@ T = TypeVar("T", Why, WhatIf)
 Step = Annotated[int, typer.Argument(min=1, metavar="STEP", help="The number of the decision")]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos`."""
-    app.command(epilog='Example: aos why 3 --instead "navigate(destination=corridor)"')(why)
-    app.command(epilog='Example: aos whatif 3 --believe "holding_can=true:0.5"')(whatif)
-
-
+@command('Example: aos why 3 --instead "navigate(destination=corridor)"')
 @on_system
 def why(
     system: System,
@@ -61,6 +57,7 @@ def why(
         typer.echo("\n".join(why_lines(found)))
 
 
+@command('Example: aos whatif 3 --believe "holding_can=true:0.5"')
 @on_system
 def whatif(
     system: System,

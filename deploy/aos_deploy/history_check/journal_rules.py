@@ -8,18 +8,7 @@ import msgspec
 
 from aos_deploy.history_check.steering_rules import SteeringRules
 from aos_deploy.runs.verdict import Account
-from aos_protocol.messages import (
-    ActionRefused,
-    Activate,
-    ActivationId,
-    BeliefSummary,
-    DecisionRecord,
-    MissionBegun,
-    MissionState,
-    ModelAdopted,
-    Outcome,
-    Steer,
-)
+from aos_protocol import messages
 from aos_protocol.mission_rows import DRIFT, MESSAGES
 from aos_runtime.disk.journal import JournalRow
 from aos_runtime.parties.fence import meaning
@@ -49,17 +38,17 @@ class JournalRules:
     def __init__(self, run: str) -> None:
         self.mission = run
         self.account = Account()
-        self.intentions: dict[ActivationId, Intention] = {}
+        self.intentions: dict[messages.ActivationId, Intention] = {}
         self.end_ns: int | None = None
         self._holds: list[tuple[int, int]] = []
         self._held_since_ns: int | None = None
         self._sequence = 0
         self._step = 0
         self._epoch = 0
-        self._pending: DecisionRecord | None = None
-        self._open: Activate | None = None
-        self._outcome: Outcome | None = None
-        self._belief: tuple[str, BeliefSummary] | None = None
+        self._pending: messages.DecisionRecord | None = None
+        self._open: messages.Activate | None = None
+        self._outcome: messages.Outcome | None = None
+        self._belief: tuple[str, messages.BeliefSummary] | None = None
         self._is_handed_over = False
         self._steering = SteeringRules()
 
@@ -73,26 +62,26 @@ class JournalRules:
         if self.end_ns is not None and not _is_end(message):
             found("over", f"a row of the kind {row.kind} after the mission's end")
         self._steering.take(message, found)
-        if isinstance(message, Steer | ActionRefused):
+        if isinstance(message, messages.Steer | messages.ActionRefused):
             return
-        if isinstance(message, MissionState):
+        if isinstance(message, messages.MissionState):
             self._take_state(row, message, found)
             return
-        if isinstance(message, MissionBegun | ModelAdopted):
+        if isinstance(message, messages.MissionBegun | messages.ModelAdopted):
             self._take_model(message, found)
             return
-        if self._held_since_ns is not None and not isinstance(message, Outcome):
+        if self._held_since_ns is not None and not isinstance(message, messages.Outcome):
             found("hold", f"a row of the kind {row.kind} while the mission holds")
-        if isinstance(message, Activate):
+        if isinstance(message, messages.Activate):
             self._take_intention(message, found)
-        elif isinstance(message, Outcome):
+        elif isinstance(message, messages.Outcome):
             self._take_outcome(row, message, found)
         elif message.outcome is None:
             self._take_decision(message, found)
         else:
             self._take_observation(message, found)
 
-    def _take_state(self, row: JournalRow, state: MissionState, found: Found) -> None:
+    def _take_state(self, row: JournalRow, state: messages.MissionState, found: Found) -> None:
         self._check_epoch(state.epoch, found)
         self.account.take(state)
         if self._held_since_ns is not None:
@@ -101,9 +90,9 @@ class JournalRules:
         if _is_end(state) and self.end_ns is None:
             self.end_ns = row.stamp_ns
 
-    def _take_model(self, message: MissionBegun | ModelAdopted, found: Found) -> None:
+    def _take_model(self, message: messages.MissionBegun | messages.ModelAdopted, found: Found) -> None:
         """A belief that was handed over from another model is not that which a new solver replays."""
-        if isinstance(message, ModelAdopted):
+        if isinstance(message, messages.ModelAdopted):
             self._is_handed_over |= message.by != "replay"
             return
         if message.epoch != self._epoch + 1:
@@ -112,7 +101,7 @@ class JournalRules:
         if self._is_handed_over:
             self._belief, self._is_handed_over = None, False
 
-    def _take_record(self, record: DecisionRecord, found: Found) -> None:
+    def _take_record(self, record: messages.DecisionRecord, found: Found) -> None:
         self._check_epoch(record.epoch, found)
         if record.sequence != self._sequence:
             found("sequence", f"the record {record.sequence} in place of {self._sequence}")
@@ -122,7 +111,7 @@ class JournalRules:
         self._sequence = record.sequence + 1
         self.account.take(record)
 
-    def _take_decision(self, decision: DecisionRecord, found: Found) -> None:
+    def _take_decision(self, decision: messages.DecisionRecord, found: Found) -> None:
         self._take_record(decision, found)
         if self._pending is not None:
             found("steps", f"step {decision.step} is decided before step {self._pending.step} is observed")
@@ -136,7 +125,7 @@ class JournalRules:
             found("belief", f"step {decision.step} is decided with another belief than was observed")
         self._step, self._pending, self._open, self._outcome = decision.step, decision, None, None
 
-    def _take_observation(self, record: DecisionRecord, found: Found) -> None:
+    def _take_observation(self, record: messages.DecisionRecord, found: Found) -> None:
         self._take_record(record, found)
         pending = self._pending
         if pending is None or _decided(record) != _decided(pending):
@@ -146,7 +135,7 @@ class JournalRules:
         self._belief = (record.model_digest, record.belief)
         self._step, self._pending, self._outcome = record.step, None, None
 
-    def _take_intention(self, intended: Activate, found: Found) -> None:
+    def _take_intention(self, intended: messages.Activate, found: Found) -> None:
         self._check_epoch(intended.epoch, found)
         pending = self._pending
         if pending is None or _wanted(intended) != (pending.mission, *_decided(pending)[:3]):
@@ -156,7 +145,7 @@ class JournalRules:
             found("id", f"{intended.id} stood for another skill or other parameters before")
         self._open = intended
 
-    def _take_outcome(self, row: JournalRow, outcome: Outcome, found: Found) -> None:
+    def _take_outcome(self, row: JournalRow, outcome: messages.Outcome, found: Found) -> None:
         open = self._open
         if open is None or (outcome.id, outcome.skill) != (open.id, open.skill):
             found(
@@ -176,18 +165,18 @@ class JournalRules:
         self._epoch = max(epoch, self._epoch)
 
 
-def digest(outcome: Outcome) -> bytes:
+def digest(outcome: messages.Outcome) -> bytes:
     """A short form of an outcome that tells it from others."""
     return hashlib.blake2b(msgspec.json.encode(outcome, order="deterministic"), digest_size=16).digest()
 
 
 def _is_end(message: Any) -> bool:
-    return isinstance(message, MissionState) and message.phase == "ended"
+    return isinstance(message, messages.MissionState) and message.phase == "ended"
 
 
-def _decided(record: DecisionRecord) -> tuple[int, str, dict[str, Any], str]:
+def _decided(record: messages.DecisionRecord) -> tuple[int, str, dict[str, Any], str]:
     return record.step, record.skill, record.parameters, record.action
 
 
-def _wanted(intended: Activate) -> tuple[str, int, str, dict[str, Any]]:
+def _wanted(intended: messages.Activate) -> tuple[str, int, str, dict[str, Any]]:
     return intended.id.mission, intended.id.step, intended.skill, intended.parameters

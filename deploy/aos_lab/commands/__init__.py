@@ -1,1 +1,1 @@
-"""The laboratory's sub-commands of `aos`; each module has `register(app)`."""
+"""The laboratory's sub-commands of `aos`."""

@@ -6,6 +6,7 @@ from typing import Annotated, get_args
 
 import typer
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
@@ -24,11 +25,7 @@ Time = Annotated[
 ]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos bench tiger rocksample-7-8 --quick")(bench)
-
-
+@command("Example: aos bench tiger rocksample-7-8 --quick")
 def bench(
     names: Annotated[
         list[str] | None,

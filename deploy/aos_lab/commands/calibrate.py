@@ -10,6 +10,7 @@ import typer
 from rich import box
 from rich.table import Table
 
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import console, interruption_told, progress
@@ -23,14 +24,10 @@ _NUMBERS_WHOLE_FROM = 80
 """Columns of a terminal in which an interval keeps to its line."""
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(
-        epilog="Example: aos calibrate runs deploy/bundles/armadillo-finer "
-        "--also deploy/bundles/armadillo-retract --write changes.patch"
-    )(calibrate)
-
-
+@command(
+    "Example: aos calibrate runs deploy/bundles/armadillo-finer "
+    "--also deploy/bundles/armadillo-retract --write changes.patch"
+)
 def calibrate(
     runs: Annotated[
         list[Path],

@@ -26,20 +26,14 @@ if TYPE_CHECKING:
     from aos_lab.trials.setting import Player
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    group = typer.Typer(
-        no_args_is_help=True,
-        context_settings=HELP_NAMES,
-        rich_markup_mode=None,
-        help="Run an experiment, and see which of its claims hold.",
-        epilog="Example: aos experiment run armadillo --seeds 20",
-    )
-    group.callback()(lambda: None)
-    group.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")(run)
-    group.command(epilog="Example: aos experiment statistics armadillo --repeat 3")(statistics)
-    app.add_typer(group, name="experiment")
-
+experiment_app = typer.Typer(
+    name="experiment",
+    no_args_is_help=True,
+    context_settings=HELP_NAMES,
+    rich_markup_mode=None,
+    help="Run an experiment, and see which of its claims hold.",
+    epilog="Example: aos experiment run armadillo --seeds 20",
+)
 
 _NAME: Any = typer.Argument(
     metavar="NAME",
@@ -48,6 +42,7 @@ _NAME: Any = typer.Argument(
 )
 
 
+@experiment_app.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")
 def run(
     name: Annotated[str, _NAME],
     seeds: Annotated[int, typer.Option(min=0, help="Missions that the model plays, of each part")] = 100,
@@ -134,6 +129,7 @@ def verdict_line(part: str, verdict: Verdict) -> str:
     return f"{verdict.word.upper():8} {part}: {verdict.says}: {verdict_text(verdict)}"
 
 
+@experiment_app.command(epilog="Example: aos experiment statistics armadillo --repeat 3")
 def statistics(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="A file in deploy/experiments/statistics, or any file")

@@ -11,6 +11,7 @@ import msgspec
 import typer
 
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
@@ -44,11 +45,7 @@ class Spaces(msgspec.Struct):
     steps_per_second: float | None
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos gym deploy/bundles/bench/tiger --steps 1000000")(gym)
-
-
+@command("Example: aos gym deploy/bundles/bench/tiger --steps 1000000")
 def gym(
     bundle: Annotated[
         Path,

@@ -13,6 +13,7 @@ import typer
 
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
 from aos_deploy.planning_options import (
     Horizon,
@@ -36,11 +37,6 @@ from aos_solver.offline.following import following
 
 if TYPE_CHECKING:
     from aos_lab.problem_missions import ProblemPlayer
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos simulate deploy/bundles/armadillo-finer --runs 20")(simulate)
 
 
 class Campaign(msgspec.Struct):
@@ -69,6 +65,7 @@ StopBelowValue = Annotated[
 States = Annotated[bool, typer.Option("--states", help="Also tell the world's state at each step")]
 
 
+@command("Example: aos simulate deploy/bundles/armadillo-finer --runs 20")
 def simulate(
     bundle: Target,
     runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,

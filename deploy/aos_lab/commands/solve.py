@@ -17,6 +17,7 @@ from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, writable
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import count, print_json
@@ -65,11 +66,6 @@ _MEANINGS = {
 }
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos solve deploy/bundles/armadillo-finer --out armadillo.policy")(solve)
-
-
 class _Target(msgspec.Struct, frozen=True):
     """The problem to solve: `digest` is of the compiled model or the file, `states` are the texts of its
     states, which are not told apart by what is `left_out`. `mission_parameters` are the values of all."""
@@ -103,6 +99,7 @@ class Report(msgspec.Struct):
     written: list[str]
 
 
+@command("Example: aos solve deploy/bundles/armadillo-finer --out armadillo.policy")
 def solve(
     target: Annotated[
         Path, typer.Argument(metavar="TARGET", help="A bundle, a deploy, .pomdpx or .pomdp file")

@@ -13,6 +13,7 @@ import typer
 
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
@@ -25,15 +26,11 @@ SHOWN_MISSIONS = 3
 """The number of missions shown where a claim did not hold; all are in the JUnit file and in the JSON."""
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(
-        name="test",
-        epilog="Example: aos test docs/examples/missions.yaml --junit report.xml. "
-        "Exit codes: 0 all claims hold, 4 one does not, 1 the file or documents have errors.",
-    )(run_tests)
-
-
+@command(
+    "Example: aos test docs/examples/missions.yaml --junit report.xml. "
+    "Exit codes: 0 all claims hold, 4 one does not, 1 the file or documents have errors.",
+    "test",
+)
 def run_tests(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The file of mission tests")],
     jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,

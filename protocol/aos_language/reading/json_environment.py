@@ -9,36 +9,21 @@ from aos_language.reading.code import dedented, guarded
 from aos_language.reading.document import array_type, check_name, enum_type, normal_type
 from aos_language.reading.json_blocks import read_block
 from aos_language.reading.json_record import Record
+from aos_protocol import documents
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import (
-    MAX_HORIZON,
-    Assignment,
-    CompoundType,
-    EnumType,
-    Environment,
-    Field,
-    LowLevelConstant,
-    LowLevelDocument,
-    LowLevelType,
-    MonitorModel,
-    Parameter,
-    Snippet,
-    SpecialState,
-    StateVariable,
-)
 
 _RANGE = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)")
 _KINDS = ("enum", "compound")
 _FORM_A = ("StateConditionCode", "Reward", "IsGoalState", "IsFailureState", "IsOneTimeReward")
 
 
-def read_environment(record: Record, project: str, span: Span) -> Environment:
+def read_environment(record: Record, project: str, span: Span) -> documents.Environment:
     """The environment; what cannot be read of it is reported and left out."""
     horizon, discount, is_one_state = _general(record)
     enums, compounds = _types(record)
     variables = (_variable(item) for item in record.records("GlobalVariablesDeclaration", "a variable"))
     specials = (_special_state(item) for item in record.records("SpecialStates", "a special state"))
-    return Environment(
+    return documents.Environment(
         project=project,
         span=span,
         horizon=horizon,
@@ -58,7 +43,7 @@ def read_environment(record: Record, project: str, span: Span) -> Environment:
     )
 
 
-def _monitors(record: Record) -> Iterator[MonitorModel]:
+def _monitors(record: Record) -> Iterator[documents.MonitorModel]:
     """The model of each monitor."""
     for item in record.records("Monitors", "a monitor"):
         name, code = item.text("Name", required=True), item.code("AssignmentCode")
@@ -68,10 +53,10 @@ def _monitors(record: Record) -> Iterator[MonitorModel]:
             hint = "It sets __moduleResponse from `state`"
             record.findings.error("AOS105", 'a monitor lacks "AssignmentCode"', item.span, hint)
         elif name is not None and check_name(name, "a monitor", record.findings):
-            yield MonitorModel(name.text, name.span, (Assignment(code.span, code=code),))
+            yield documents.MonitorModel(name.text, name.span, (documents.Assignment(code.span, code=code),))
 
 
-def read_low_level(record: Record, project: str, span: Span) -> LowLevelDocument:
+def read_low_level(record: Record, project: str, span: Span) -> documents.LowLevelDocument:
     """The low-level types and constants."""
     types = []
     for item in record.records("LocalVariableTypes", "a low-level type"):
@@ -79,7 +64,7 @@ def read_low_level(record: Record, project: str, span: Span) -> LowLevelDocument
         fields = _parameters(item, "Variables", "a field")
         item.finish()
         if name and check_name(name, "a low-level type", record.findings):
-            types.append(LowLevelType(name.text, fields, name.span))
+            types.append(documents.LowLevelType(name.text, fields, name.span))
     constants = []
     for item in record.records("Constants", "a low-level constant"):
         name, kind = item.text("Name", required=True), item.text("Type", required=True)
@@ -88,8 +73,8 @@ def read_low_level(record: Record, project: str, span: Span) -> LowLevelDocument
         if code is None:
             record.findings.error("AOS105", 'a low-level constant lacks "InitCode"', item.span)
         elif name and kind:
-            constants.append(LowLevelConstant(name.text, kind.text, dedented(code), name.span))
-    return LowLevelDocument(project, span, tuple(types), tuple(constants))
+            constants.append(documents.LowLevelConstant(name.text, kind.text, dedented(code), name.span))
+    return documents.LowLevelDocument(project, span, tuple(types), tuple(constants))
 
 
 def _general(record: Record) -> tuple[int, float, bool]:
@@ -102,8 +87,8 @@ def _general(record: Record) -> tuple[int, float, bool]:
     is_one_state = general.boolean("OneStateModel")
     general.obsolete("Max_concurrent_actions", "One skill runs at a time")
     general.finish()
-    if horizon is not None and not 1 <= horizon <= MAX_HORIZON:
-        message = f"the horizon must be from 1 to {MAX_HORIZON}"
+    if horizon is not None and not 1 <= horizon <= documents.MAX_HORIZON:
+        message = f"the horizon must be from 1 to {documents.MAX_HORIZON}"
         findings.error("AOS106", message, general.value_span("Horizon"))
     if discount is not None and not 0.0 < discount <= 1.0:
         hint = "It must be above 0 and at most 1"
@@ -111,9 +96,9 @@ def _general(record: Record) -> tuple[int, float, bool]:
     return horizon or 1, 1.0 if discount is None else discount, is_one_state
 
 
-def _types(record: Record) -> tuple[tuple[EnumType, ...], tuple[CompoundType, ...]]:
-    enums: list[EnumType] = []
-    compounds: list[CompoundType] = []
+def _types(record: Record) -> tuple[tuple[documents.EnumType, ...], tuple[documents.CompoundType, ...]]:
+    enums: list[documents.EnumType] = []
+    compounds: list[documents.CompoundType] = []
     for item in record.records("GlobalVariableTypes", "a type"):
         name, kind = item.text("TypeName", required=True), item.text("Type", required=True)
         values = item.texts("EnumValues")
@@ -132,14 +117,14 @@ def _types(record: Record) -> tuple[tuple[EnumType, ...], tuple[CompoundType, ..
                 record.findings.error("AOS105", f"the enum {name.text} has no values", name.span)
             enums.append(enum_type(name, values, record.findings))
         elif kind.text == "compound":
-            compounds.append(CompoundType(name.text, tuple(f for f in fields if f), name.span))
+            compounds.append(documents.CompoundType(name.text, tuple(f for f in fields if f), name.span))
         else:
             message = f"a type is an enum or a compound, not {kind.text!r}"
             record.findings.error("AOS106", message, kind.span)
     return tuple(enums), tuple(compounds)
 
 
-def _field(record: Record) -> Field | None:
+def _field(record: Record) -> documents.Field | None:
     name, kind = record.text("Name", required=True), record.text("Type", required=True)
     default = record.expression("Default")
     type_name = normal_type(kind, record.findings) if kind else ""
@@ -149,7 +134,7 @@ def _field(record: Record) -> Field | None:
     if name is None or kind is None:
         return None
     check_name(name, "a field", record.findings)
-    return Field(name.text, type_name, name.span, default, low_level_type, kind.span)
+    return documents.Field(name.text, type_name, name.span, default, low_level_type, kind.span)
 
 
 def _low_level_type(record: Record, type_name: str) -> str | None:
@@ -162,7 +147,7 @@ def _low_level_type(record: Record, type_name: str) -> str | None:
     return low_level.text
 
 
-def _variable(record: Record) -> StateVariable | None:
+def _variable(record: Record) -> documents.StateVariable | None:
     name, kind = record.text("Name", required=True), record.text("Type", required=True)
     value, code = record.expression("Default"), record.code("DefaultCode")
     is_array = record.boolean("IsArray")
@@ -191,7 +176,7 @@ def _variable(record: Record) -> StateVariable | None:
     element, is_array_type, index_enum = array_type(type_name)
     if index is not None:
         index_enum = index.text
-    return StateVariable(
+    return documents.StateVariable(
         name=name.text,
         type=element,
         span=name.span,
@@ -208,7 +193,7 @@ def _variable(record: Record) -> StateVariable | None:
     )
 
 
-def _where_included(record: Record, code: Snippet | None) -> Snippet | None:
+def _where_included(record: Record, code: documents.Snippet | None) -> documents.Snippet | None:
     """The code of a map variable, for the keys where `IncludeParametersCode` holds."""
     key = "IncludeParametersCode"
     if not record.is_code(key):
@@ -221,7 +206,7 @@ def _where_included(record: Record, code: Snippet | None) -> Snippet | None:
     return guarded(condition, code)
 
 
-def _special_state(record: Record) -> SpecialState | None:
+def _special_state(record: Record) -> documents.SpecialState | None:
     code = read_block(record, "StateFunctionCode")
     condition = record.expression("StateConditionCode")
     reward = record.number("Reward")
@@ -238,23 +223,23 @@ def _special_state(record: Record) -> SpecialState | None:
         if not record.has("Reward"):
             record.findings.error("AOS105", 'a special state lacks "Reward"', record.span)
         reward = 1.0  # The mistake is told. What the condition names is looked at all the same.
-    return SpecialState(record.span, condition, reward, is_goal, is_one_time, is_failure)
+    return documents.SpecialState(record.span, condition, reward, is_goal, is_one_time, is_failure)
 
 
-def _form_b(record: Record, code: tuple[Assignment, ...]) -> SpecialState | None:
+def _form_b(record: Record, code: tuple[documents.Assignment, ...]) -> documents.SpecialState | None:
     for key in _FORM_A:
         if record.has(key):
             message = f'a special state has "StateFunctionCode" or "{key}", not both'
             record.findings.error("AOS106", message, record.key_span(key))
-    return SpecialState(record.span, code=code) if code else None
+    return documents.SpecialState(record.span, code=code) if code else None
 
 
-def _parameters(record: Record, key: str, what: str) -> tuple[Parameter, ...]:
+def _parameters(record: Record, key: str, what: str) -> tuple[documents.Parameter, ...]:
     found = []
     for item in record.records(key, what):
         name, kind = item.text("Name", required=True), item.text("Type", required=True)
         item.finish()
         if name and kind:
             check_name(name, what, record.findings)
-            found.append(Parameter(name.text, kind.text, name.span, kind.span))
+            found.append(documents.Parameter(name.text, kind.text, name.span, kind.span))
     return tuple(found)

@@ -4,48 +4,39 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from aos_protocol.documents import (
-    ACTIVATION_KINDS,
-    AbstractionMapping,
-    Activation,
-    Assignment,
-    CompoundType,
-    Environment,
-    Import,
-    Iteration,
-    LocalSource,
-    LocalVariable,
-    LowLevelDocument,
-    Parameter,
-    ResponseRule,
-    SkillModel,
-    Snippet,
-    SpecialState,
-    StateVariable,
-    TemporaryVariable,
-)
+from aos_protocol import documents
 
-_TYPES = {Environment: "Environment", SkillModel: "PLP", AbstractionMapping: "Glue"}
+_TYPES = {
+    documents.Environment: "Environment",
+    documents.SkillModel: "PLP",
+    documents.AbstractionMapping: "Glue",
+}
 
 
 def json_text(
-    content: Environment | SkillModel | AbstractionMapping | LowLevelDocument, version: str = ""
+    content: documents.Environment
+    | documents.SkillModel
+    | documents.AbstractionMapping
+    | documents.LowLevelDocument,
+    version: str = "",
 ) -> str:
     """The text of the document's JSON file."""
     header = {
         "Project": content.project,
-        "Name": content.name if isinstance(content, (SkillModel, AbstractionMapping)) else "environment",
+        "Name": content.name
+        if isinstance(content, (documents.SkillModel, documents.AbstractionMapping))
+        else "environment",
         "Type": _TYPES.get(type(content), "EnvironmentGlue"),
         **_given(Version=version),
     }
     match content:
-        case Environment():
+        case documents.Environment():
             body = _environment(content)
-        case SkillModel():
+        case documents.SkillModel():
             body = _skill(content)
-        case AbstractionMapping():
+        case documents.AbstractionMapping():
             body = _mapping(content)
-        case LowLevelDocument():
+        case documents.LowLevelDocument():
             body = _low_level(content)
     return json.dumps({"PlpMain": header, **body}, indent=4, ensure_ascii=False) + "\n"
 
@@ -58,7 +49,7 @@ def _given(**members: object) -> dict[str, Any]:
 # --- environment and low-level document ---
 
 
-def _environment(environment: Environment) -> dict[str, Any]:
+def _environment(environment: documents.Environment) -> dict[str, Any]:
     enums = [
         {"TypeName": enum.name, "Type": "enum", "EnumValues": list(enum.values)} for enum in environment.enums
     ]
@@ -86,7 +77,7 @@ def _environment(environment: Environment) -> dict[str, Any]:
     }
 
 
-def _compound(compound: CompoundType) -> dict[str, Any]:
+def _compound(compound: documents.CompoundType) -> dict[str, Any]:
     fields = [
         {
             "Name": field.name,
@@ -98,7 +89,7 @@ def _compound(compound: CompoundType) -> dict[str, Any]:
     return {"TypeName": compound.name, "Type": "compound", "Variables": fields}
 
 
-def _variable(variable: StateVariable) -> dict[str, Any]:
+def _variable(variable: documents.StateVariable) -> dict[str, Any]:
     return {
         "Name": variable.name,
         "Type": variable.type,
@@ -115,7 +106,7 @@ def _variable(variable: StateVariable) -> dict[str, Any]:
     }
 
 
-def _special_state(special: SpecialState) -> dict[str, Any]:
+def _special_state(special: documents.SpecialState) -> dict[str, Any]:
     if special.condition is None:
         return {"StateFunctionCode": _block(special.code)}
     failure = {} if special.is_failure is None else {"IsFailureState": special.is_failure}
@@ -127,7 +118,7 @@ def _special_state(special: SpecialState) -> dict[str, Any]:
     }
 
 
-def _low_level(document: LowLevelDocument) -> dict[str, Any]:
+def _low_level(document: documents.LowLevelDocument) -> dict[str, Any]:
     return {
         "LocalVariableTypes": [
             {"TypeName": kind.name, "Variables": _parameters(kind.fields)} for kind in document.types
@@ -142,7 +133,7 @@ def _low_level(document: LowLevelDocument) -> dict[str, Any]:
 # --- skill document ---
 
 
-def _skill(model: SkillModel) -> dict[str, Any]:
+def _skill(model: documents.SkillModel) -> dict[str, Any]:
     preconditions = _given(
         GlobalVariablePreconditionAssignments=_block(model.precondition),
         PlannerAssistancePreconditionsAssignments=_block(model.rollout_policy),
@@ -161,14 +152,14 @@ def _skill(model: SkillModel) -> dict[str, Any]:
     }
 
 
-def _parameters(parameters: Iterable[Parameter]) -> list[dict[str, str]]:
+def _parameters(parameters: Iterable[documents.Parameter]) -> list[dict[str, str]]:
     return [{"Name": parameter.name, "Type": parameter.type} for parameter in parameters]
 
 
 # --- abstraction mapping ---
 
 
-def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
+def _mapping(mapping: documents.AbstractionMapping) -> dict[str, Any]:
     calls = {"Monitor": mapping.monitor} if mapping.monitor else _activation(mapping.activation)
     return {
         "GlueFramework": "ROS",
@@ -182,7 +173,7 @@ def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
     }
 
 
-def _activation(activation: Activation) -> dict[str, Any]:
+def _activation(activation: documents.Activation) -> dict[str, Any]:
     service = {
         **_given(ImportCode=_imports(activation.imports)),
         "ServicePath": activation.path,
@@ -192,11 +183,11 @@ def _activation(activation: Activation) -> dict[str, Any]:
             for field in activation.fields
         ],
     }
-    kind = ACTIVATION_KINDS[activation.kind]
+    kind = documents.ACTIVATION_KINDS[activation.kind]
     return {"ModuleActivation": {kind: service, **_given(MaxDuration=activation.max_duration_s)}}
 
 
-def _rule(rule: ResponseRule) -> dict[str, Any]:
+def _rule(rule: documents.ResponseRule) -> dict[str, Any]:
     assigned = [
         {"VarName": assignment.path, "Value": _code(assignment.value)} for assignment in rule.assignments
     ]
@@ -207,13 +198,13 @@ def _rule(rule: ResponseRule) -> dict[str, Any]:
     }
 
 
-def _local_variable(variable: LocalVariable) -> dict[str, Any]:
-    is_parameter = variable.source is LocalSource.PARAMETER
+def _local_variable(variable: documents.LocalVariable) -> dict[str, Any]:
+    is_parameter = variable.source is documents.LocalSource.PARAMETER
     return {
         "InputLocalVariable" if is_parameter else "LocalVariableName": variable.name,
         **_given(
             FromGlobalVariable=variable.parameter_path,
-            FromROSServiceResponse=variable.source is LocalSource.SERVICE_RESPONSE,
+            FromROSServiceResponse=variable.source is documents.LocalSource.SERVICE_RESPONSE,
             RosTopicPath=variable.topic,
             TopicMessageType=variable.message_type,
             VariableType=variable.type,
@@ -225,14 +216,14 @@ def _local_variable(variable: LocalVariable) -> dict[str, Any]:
     }
 
 
-def _imports(imports: Iterable[Import]) -> list[dict[str, Any]]:
+def _imports(imports: Iterable[documents.Import]) -> list[dict[str, Any]]:
     return [{**_given(From=item.module), "Import": list(item.names)} for item in imports]
 
 
 # --- code ---
 
 
-def _block(block: Iterable[Assignment]) -> list[dict[str, Any]]:
+def _block(block: Iterable[documents.Assignment]) -> list[dict[str, Any]]:
     return [
         _given(
             AssignmentName=assignment.name,
@@ -245,7 +236,7 @@ def _block(block: Iterable[Assignment]) -> list[dict[str, Any]]:
     ]
 
 
-def _temporary(temporary: TemporaryVariable) -> dict[str, Any]:
+def _temporary(temporary: documents.TemporaryVariable) -> dict[str, Any]:
     return {
         "VarName": temporary.name,
         "Type": temporary.type,
@@ -253,7 +244,7 @@ def _temporary(temporary: TemporaryVariable) -> dict[str, Any]:
     }
 
 
-def _loops(loops: Iterable[Iteration]) -> list[dict[str, Any]]:
+def _loops(loops: Iterable[documents.Iteration]) -> list[dict[str, Any]]:
     return [
         {
             "Type": loop.type,
@@ -264,7 +255,7 @@ def _loops(loops: Iterable[Iteration]) -> list[dict[str, Any]]:
     ]
 
 
-def _code(snippet: Snippet | None) -> str | list[str] | None:
+def _code(snippet: documents.Snippet | None) -> str | list[str] | None:
     """A line as text, several as a list of lines."""
     if snippet is None:
         return None

@@ -3,42 +3,30 @@
 import re
 from collections.abc import Iterable, Iterator
 
-from aos_protocol.documents import (
-    AbstractionMapping,
-    Activation,
-    Assignment,
-    Environment,
-    Field,
-    Import,
-    Iteration,
-    LocalSource,
-    LocalVariable,
-    LowLevelDocument,
-    SkillModel,
-    Snippet,
-    SpecialState,
-    StateVariable,
-    TemporaryVariable,
-)
+from aos_protocol import documents
 
 _LOOKS_LIKE_A_SCALE = re.compile(r".*\S\s+(ml_ignore|[\d.]+)")
 
 
 def sdl_text(
-    content: Environment | SkillModel | AbstractionMapping | LowLevelDocument, version: str = ""
+    content: documents.Environment
+    | documents.SkillModel
+    | documents.AbstractionMapping
+    | documents.LowLevelDocument,
+    version: str = "",
 ) -> str:
     """The text of an `.ef`, `.sd`, `.am` or `.lf` file. Names of skills are file names, and not in it."""
     lines = [f"project: {content.project}"]
     if version:
         lines.append(f"version: {version}")
     match content:
-        case Environment():
+        case documents.Environment():
             lines += _environment(content)
-        case SkillModel():
+        case documents.SkillModel():
             lines += _skill(content)
-        case AbstractionMapping():
+        case documents.AbstractionMapping():
             lines += _mapping(content)
-        case LowLevelDocument():
+        case documents.LowLevelDocument():
             lines += _low_level(content)
     return "".join(f"{line}\n" for line in lines)
 
@@ -46,7 +34,7 @@ def sdl_text(
 # --- environment and low-level file ---
 
 
-def _environment(environment: Environment) -> Iterator[str]:
+def _environment(environment: documents.Environment) -> Iterator[str]:
     yield f"horizon: {environment.horizon}"
     yield f"discount: {environment.discount!r}"
     if environment.is_one_state_model:
@@ -71,7 +59,7 @@ def _environment(environment: Environment) -> Iterator[str]:
         yield from ("", f"monitor: {monitor.name}", *_code("code", monitor.code[0].code))
 
 
-def _field(field: Field) -> str:
+def _field(field: documents.Field) -> str:
     default = field.default.code if field.default is not None else ""
     if _LOOKS_LIKE_A_SCALE.fullmatch(default):
         default += " 1"  # Of two numbers at the end the last is taken for the learning planner's.
@@ -79,7 +67,7 @@ def _field(field: Field) -> str:
     return " ".join(part for part in ("variable:", field.type, field.name, low_level_type, default) if part)
 
 
-def _variable(variable: StateVariable) -> Iterator[str]:
+def _variable(variable: documents.StateVariable) -> Iterator[str]:
     word = "action_parameter:" if variable.is_parameter_value else "state_variable:"
     word = "mission_parameter:" if variable.is_mission_parameter else word
     array = f"[{variable.index_enum}]" if variable.is_array else ""
@@ -91,7 +79,7 @@ def _variable(variable: StateVariable) -> Iterator[str]:
     yield from _code("code", variable.default_code)
 
 
-def _special_state(special: SpecialState) -> Iterator[str]:
+def _special_state(special: documents.SpecialState) -> Iterator[str]:
     if special.condition is None:
         yield from _block("reward_code", special.code)
         return
@@ -105,7 +93,7 @@ def _special_state(special: SpecialState) -> Iterator[str]:
         yield "is_one_time_reward: true"
 
 
-def _low_level(document: LowLevelDocument) -> Iterator[str]:
+def _low_level(document: documents.LowLevelDocument) -> Iterator[str]:
     for kind in document.types:
         yield from ("", f"define_type: {kind.name}")
         yield from (f"variable: {field.type} {field.name}" for field in kind.fields)
@@ -116,7 +104,7 @@ def _low_level(document: LowLevelDocument) -> Iterator[str]:
 # --- skill document ---
 
 
-def _skill(model: SkillModel) -> Iterator[str]:
+def _skill(model: documents.SkillModel) -> Iterator[str]:
     yield from (f"parameter: {parameter.type} {parameter.name}" for parameter in model.parameters)
     yield from _block("available_parameters_code", model.possible_parameters)
     yield from _block("precondition", model.precondition)
@@ -131,7 +119,7 @@ def _skill(model: SkillModel) -> Iterator[str]:
 # --- abstraction mapping ---
 
 
-def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
+def _mapping(mapping: documents.AbstractionMapping) -> Iterator[str]:
     if mapping.rules or mapping.response_variable:
         yield ""
     for rule in mapping.rules:
@@ -154,7 +142,7 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
         yield from ("", *_local_variable(variable))
 
 
-def _activation(activation: Activation) -> Iterator[str]:
+def _activation(activation: documents.Activation) -> Iterator[str]:
     yield from ("", f"module_activation: {activation.kind}")
     yield from map(_import, activation.imports)
     yield f"path: {activation.path}"
@@ -166,14 +154,14 @@ def _activation(activation: Activation) -> Iterator[str]:
         yield from (f"parameter: {field.name}", *_code("code", field.value))
 
 
-def _local_variable(variable: LocalVariable) -> Iterator[str]:
+def _local_variable(variable: documents.LocalVariable) -> Iterator[str]:
     yield f"local_variable: {variable.name}"
     match variable.source:
-        case LocalSource.PARAMETER:
+        case documents.LocalSource.PARAMETER:
             yield f"action_parameter: {variable.parameter_path}"
-        case LocalSource.SERVICE_RESPONSE:
+        case documents.LocalSource.SERVICE_RESPONSE:
             yield "from_ros_service_response: true"
-        case LocalSource.TOPIC:
+        case documents.LocalSource.TOPIC:
             yield f"topic: {variable.topic}"
     if variable.message_type:
         yield f"message_type: {variable.message_type}"
@@ -186,7 +174,7 @@ def _local_variable(variable: LocalVariable) -> Iterator[str]:
     yield from _code("code", variable.code)
 
 
-def _import(item: Import) -> str:
+def _import(item: documents.Import) -> str:
     origin = f"from: {item.module} " if item.module else ""
     return f"imports: {origin}import: {', '.join(item.names)}"
 
@@ -194,12 +182,12 @@ def _import(item: Import) -> str:
 # --- code ---
 
 
-def _block(word: str, block: tuple[Assignment, ...]) -> Iterator[str]:
+def _block(word: str, block: tuple[documents.Assignment, ...]) -> Iterator[str]:
     """The section of a block: its body where that is all there is to say, or else its assignments."""
     if not block:
         return
     yield from ("", f"{word}:")
-    if len(block) == 1 and block[0] == Assignment(block[0].span, code=block[0].code):
+    if len(block) == 1 and block[0] == documents.Assignment(block[0].span, code=block[0].code):
         yield from _lines(block[0].code)
         return
     for assignment in block:
@@ -211,30 +199,30 @@ def _block(word: str, block: tuple[Assignment, ...]) -> Iterator[str]:
         yield from _code("code", assignment.code)
 
 
-def _temporary(temporary: TemporaryVariable) -> str:
+def _temporary(temporary: documents.TemporaryVariable) -> str:
     if not temporary.enum_name:
         return f"{temporary.type} {temporary.name}"
     return f"enum {temporary.enum_name} {{ {', '.join(temporary.enum_values)} }} {temporary.name}"
 
 
-def _loops(word: str, loops: Iterable[Iteration]) -> Iterator[str]:
+def _loops(word: str, loops: Iterable[documents.Iteration]) -> Iterator[str]:
     for loop in loops:
         yield f"{word}: {loop.type} {loop.item}"
         yield from _expression("loop_condition", loop.condition)
         yield from _code("loop_body", loop.body)
 
 
-def _expression(word: str, snippet: Snippet | None) -> Iterator[str]:
+def _expression(word: str, snippet: documents.Snippet | None) -> Iterator[str]:
     """Yields the expression on the line of its word where it fits there, else below it."""
     if snippet is not None:
         is_short = "\n" not in snippet.code
         yield from (f"{word}: {snippet.code}",) if is_short else (f"{word}:", *_lines(snippet))
 
 
-def _code(word: str, snippet: Snippet | None) -> Iterator[str]:
+def _code(word: str, snippet: documents.Snippet | None) -> Iterator[str]:
     if snippet is not None:
         yield from (f"{word}:", *_lines(snippet))
 
 
-def _lines(snippet: Snippet | None) -> list[str]:
+def _lines(snippet: documents.Snippet | None) -> list[str]:
     return snippet.code.split("\n") if snippet is not None else []

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from aos_deploy.export.run_bundle import opened_bundle
+from aos_deploy.marked_commands import command
 from aos_deploy.runs.living import runs_here
 from aos_protocol.errors import DeployError
 
@@ -39,11 +40,7 @@ Robots = Annotated[
 ]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos serve, then open the address that it prints")(serve)
-
-
+@command("Example: aos serve, then open the address that it prints")
 def serve(
     files: Files = None,
     listen: Listen = "127.0.0.1",

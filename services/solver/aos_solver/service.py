@@ -11,21 +11,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_protocol.messages import (
-    CheckModel,
-    History,
-    HistoryQuery,
-    MissionQuery,
-    Missions,
-    MissionsQuery,
-    MissionState,
-    ModelCheck,
-    ProjectRevision,
-    ResumeMission,
-    StartMission,
-    Steer,
-    StopMission,
-)
+from aos_protocol import messages
 from aos_runtime.failpoints import reach
 from aos_runtime.parties.registry_watch import RegistryWatch
 from aos_runtime.processes.lifecycle import Service
@@ -90,15 +76,18 @@ class _Solver:
 
     async def run(self) -> None:
         bus, keys = self._bus, self._keys
-        async with asyncio.TaskGroup() as tasks, bus.listen(keys.announced, ProjectRevision) as announced:
-            await bus.answer(keys.start_mission, StartMission, self._start)
-            await bus.answer(keys.mission_state, MissionQuery, self._answer_state)
-            await bus.answer(keys.decision_history, HistoryQuery, self._answer_history)
-            await bus.answer(keys.check_model, CheckModel, self._check)
-            await bus.answer(keys.resume_mission, ResumeMission, self._resume)
-            await bus.answer(keys.steer_mission, Steer, self._steer)
-            await bus.answer(keys.stop_mission, StopMission, self._stop)
-            await bus.answer(keys.missions, MissionsQuery, self._answer_missions)
+        async with (
+            asyncio.TaskGroup() as tasks,
+            bus.listen(keys.announced, messages.ProjectRevision) as announced,
+        ):
+            await bus.answer(keys.start_mission, messages.StartMission, self._start)
+            await bus.answer(keys.mission_state, messages.MissionQuery, self._answer_state)
+            await bus.answer(keys.decision_history, messages.HistoryQuery, self._answer_history)
+            await bus.answer(keys.check_model, messages.CheckModel, self._check)
+            await bus.answer(keys.resume_mission, messages.ResumeMission, self._resume)
+            await bus.answer(keys.steer_mission, messages.Steer, self._steer)
+            await bus.answer(keys.stop_mission, messages.StopMission, self._stop)
+            await bus.answer(keys.missions, messages.MissionsQuery, self._answer_missions)
             await self._studies.answer(bus, keys)
             await self._service.ready()
             tasks.create_task(self._registry.follow())
@@ -117,39 +106,39 @@ class _Solver:
         self._history.close()
         self._books.close()
 
-    async def _start(self, start: StartMission, _: str) -> MissionState:
+    async def _start(self, start: messages.StartMission, _: str) -> messages.MissionState:
         """Starts a mission once its model runs; tells the caller why if it cannot."""
         await self._missions.start(start)
         return self._missions.state
 
-    async def _stop(self, stop: StopMission, _: str) -> MissionState:
+    async def _stop(self, stop: messages.StopMission, _: str) -> messages.MissionState:
         return await self._steering.stop(stop)
 
-    async def _answer_missions(self, _: MissionsQuery, __: str) -> Missions:
-        return Missions(await asyncio.to_thread(self._books.entries), self._settings.stay)
+    async def _answer_missions(self, _: messages.MissionsQuery, __: str) -> messages.Missions:
+        return messages.Missions(await asyncio.to_thread(self._books.entries), self._settings.stay)
 
-    async def _resume(self, resume: ResumeMission, _: str) -> MissionState:
+    async def _resume(self, resume: messages.ResumeMission, _: str) -> messages.MissionState:
         mission = self._missions.mission
         if mission is not None and mission.state.phase == "holding":
-            await self._steering.take(Steer("resume", by=resume.by))
+            await self._steering.take(messages.Steer("resume", by=resume.by))
         return self._missions.state
 
-    async def _steer(self, steer: Steer, _: str) -> MissionState:
+    async def _steer(self, steer: messages.Steer, _: str) -> messages.MissionState:
         return await self._steering.take(steer)
 
-    async def _answer_state(self, _: MissionQuery, __: str) -> MissionState:
+    async def _answer_state(self, _: messages.MissionQuery, __: str) -> messages.MissionState:
         return self._missions.state
 
-    async def _answer_history(self, query: HistoryQuery, _: str) -> History:
+    async def _answer_history(self, query: messages.HistoryQuery, _: str) -> messages.History:
         if self._books.newest is None:
-            return History(self._books.name, ())
+            return messages.History(self._books.name, ())
         book, name = self._books.path_of(query.mission), query.mission or self._books.name
         return await self._history.page(book, name, query)
 
-    async def _check(self, question: CheckModel, _: str) -> ModelCheck:
-        return ModelCheck(await self._shelf.check(question.project, self._shelf.running))
+    async def _check(self, question: messages.CheckModel, _: str) -> messages.ModelCheck:
+        return messages.ModelCheck(await self._shelf.check(question.project, self._shelf.running))
 
-    async def _make(self, revision: ProjectRevision) -> None:
+    async def _make(self, revision: messages.ProjectRevision) -> None:
         """Builds a revision, and asks whether the middleware has it: what it told may be lost."""
         await self._shelf.make(revision)
         if self._missions.mission is not None:

@@ -11,17 +11,9 @@ from typing import NamedTuple, Protocol
 
 import msgspec
 
+from aos_protocol import messages
 from aos_protocol.documents import Project
 from aos_protocol.errors import StudyError
-from aos_protocol.messages import (
-    BeliefRow,
-    BeliefSummary,
-    DecisionRecord,
-    MissionBegun,
-    ModelAdopted,
-    SearchMade,
-    StartMission,
-)
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
@@ -59,8 +51,8 @@ class Remade(NamedTuple):
     """
 
     row: int
-    said: MissionBegun | ModelAdopted | DecisionRecord
-    belief: BeliefSummary
+    said: messages.MissionBegun | messages.ModelAdopted | messages.DecisionRecord
+    belief: messages.BeliefSummary
     plans: tuple[Plan | None, ...] = ()
 
 
@@ -104,7 +96,7 @@ class ReplayedMission:
         known = self.mission.events[: self._next]
         return self._step <= step and mission.events[: self._next] == known
 
-    def search_by(self, decision: DecisionRecord) -> Search:
+    def search_by(self, decision: messages.DecisionRecord) -> Search:
         """The way in which a decision was made, with the mission's budget."""
         begun = self.mission.begun
         assert begun is not None
@@ -121,21 +113,21 @@ class ReplayedMission:
             event = self.mission.events[self._next]
             self._next += 1
             match event.said:
-                case MissionBegun() as begun:
+                case messages.MissionBegun() as begun:
                     yield Remade(event.row, begun, await self._begin(begun))
-                case ModelAdopted() as adopted:
+                case messages.ModelAdopted() as adopted:
                     yield Remade(event.row, adopted, await self._adopt(adopted))
-                case DecisionRecord(outcome=None) as decision:
+                case messages.DecisionRecord(outcome=None) as decision:
                     belief, self._step = await self.engine.summary(), decision.step
                     is_last = until is not None and decision.step >= until
                     plans = await self._decided(decision) if self._decides else ()
                     yield Remade(event.row, decision, belief, plans)
                     if is_last:
                         return
-                case DecisionRecord() as observed:
+                case messages.DecisionRecord() as observed:
                     yield Remade(event.row, observed, await self._observe(observed))
 
-    async def go_to(self, step: int) -> DecisionRecord:
+    async def go_to(self, step: int) -> messages.DecisionRecord:
         """Brings the engine to the belief of a step's decision, which is returned; errors as from `rows`."""
         decision = self.mission.decision(step)
         if self._step != step or self._running is None:
@@ -159,7 +151,7 @@ class ReplayedMission:
         """The probability of the goal at which the mission ends."""
         return self._limits.goal_probability
 
-    def evidence_of(self, record: DecisionRecord) -> Evidence:
+    def evidence_of(self, record: messages.DecisionRecord) -> Evidence:
         """The step of a record as a belief sees it; it has an outcome."""
         assert record.outcome is not None
         return evidence_of(record, record.outcome, self._failures)
@@ -195,7 +187,7 @@ class ReplayedMission:
         self._engine_number = 1
         return RunningModel(revision, engine)
 
-    async def _begin(self, begun: MissionBegun) -> BeliefSummary:
+    async def _begin(self, begun: messages.MissionBegun) -> messages.BeliefSummary:
         """Begins the mission, or takes it up as another solver did, with the models of that time."""
         await self.close()
         running = await self._engine(begun.revision, begun.model_digest)
@@ -209,26 +201,26 @@ class ReplayedMission:
                 pass
         return await self.engine.summary()
 
-    async def _earlier(self, begun: MissionBegun) -> tuple[Earlier, ...]:
+    async def _earlier(self, begun: messages.MissionBegun) -> tuple[Earlier, ...]:
         """The models through which the solver of that time had brought the belief."""
         if not begun.is_retraced:
             return ()
         stretches: tuple[Stretch, ...] = ()
         steps = 0
         for event in self.mission.events[: self._next - 1]:
-            if isinstance(event.said, MissionBegun | ModelAdopted):
+            if isinstance(event.said, messages.MissionBegun | messages.ModelAdopted):
                 stretches = after(stretches, event.said, steps)
-            steps += isinstance(event.said, DecisionRecord) and event.said.outcome is not None
+            steps += isinstance(event.said, messages.DecisionRecord) and event.said.outcome is not None
         before = models_before(stretches, begun.model_digest, steps)
         return tuple(
             [Earlier(await self._engine(each.revision, each.model_digest), until) for each, until in before]
         )
 
-    async def _start(self, start: StartMission | None) -> None:
+    async def _start(self, start: messages.StartMission | None) -> None:
         """The belief that a mission began with: the initial one, or that which its journal has."""
         if start is None or _is_plain(start):
             return
-        row = next(self.mission.of_kind(BeliefRow), None)
+        row = next(self.mission.of_kind(messages.BeliefRow), None)
         if row is None or row.step > 0:
             raise StudyError(
                 "the mission began with another belief than the initial one, and did not keep it"
@@ -237,7 +229,7 @@ class ReplayedMission:
             raise StudyError("the mission began with particles of the mission before, whose draws go on")
         await self.engine.import_beliefs(exported_of(row))
 
-    async def _adopt(self, adopted: ModelAdopted) -> BeliefSummary:
+    async def _adopt(self, adopted: messages.ModelAdopted) -> messages.BeliefSummary:
         assert self._running is not None
         successor = Successor(await self._engine(adopted.revision, adopted.model_digest), SystemClock())
         try:
@@ -257,14 +249,14 @@ class ReplayedMission:
         await before.engine.close()
         return takeover.belief
 
-    async def _observe(self, record: DecisionRecord) -> BeliefSummary:
+    async def _observe(self, record: messages.DecisionRecord) -> messages.BeliefSummary:
         evidence = self.evidence_of(record)
         number = len(self.past) + 1
         update = await updated(self.engine, evidence, self.past.refuted_below, number=number)
         self.past.steps.append(evidence)
         return update.summary
 
-    async def _decided(self, decision: DecisionRecord) -> tuple[Plan | None, ...]:
+    async def _decided(self, decision: messages.DecisionRecord) -> tuple[Plan | None, ...]:
         """The plans that a decision's searches give once more; None for one that cannot be made again."""
         search = self.search_by(decision)
         plans: list[Plan | None] = []
@@ -276,7 +268,7 @@ class ReplayedMission:
                 plans.append(await search.run(self.engine, decision.step, self.restriction_of(made)))
         return tuple(plans)
 
-    def restriction_of(self, made: SearchMade) -> Restriction:
+    def restriction_of(self, made: messages.SearchMade) -> Restriction:
         """The actions and the belief that a search was for; actions that the model lacks are left out."""
         numbers = {action.name: number for number, action in enumerate(self.engine.description.actions)}
         barred = [numbers[name] for name in made.barred if name in numbers]
@@ -295,6 +287,6 @@ class ReplayedMission:
             self._engine_number += 1
 
 
-def _is_plain(start: StartMission) -> bool:
+def _is_plain(start: messages.StartMission) -> bool:
     """Says whether a mission begins with the initial belief, now."""
     return start.belief == "initial" and not start.idle and not start.given

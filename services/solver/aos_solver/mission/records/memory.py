@@ -8,26 +8,15 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from aos_protocol import messages
 from aos_protocol.errors import StorageError
-from aos_protocol.messages import (
-    ActionRefused,
-    Activate,
-    BeliefSummary,
-    DecisionRecord,
-    DriftTests,
-    MissionBegun,
-    MissionState,
-    ModelAdopted,
-    Outcome,
-    Steer,
-)
 from aos_protocol.mission_rows import MESSAGES
 from aos_runtime.disk.journal import JournalRow
 from aos_solver.mission.control.steering import LIFTS, Steering
 from aos_solver.mission.records.stretches import Stretch, after
 from aos_solver.mission.rules.drift import after_use
 
-_NO_BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 0, False)
+_NO_BELIEF = messages.BeliefSummary((), 0.0, 0.0, 0.0, 0, False)
 
 
 class PastStep(NamedTuple):
@@ -37,17 +26,17 @@ class PastStep(NamedTuple):
     without the belief: a step of a long mission takes less than 2 kB.
     """
 
-    decision: DecisionRecord
-    outcome: Outcome
+    decision: messages.DecisionRecord
+    outcome: messages.Outcome
     observed_ns: int
 
 
 class Pending(NamedTuple):
     """A step that is not over. Without an `intention` nothing was asked; with an `outcome` all was."""
 
-    decision: DecisionRecord
-    intention: Activate | None = None
-    outcome: Outcome | None = None
+    decision: messages.DecisionRecord
+    intention: messages.Activate | None = None
+    outcome: messages.Outcome | None = None
 
 
 class MissionMemory(msgspec.Struct, frozen=True):
@@ -62,14 +51,14 @@ class MissionMemory(msgspec.Struct, frozen=True):
     epoch: int = 0
     steps: tuple[PastStep, ...] = ()
     pending: Pending | None = None
-    state: MissionState | None = None
+    state: messages.MissionState | None = None
     sequence: int = 0
     goal_probability: float = 0.0
     mission_parameters: dict[str, str] = {}
-    begun: MissionBegun | None = None
+    begun: messages.MissionBegun | None = None
     steering: Steering = Steering()
     is_lifted: bool = False
-    drift: DriftTests | None = None
+    drift: messages.DriftTests | None = None
     stretches: tuple[Stretch, ...] = ()
 
     @property
@@ -85,43 +74,43 @@ class MissionMemory(msgspec.Struct, frozen=True):
 def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     """The memory that a mission's journal holds; StorageError AOS702 for a row that is damaged."""
     epoch, pending, state, sequence, goal_probability = 0, None, None, 0, 0.0
-    begun: MissionBegun | None = None
+    begun: messages.MissionBegun | None = None
     steps: list[PastStep] = []
     parameters: dict[str, str] = {}
     steering, is_lifted = Steering(), False
-    drift: DriftTests | None = None
+    drift: messages.DriftTests | None = None
     stretches: tuple[Stretch, ...] = ()
     for row in rows:
         if row.kind not in MESSAGES:
             continue
         said: Any = row.read_as(MESSAGES[row.kind])
         steering = _steered(steering, said, state)
-        if isinstance(said, MissionBegun | ModelAdopted):
+        if isinstance(said, messages.MissionBegun | messages.ModelAdopted):
             stretches = after(stretches, said, len(steps))
         match said:
-            case MissionBegun():
+            case messages.MissionBegun():
                 epoch, parameters, begun = said.epoch, said.mission_parameters, begun or said
-            case MissionState():
+            case messages.MissionState():
                 is_lifted = is_lifted and _is_holding(said)
                 state = said
-            case Steer():
+            case messages.Steer():
                 is_lifted = is_lifted or (said.verb in LIFTS and _is_holding(state))
-            case DriftTests():
+            case messages.DriftTests():
                 drift = said
-            case DecisionRecord(outcome=None):
+            case messages.DecisionRecord(outcome=None):
                 pending = Pending(said)
-            case DecisionRecord(outcome=Outcome() as outcome):
+            case messages.DecisionRecord(outcome=messages.Outcome() as outcome):
                 if steps:
                     steps[-1] = steps[-1]._replace(decision=_without_search(steps[-1].decision))
                 decision = _of(pending, row).decision
                 drift = None if drift is None else after_use(drift, decision, said)
                 steps.append(PastStep(decision, outcome, said.stamp_ns))
                 pending = None
-            case Activate():
+            case messages.Activate():
                 pending = _of(pending, row)._replace(intention=said)
-            case Outcome():
+            case messages.Outcome():
                 pending = _of(pending, row)._replace(outcome=said)
-        if isinstance(said, DecisionRecord):
+        if isinstance(said, messages.DecisionRecord):
             sequence, goal_probability = said.sequence + 1, said.belief.goal_probability
     return MissionMemory(
         epoch,
@@ -139,25 +128,25 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     )
 
 
-def _steered(steering: Steering, said: Any, state: MissionState | None) -> Steering:
+def _steered(steering: Steering, said: Any, state: messages.MissionState | None) -> Steering:
     """The steering after a row of the journal; `state` is the mission's before it."""
     match said:
-        case Steer():
+        case messages.Steer():
             return steering.after(said, is_holding=_is_holding(state))
-        case ActionRefused():
+        case messages.ActionRefused():
             return steering.refused(said)
-        case DecisionRecord(outcome=None):
+        case messages.DecisionRecord(outcome=None):
             return steering.decided(said)
-        case DecisionRecord():
+        case messages.DecisionRecord():
             return steering.observed(said)
     return steering
 
 
-def _is_holding(state: MissionState | None) -> bool:
+def _is_holding(state: messages.MissionState | None) -> bool:
     return state is not None and state.phase == "holding"
 
 
-def _without_search(decision: DecisionRecord) -> DecisionRecord:
+def _without_search(decision: messages.DecisionRecord) -> messages.DecisionRecord:
     return msgspec.structs.replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="", searches=())
 
 
