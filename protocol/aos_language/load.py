@@ -26,6 +26,7 @@ from aos_language.reading.picture_file import PICTURE
 from aos_language.reading.source import open_source
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
+from aos_protocol.spelling import did_you_mean_path
 
 _IN_CODE = frozenset({"AOS110", "AOS116", "AOS122", "AOS123", "AOS128", "AOS138", "AOS143"})
 """Errors in a model's code that leave its declarations whole, so that the compiler can tell of the rest."""
@@ -147,7 +148,9 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
     except OSError as error:
         reason = error.strerror or "cannot be read"
         hint = "A bundle is a directory with .ef, .sd, .am, .lf or .json files, or an archive of one"
-        if path.suffix in (".pomdp", ".pomdpx"):
+        if close := did_you_mean_path(path):
+            hint = close
+        elif path.suffix in (".pomdp", ".pomdpx"):
             hint += f". Such a file is for `aos solve {path}`"
         elif path.suffix in (".yaml", ".yml"):
             hint += f". {path.name} may name some under `bundles:`"

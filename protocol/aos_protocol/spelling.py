@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from pathlib import Path
 
 _ALIKE = 0.65
 """The share of two names that has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
@@ -23,6 +24,16 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """The hint that names the nearest known name; empty where none is near."""
     close = nearest(name, known)
     return f"Did you mean `{close}`?" if close else ""
+
+
+def did_you_mean_path(path: Path) -> str:
+    """The hint that names what a path that leads to nothing probably meant; empty where nothing is near."""
+    try:
+        beside = [entry.name for entry in path.parent.iterdir()]
+    except OSError:
+        return ""
+    close = "" if path.name in beside else nearest(path.name, beside)
+    return f"Did you mean `{path.parent / close}`?" if close else ""
 
 
 def quoted(names: Iterable[str]) -> str:

@@ -1,5 +1,6 @@
 """An adapter that is a class of a user's own, and what such a class may get wrong."""
 
+import asyncio
 from pathlib import Path
 
 import pytest
@@ -8,9 +9,14 @@ from starting import until_present
 
 from aos_protocol.errors import SkillError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import ActivationId, SkillCall
-from aos_runtime.adapters import Binding
+from aos_protocol.messages import ActivationId, Cancel, SkillCall
+from aos_runtime.adapters import AdapterSettings, Binding, Call
+from aos_runtime.adapters.calls import Calls
+from aos_runtime.adapters.outbox import Outbox
+from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.bus.bus import Bus
+from aos_runtime.clock import SystemClock
+from aos_runtime.processes.lifecycle import Service
 
 ARM = """
 class Arm:
@@ -48,3 +54,46 @@ async def test_a_call_that_is_no_coroutine_fails_and_is_told_how_to_write_it(
             await arm.ask(SkillCall(ActivationId("m", 2), "/drop", {}, 20.0))
     finally:
         await arm.stop()
+
+
+class StopsLate:
+    """Ends just when it was given up as stuck."""
+
+    version = "1"
+
+    def __init__(self) -> None:
+        self.is_called, self.is_given_up = asyncio.Event(), asyncio.Event()
+
+    async def start(self) -> None: ...
+
+    async def close(self) -> None: ...
+
+    async def call(self, call: Call) -> dict[str, object]:
+        self.is_called.set()
+        try:
+            return await asyncio.Future()
+        except asyncio.CancelledError:
+            await self.is_given_up.wait()
+            raise
+
+
+async def test_a_call_that_was_told_as_stuck_is_told_as_stopped_to_nobody(
+    bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+):
+    settings = AdapterSettings(
+        robot=keys.robot, service="arm", endpoint=endpoint, run_dir=str(tmp_path), adapter="", cancel_s=0.1
+    )
+    arm = StopsLate()
+    calls = Calls(
+        Service(settings, bus, SystemClock()),
+        Outbox(bus, keys),
+        Pauses(),
+        lambda _: True,
+        lambda _: arm.is_given_up.set(),
+    )
+    calls.go_to(arm)
+    answer = asyncio.create_task(calls.run(SkillCall(ActivationId("m", 1), "/wave", {}, 20.0), ""))
+    await arm.is_called.wait()
+    told = await asyncio.gather(calls.cancel(Cancel("enough"), ""), answer, return_exceptions=True)
+    calls.close()
+    assert [getattr(each, "code", each) for each in told] == ["AOS504", "AOS504"]

@@ -46,6 +46,7 @@ def test_wrong_usage_has_its_own_exit_code(command: list[str]):
         ("-n 24", b"a", "`ulimit -n` is 24, and a mission needs 64 files that a process opens"),
         ("-f 100", b"a", "`ulimit -f` is "),
         ("-c 0", b"r\xf6bot", "r\\udcf6bot/errand.yaml' is no UTF-8"),
+        ("-c 0 && export LC_ALL=C PYTHONUTF8=0", "röbot".encode(), "Set LC_ALL=C.UTF-8, and no PYTHON"),
     ],
 )
 def test_what_no_mission_can_run_with_is_told_before_anything_starts(

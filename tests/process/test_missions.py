@@ -152,6 +152,20 @@ def stays(root: Path, tmp_path: Path) -> Iterator[System]:
         yield system
 
 
+def test_ctrl_c_at_a_mission_that_is_waited_for_tells_how_to_end_it(stays: System):
+    stays.until("mission", phase="ended")
+    stays.be_slow(True)
+    command = [BIN / "aos", "mission", "start", "--wait", "--run", stays.run]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as waits:
+        assert waits.stdout is not None
+        name = waits.stdout.readline().removesuffix(" has begun\n")
+        stays.until("mission", phase="acting", mission=name)
+        waits.send_signal(signal.SIGINT)
+        _, said = waits.communicate(timeout=HANG_S)
+    assert (waits.returncode, said) == (130, f"aos: {name} goes on; `aos mission stop` ends it\n")
+    assert stays.aos("mission", "stop")[1] == f"{name}: cancelled after 1 step\n"
+
+
 async def test_missions_follow_one_another_and_are_told_apart(stays: System):
     stays.be_slow(True)
     first = stays.until("mission", phase="acting")["mission"]

@@ -152,3 +152,11 @@ async def test_sarsop_is_told_why_it_cannot_be_used(cache_dir: Path):
         plan = await engine.plan(simulations=50, seed=1, planner="sarsop")
     assert plan.planner == "pomcp"
     assert plan.why == "SARSOP cannot be used: a draw is continuous"
+
+
+async def test_a_state_that_is_the_only_one_is_told_as_that(cache_dir: Path):
+    wait = "project: still\ndynamic_model:\n__moduleResponse = waited;\n"
+    built = await built_text({"still.ef": "project: still\nhorizon: 2\n", "wait.sd": wait}, cache_dir)
+    async with engine_of(built) as engine:
+        plan = await engine.plan(simulations=10, seed=1, planner="auto")
+    assert plan.why.startswith("the only state can be listed")

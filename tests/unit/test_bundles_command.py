@@ -45,6 +45,32 @@ def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Pa
     assert "no member named `nowhere`" not in together
 
 
+@pytest.mark.parametrize(
+    ("command", "meant"),
+    [
+        ("plan fecth", "fetch"),
+        ("lint ./fetch/tkae.sd", "fetch/take.sd"),
+        ("inspect fetch/take.ds", "fetch/take.sd"),
+        ("up fecth.yaml", "fetch.yaml"),
+        ("up misspelt.yaml", "{here}/fetch"),
+        ("test fecth.yaml", "fetch.yaml"),
+        ("check runs/lates", "runs/latest"),
+    ],
+)
+def test_a_path_that_leads_nowhere_is_told_with_the_one_beside_it_that_was_meant(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, meant: str
+):
+    monkeypatch.chdir(tmp_path)
+    assert aos("new", "project", "fetch").exit_code == 0
+    assert aos("new", "adapter", "python", "--in", "fetch").exit_code == 0
+    Path("misspelt.yaml").write_text(Path("fetch.yaml").read_text().replace("[fetch]", "[fecth]"))
+    Path("runs/latest").mkdir(parents=True)
+    done = aos(*command.split())
+    assert done.exit_code == 1
+    told = f"{done.output}{done.exception}{getattr(done.exception, 'diagnostics', '')}"
+    assert f"Did you mean `{meant.format(here=tmp_path)}`?" in told
+
+
 def test_lint_gives_sarif_with_rules_and_regions(broken: Path):
     result = aos("lint", broken, "--format", "sarif")
     log = json.loads(result.output)

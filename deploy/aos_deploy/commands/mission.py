@@ -65,6 +65,8 @@ def start(
     states that count once, constraints, steps and the seed begin anew, whatever the belief.
     """
 
+    import asyncio
+
     values = {value.name: value.text for value in values_of_options(set_values)}
 
     async def work(aos: AosClient) -> MissionState | MissionEntry:
@@ -73,7 +75,11 @@ def start(
             return state
         if not as_json:
             typer.echo(f"{state.mission} has begun")
-        return await aos.until_ended(state.mission)
+        try:
+            return await aos.until_ended(state.mission)
+        except asyncio.CancelledError:
+            typer.echo(f"aos: {state.mission} goes on; `aos mission stop` ends it", err=True)
+            raise
 
     outcome = system.do(work)
     if as_json:

@@ -75,7 +75,8 @@ def info(
         paths = {skill.mapping.activation.path.strip("/"): skill for skill in project.skills}
         skill = skills.get(name) or paths.get(name.strip("/"))
         if skill is None:
-            raise SkillError(f"there is no skill {name}", code="AOS501", hint=f"Known: {', '.join(skills)}")
+            hint = did_you_mean(name, (*skills, *paths)) or f"Known: {', '.join(skills)}"
+            raise SkillError(f"there is no skill {name}", code="AOS501", hint=hint)
         mapping = skill.mapping
         topics = {v.topic for v in mapping.local_variables if v.source is LocalSource.TOPIC}
         row = _row(skill.name, mapping.activation.path, state, servers) | {

@@ -8,6 +8,7 @@ from aos_deploy.deployment.named_paths import absolute, is_folder, is_there, nam
 from aos_deploy.deployment.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
+from aos_protocol.spelling import did_you_mean_path
 
 _SUFFIXES = (".yaml", ".yml")
 
@@ -18,7 +19,8 @@ def deploy_file_at(path: Path) -> Path:
         raise DeployError(
             f"there is no deploy file {named(path)}",
             code="AOS801",
-            hint="`aos new adapter KIND --in BUNDLE` writes one, `aos new example NAME` one that runs",
+            hint=did_you_mean_path(path)
+            or "`aos new adapter KIND --in BUNDLE` writes one, `aos new example NAME` one that runs",
         )
     if not is_folder(path):
         return path

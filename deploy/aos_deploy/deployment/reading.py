@@ -27,6 +27,7 @@ from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint, MissionValue
 from aos_protocol.errors import DeployError
+from aos_protocol.spelling import did_you_mean_path
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):(\d{1,5})")
@@ -128,7 +129,12 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
     bundles = _bundles(folder, file, node, findings)
     world = folder / file.world if file.world is not None else None
     if world is not None and not is_file(world):
-        findings.error("AOS101", f"there is no world file {named(world)}", _place(node, "world"))
+        findings.error(
+            "AOS101",
+            f"there is no world file {named(world)}",
+            _place(node, "world"),
+            did_you_mean_path(world),
+        )
     policy = folder / file.solver.policy if file.solver.policy is not None else None
     if policy is not None and not is_file(policy):
         hint, where = "Write it with aos solve", _place(node, "solver", "policy")
@@ -190,7 +196,10 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
         findings.error("AOS105", "bundles names none", _place(node, "bundles"), "Name a bundle's folder")
     for name, where in _texts(node, "bundles"):
         if not _is_bundle(folder / name):
-            findings.error("AOS101", f"there is no bundle folder {named(folder / name)}", where)
+            bundle = folder / name
+            findings.error(
+                "AOS101", f"there is no bundle folder {named(bundle)}", where, did_you_mean_path(bundle)
+            )
     bundles = tuple(absolute(folder / name) for name in file.bundles)
     _check_skills(file, [bundle for bundle in bundles if _is_bundle(bundle)], node, findings)
     return bundles

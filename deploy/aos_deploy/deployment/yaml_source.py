@@ -19,6 +19,7 @@ from ruamel.yaml.reader import ReaderError
 
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
+from aos_protocol.spelling import did_you_mean_path
 
 MAX_BYTES = 1_000_000
 MAX_DEPTH = 32
@@ -77,7 +78,9 @@ def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
             return None, findings
         text = data.decode("utf-8")
     except OSError as error:
-        findings.error("AOS101", f"the file cannot be read: {error.strerror}", Span(file))
+        findings.error(
+            "AOS101", f"the file cannot be read: {error.strerror}", Span(file), did_you_mean_path(path)
+        )
         return None, findings
     except UnicodeDecodeError as error:
         findings.error("AOS101", f"the file is not UTF-8 text (byte {error.start})", Span(file))

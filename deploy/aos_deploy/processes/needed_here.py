@@ -1,8 +1,10 @@
 """The check that what a deploy file starts is on this machine, before anything is started."""
 
 import resource
+import sys
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 
 from aos_deploy.deployment.adapter_kinds import check_installed
 from aos_deploy.deployment.adapters import SPANS
@@ -35,9 +37,7 @@ def check_needed_here(deployment: Deployment) -> None:
     _check_limit(resource.RLIMIT_NOFILE, "-n", OPEN_FILES, 1, "files that a process opens")
     _check_limit(resource.RLIMIT_FSIZE, "-f", LOG_BYTES, 1024, "kB in a file")
     for path in (deployment.path, deployment.runs):
-        if not _is_utf8(str(path)):
-            text = f"{str(path)!r} is no UTF-8, and no record can name it"
-            raise DeployError(text, code="AOS805", hint="Move it, or give the folder another name")
+        _check_name(path)
     for _, _, check in needs_of(deployment):
         check()
 
@@ -53,12 +53,18 @@ def _check_limit(kind: int, option: str, least: int, unit: int, what: str) -> No
     )
 
 
-def _is_utf8(text: str) -> bool:
+def _check_name(path: Path) -> None:
     try:
-        text.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
+        str(path).encode()
+    except UnicodeEncodeError as error:
+        text, hint = (
+            f"{str(path)!r} is no UTF-8, and no record can name it",
+            "Move it, or give it another name",
+        )
+        if (encoding := sys.getfilesystemencoding()) != "utf-8":
+            text = f"the locale has Python read names of files as {encoding}, and {str(path)!r} is none"
+            hint = "Set LC_ALL=C.UTF-8, and no PYTHONUTF8=0"
+        raise DeployError(text, code="AOS805", hint=hint) from error
 
 
 def needs_of(deployment: Deployment) -> Iterator[tuple[str, str, Callable[[], None]]]:

@@ -33,6 +33,7 @@ from aos_deploy.runs.summary import Summary
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
+from aos_protocol.spelling import did_you_mean_path
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 from aos_runtime.failpoints import reach
 from aos_runtime.processes.settings import fault_path
@@ -197,7 +198,7 @@ class RunDirectory:
         try:
             return msgspec.json.decode(path.read_bytes(), type=RunRecord)
         except OSError as error:
-            run, hint = self.path.parent.parent, "`aos runs` lists the runs"
+            run, hint = self.path.parent.parent, did_you_mean_path(self.path) or "`aos runs` lists the runs"
             if self.path in mission_folders(run).values():
                 hint = f"Name {run} instead, and --mission {self.path.name} where the command takes it"
             raise DeployError(

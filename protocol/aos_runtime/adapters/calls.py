@@ -184,7 +184,9 @@ class Calls:
         call, task = running.call, running.task
         await asyncio.wait({task}, timeout=call.deadline_s)
         is_late = not task.done()
-        if is_late and not await self._stop(running, "its time is over"):
+        if is_late:
+            await self._stop(running, "its time is over")
+        if running.is_stuck:
             raise self._stuck(call)
         self._running = None
         self._outbox.send()  # Its last messages go before its answer.
@@ -228,7 +230,7 @@ class Calls:
             raise SkillError(f"{moving} has not ended", code="AOS504", hint="Stop it at the robot")
 
     async def _stop(self, running: RunningCall, reason: str) -> bool:
-        """Cancels a call; whether it has ended within the time that it has for that."""
+        """Cancels a call; whether it has ended within the time that it has for that, told to all alike."""
         if not running.task.done():
             if not running.call.is_cancelled:  # A second cancellation would end what stops the robot.
                 _log.info("cancelling %s: %s", running.call.path, reason)
@@ -237,7 +239,8 @@ class Calls:
                 running.call.cancel()
                 running.task.cancel()
             await asyncio.wait({running.task}, timeout=self._settings.cancel_s)
-        return running.task.done()
+            running.is_stuck = running.is_stuck or not running.task.done()
+        return not running.is_stuck
 
     def _stuck(self, call: Call) -> AosError:
         """The process ends, so that a new one can start: what it moved is no longer known."""

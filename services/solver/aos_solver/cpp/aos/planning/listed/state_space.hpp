@@ -127,7 +127,7 @@ class StateSpace {
   bool estimates_draws() const { return strata_.count > 0; }
   // What is listed, for a plan's `why`.
   std::string listed_text() const {
-    const std::string states = "all " + std::to_string(size()) + " states can be listed";
+    const std::string states = size() == 1 ? "the only state can be listed" : "all " + std::to_string(size()) + " states can be listed";
     return estimates_draws() ? states + ", and each continuous draw stands for " + std::to_string(strata_.count) + " numbers" : states;
   }
   // How far a value of `horizon` decisions may be off by that: the error of a probability may earn the largest reward or not.
