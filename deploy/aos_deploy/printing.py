@@ -1,13 +1,16 @@
 """The output of commands: findings, JSON, numbers of things."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 import typer
 
 from aos_protocol.diagnostics import Diagnostic, render
+
+T = TypeVar("T")
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
@@ -19,6 +22,11 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
 def print_json(value: object) -> None:
     """A value as indented JSON, on stdout."""
     typer.echo(json_text(value))
+
+
+def show(value: T, as_json: bool, for_people: Callable[[T], object]) -> None:
+    """A command's result on stdout: as JSON, or as `for_people` prints it."""
+    (print_json if as_json else for_people)(value)
 
 
 def json_text(value: object) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from msgspec.structs import replace
 
-from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.parts.room_file import Place
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.cleanlab import KIND
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile, FaultModel

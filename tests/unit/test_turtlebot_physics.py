@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.parts.room_file import Place
 from aos_skills.pybullet.parts.route import FloorMap
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.turtlebot import KIND

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import typer
 
-from aos_deploy.bundles.endless import endless_findings
 from aos_deploy.bundles.files import project_at, with_mission
+from aos_deploy.bundles.reachability import endless_findings
 from aos_deploy.places import cache_dir
 from aos_language.load import with_excerpts
 from aos_protocol.diagnostics import Severity, render

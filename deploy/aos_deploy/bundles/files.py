@@ -173,7 +173,7 @@ def with_mission(
     if len(refused) > 1:
         found = tuple(diagnostic for error in refused for diagnostic in error.diagnostics)
         what = "the mission's constraints and what is set for it have errors"
-        raise DeployError(what, code="AOS801", diagnostics=found)
+        raise DeployError(what, diagnostics=found)
     for only in refused:
         raise only
     return project

@@ -1,8 +1,8 @@
-"""Goals and preconditions that nothing leads to: told as warnings, by looking at what the actions can do."""
+"""Goals and preconditions that nothing leads to, and loops that nothing ends: told as warnings, by looking at
+what the actions can do."""
 
 import msgspec
 
-from aos_deploy.bundles.endless import endless_findings
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
@@ -17,6 +17,10 @@ _TIME_S = 1.5
 _DRAWN_TIME_S = 0.3
 MAX_CPU_S = 4.0
 """The processor time of each of the two looks; a place that takes longer is told."""
+_ENDLESS_HINT = (
+    "Such a step ends the mission as a failure. Let the loop look first whether it can end, or raise the "
+    "penalty of the precondition"
+)
 
 
 async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Diagnostic, ...]:
@@ -88,3 +92,11 @@ def _extent(reach: Reach) -> str:
     if reach.limit:
         return f"Looked at {states}, up to {reach.depth} actions from the start; {reach.limit}"
     return f"Looked at all that can be reached, {states}, up to {reach.depth} actions from the start"
+
+
+async def endless_findings(engine: Engine) -> tuple[Diagnostic, ...]:
+    """The loops that had no end in the steps that the engine has made so far."""
+    findings = Findings()
+    for loop, place in await engine.endless_loops():
+        findings.warning("AOS211", loop.text, place, _ENDLESS_HINT)
+    return findings.diagnostics

@@ -23,7 +23,7 @@ from aos_deploy.planning_options import (
     Time,
     with_engine,
 )
-from aos_deploy.printing import print_json
+from aos_deploy.printing import show
 from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text
 from aos_protocol.errors import PlanningError
@@ -104,12 +104,8 @@ def plan(
             return await _searched_decision(engine, search)
 
     decision = with_engine(bundle, seed, decide, never=never, set_values=set_values)
-    if as_json:
-        print_json(decision)
-    else:
-        _print_decision(
-            decision, "exact" if exact else "0 simulations" if policy is None else "by the policy"
-        )
+    title = "exact" if exact else "0 simulations" if policy is None else "by the policy"
+    show(decision, as_json, lambda made: _print_decision(made, title))
 
 
 def _suppositions(given: Iterable[str]) -> list[str]:
@@ -192,7 +188,5 @@ def rate(
 
     rates = with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
-    if as_json:
-        print_json(result)
-    else:
-        typer.echo(f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)")
+    told = f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)"
+    show(result, as_json, lambda _: typer.echo(told))

@@ -11,7 +11,7 @@ import typer
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Mission, Runs, TrustDocuments
-from aos_deploy.printing import count, from_here, print_json
+from aos_deploy.printing import count, from_here, show
 from aos_deploy.runs.difference import Difference, difference
 from aos_deploy.runs.living import chosen_run
 from aos_deploy.runs.studied import StudiedRun
@@ -62,10 +62,7 @@ def replay(
         typer.echo(f"aos: --until {until} is after the last decision, of step {made[-1].step}", err=True)
     with waiting("replaying") as told:
         found = asyncio.run(replayed_run(studied, told, until))
-    if as_json:
-        print_json(found)
-    else:
-        _print(found)
+    show(found, as_json, _print)
     if found.first_difference is not None:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
@@ -143,15 +140,12 @@ def diff(
         )
     opened = [StudiedRun.open(chosen_run(run, None).path, mission) for run in (first, second)]
     found = difference(*opened)
-    if as_json:
-        print_json(found)
-    else:
-        _print_difference(found, str(from_here(opened[0].run)), str(from_here(opened[1].run)))
+    show(found, as_json, lambda found: _print_difference(found, *(from_here(one.run) for one in opened)))
     if found.is_any:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
 
-def _print_difference(found: Difference, first: str, second: str) -> None:
+def _print_difference(found: Difference, first: Path, second: Path) -> None:
     typer.echo(f"A is {first}, B is {second}")
     for name, (then, now) in found.settings.items():
         typer.echo(f"  {name}: {then} in A, {now} in B")

@@ -10,7 +10,7 @@ import typer
 
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson
-from aos_deploy.printing import count, print_json
+from aos_deploy.printing import count, show
 from aos_deploy.running_system import System, on_system
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import MissionState
@@ -103,10 +103,10 @@ def actions_of_script(file: Path) -> tuple[str, ...]:
         lines = file.read_text().splitlines()
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", "it is no text")
-        raise DeployError(f"{file} cannot be read: {why}", code="AOS801") from error
+        raise DeployError(f"{file} cannot be read: {why}") from error
     actions = tuple(line for line in (text.partition("#")[0].strip() for text in lines) if line)
     if not actions:
-        raise DeployError(f"{file} has no action", code="AOS801", hint="Write one grounded action a line")
+        raise DeployError(f"{file} has no action", hint="Write one grounded action a line")
     return actions
 
 
@@ -117,10 +117,7 @@ def _steer(
     said: Callable[[MissionState], str],
 ) -> None:
     state = system.do(work)
-    if as_json:
-        print_json(state)
-    else:
-        typer.echo(f"{state.mission}: {said(state)}")
+    show(state, as_json, lambda state: typer.echo(f"{state.mission}: {said(state)}"))
 
 
 def _held(state: MissionState) -> str:

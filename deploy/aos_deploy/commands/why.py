@@ -8,7 +8,7 @@ import typer
 
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, Mission, TrustDocuments
-from aos_deploy.printing import print_json
+from aos_deploy.printing import show
 from aos_deploy.running_system import System, on_system
 from aos_deploy.runs.living import chosen_run
 from aos_deploy.runs.studied import StudiedRun
@@ -51,10 +51,7 @@ def why(
         return await studied.study(lambda study: study.why(WhyQuery(step, instead)))
 
     found = _found(system, mission, ask, look)
-    if as_json:
-        print_json(found)
-    else:
-        typer.echo("\n".join(why_lines(found)))
+    show(found, as_json, lambda why: typer.echo("\n".join(why_lines(why))))
 
 
 @command('Example: aos whatif 3 --believe "holding_can=true:0.5"')
@@ -97,10 +94,7 @@ def whatif(
         return await studied.study(lambda study: study.what_if(query))
 
     found = _found(system, mission, ask, look)
-    if as_json:
-        print_json(found)
-    else:
-        typer.echo("\n".join(what_if_lines(found)))
+    show(found, as_json, lambda what_if: typer.echo("\n".join(what_if_lines(what_if))))
 
 
 def _found(

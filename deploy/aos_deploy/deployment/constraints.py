@@ -35,7 +35,7 @@ def constraint_of_option(text: str) -> Constraint:
         probability = -1.0
     if not 0 <= probability < 1 or not expression.strip():
         hint = "Write it as --never '0.01: serve && state.arm_outstretched'"
-        raise DeployError(f"{text!r} is no constraint", code="AOS801", hint=hint)
+        raise DeployError(f"{text!r} is no constraint", hint=hint)
     column = len(text) - len(expression.lstrip()) + 1
     return Constraint(snippet_of(expression.strip(), Span(OPTION, 1, column)), probability)
 

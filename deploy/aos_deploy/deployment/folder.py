@@ -18,7 +18,6 @@ def deploy_file_at(path: Path) -> Path:
     if not is_there(path):
         raise DeployError(
             f"there is no deploy file {named(path)}",
-            code="AOS801",
             hint=did_you_mean_path(path)
             or "`aos new adapter KIND --in BUNDLE` writes one, `aos new example NAME` one that runs",
         )
@@ -61,4 +60,4 @@ def _named(files: list[Path]) -> str:
 
 
 def _refusal(path: Path, what: str, hint: str) -> DeployError:
-    return DeployError(f"{path} {what}", code="AOS801", hint=hint)
+    return DeployError(f"{path} {what}", hint=hint)

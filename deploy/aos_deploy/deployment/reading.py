@@ -68,7 +68,7 @@ def read_deploy_file(path: Path) -> Deployment:
         if file is not None:
             deployment = _resolve(absolute(path), file, node, findings)
     if deployment is None or findings.has_errors:
-        raise DeployError(f"the deploy file {named} has errors", code="AOS801", diagnostics=findings.sorted())
+        raise DeployError(f"the deploy file {named} has errors", diagnostics=findings.sorted())
     return deployment
 
 
@@ -103,7 +103,6 @@ def check_endpoint(endpoint: str) -> None:
     if match is None or int(match[2]) > _LAST_PORT:
         raise DeployError(
             f"{endpoint!r} is not an endpoint of this machine",
-            code="AOS801",
             hint="Write it as tcp/127.0.0.1:7447, with port 0 for any free one, or leave it out",
         )
 

@@ -18,4 +18,4 @@ def findings_of(sources: Iterable[str | Path]) -> Findings:
 def refuse_errors(findings: Findings, message: str) -> None:
     """Raises DeployError AOS801 with all findings where one is an error."""
     if findings.has_errors:
-        raise DeployError(message, code="AOS801", diagnostics=findings.sorted())
+        raise DeployError(message, diagnostics=findings.sorted())

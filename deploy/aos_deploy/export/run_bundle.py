@@ -60,7 +60,7 @@ def opened_bundle(path: Path) -> list[Path]:
     """
     if path.is_dir():
         hint = f"A folder of runs goes behind an option: --runs {path}"
-        raise DeployError(f"{path} is a folder, and no file of runs", code="AOS801", hint=hint)
+        raise DeployError(f"{path} is a folder, and no file of runs", hint=hint)
     try:
         digest = hashlib.blake2b(path.read_bytes(), digest_size=16).hexdigest()
         folder = cache_dir() / "opened" / digest
@@ -68,7 +68,7 @@ def opened_bundle(path: Path) -> list[Path]:
             _unpack(path, folder)
     except UNREADABLE_ARCHIVE as error:
         why = getattr(error, "strerror", None) or error
-        raise DeployError(f"{path} cannot be opened: {why}", code="AOS801") from error
+        raise DeployError(f"{path} cannot be opened: {why}") from error
     runs = sorted(record.parent for record in folder.glob("*/run.json"))
     if not runs:
         raise _no_bundle(path, "no run is in it")
@@ -158,4 +158,4 @@ def _parts(name: str) -> tuple[str, ...]:
 
 def _no_bundle(path: Path, why: str) -> DeployError:
     hint = "`aos export RUN --format bundle` writes one"
-    return DeployError(f"{path} is not a file of runs: {why}", code="AOS801", hint=hint)
+    return DeployError(f"{path} is not a file of runs: {why}", hint=hint)

@@ -162,6 +162,5 @@ def _index(world: _World, call: Call) -> int:
             return index
     raise SkillError(
         f"the model has no action {call.skill} with {call.parameters}",
-        code="AOS502",
         hint="A model plays what a planner has decided; a call by hand does not say which action it is",
     )

@@ -23,7 +23,7 @@ def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool)
     if status == STORAGE_STATUS and not program.command:
         text = f"{name} could not write or read its files"
         hint = f"See that the disk of the run has space and can be written. {look_at_log(run, name)}"
-        return StorageError(text, code="AOS701", hint=hint)
+        return StorageError(text, hint=hint)
     code = "AOS804" if was_ready else "AOS802"
     text, hint = f"{name} ended unexpectedly: {status_text(status)}", look_at_log(run, name)
     if program.ready is not None and program.ready.exit is not None:

@@ -43,7 +43,7 @@ class Passes:
                 password = _lasting(lasting[party.name]) if party.name in lasting else secrets.token_hex(16)
                 self._passwords[party.name] = write_password(self.file(party.name), password)
         except OSError as error:
-            raise StorageError(f"{self._folder}: {error.strerror}", code="AOS701") from error
+            raise StorageError(f"{self._folder}: {error.strerror}") from error
 
     def file(self, name: str) -> Path:
         """The file with a party's password."""
@@ -64,7 +64,7 @@ class Passes:
         try:
             write_password(self.dictionary, lines)
         except OSError as error:
-            raise StorageError(f"{self.dictionary}: {error.strerror}", code="AOS701") from error
+            raise StorageError(f"{self.dictionary}: {error.strerror}") from error
 
 
 def _lasting(path: Path) -> str:

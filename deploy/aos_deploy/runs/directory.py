@@ -202,12 +202,10 @@ class RunDirectory:
             if self.path in mission_folders(run).values():
                 hint = f"Name {run} instead, and --mission {self.path.name} where the command takes it"
             raise DeployError(
-                f"{self.path} is not a run directory: {path.name} cannot be read, {error.strerror}",
-                code="AOS801",
-                hint=hint,
+                f"{self.path} is not a run directory: {path.name} cannot be read, {error.strerror}", hint=hint
             ) from error
         except UNREADABLE as error:
-            raise DeployError(f"{path}: {error}", code="AOS801") from error
+            raise DeployError(f"{path}: {error}") from error
 
     def write_summary(self, summary: Summary, number: int = 0) -> None:
         """Writes the summary of the run, or of a mission in a system that stays.
@@ -262,7 +260,6 @@ def _kept(path: Path) -> Iterator[None]:
     except OSError as error:
         raise StorageError(
             f"{path} cannot be written: {error.strerror}",
-            code="AOS701",
             hint="Make space there, or name another folder with --runs",
         ) from error
 

@@ -118,9 +118,7 @@ def _opened(file: Path) -> Path:
     """The directory of the run in a file, unpacked."""
     runs = opened_bundle(file)
     if len(runs) > 1:
-        raise DeployError(
-            f"{file} has {len(runs)} runs", code="AOS801", hint=f"Name one of {', '.join(map(str, runs))}"
-        )
+        raise DeployError(f"{file} has {len(runs)} runs", hint=f"Name one of {', '.join(map(str, runs))}")
     return runs[0]
 
 
@@ -133,4 +131,4 @@ def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
 
 def _several(runs: list[RunDirectory]) -> DeployError:
     names = ", ".join(str(run.path) for run in runs)
-    return DeployError(f"{len(runs)} missions run: {names}", code="AOS801", hint="Name one with --run")
+    return DeployError(f"{len(runs)} missions run: {names}", hint="Name one with --run")

@@ -52,7 +52,7 @@ def pruned(folder: Path, keep: int) -> Pruned:
                 removed.append(Removed(str(path), _size_bytes(path)))
                 shutil.rmtree(path)
             except OSError as error:
-                raise StorageError(f"{path} cannot be removed: {error.strerror}", code="AOS701") from error
+                raise StorageError(f"{path} cannot be removed: {error.strerror}") from error
             finally:
                 run.close()
     latest = folder / LATEST

@@ -28,7 +28,17 @@ _LONGEST_WORDS = 600
 """A robot's error may have kilobytes. With hints, and errors of several skills, ours have less."""
 
 
-class PlainView:
+class _Lines:
+    """A view that has nothing to end."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return
+
+
+class PlainView(_Lines):
     """Prints `lines_of` each event but a skill's progress. Of a mission's state it prints what is news.
 
     How far a decision is, is news every five seconds, and when the solver does something else for it.
@@ -37,12 +47,6 @@ class PlainView:
     def __init__(self) -> None:
         self._last_remark = ""
         self._last_told_s = 0.0
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, SkillProgress):
@@ -63,14 +67,8 @@ class PlainView:
         return not is_the_same_work or time.monotonic() >= self._last_told_s + _TELLING_AGAIN_S
 
 
-class JsonView:
+class JsonView(_Lines):
     """Prints each event as one JSON object."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return
 
     def __call__(self, event: Event) -> None:
         sys.stdout.write(event_json(event) + "\n")

@@ -53,7 +53,7 @@ class Baselines:
             status, _, messages = await _output(command, _COMPILATION_S)
             if status != 0:
                 said = messages.decode(errors="replace")
-                raise ModelError(f"{SOURCE} does not compile: {said}", code="AOS201")
+                raise ModelError(f"{SOURCE} does not compile: {said}")
 
         return cls(await BuildCache(cache_dir).fill(name, make) / _PROGRAM)
 

@@ -54,7 +54,6 @@ def read_missions(path: Path) -> tuple[RecordedMission, ...]:
     if not missions:
         raise DeployError(
             f"{path} holds no recorded missions",
-            code="AOS801",
             hint="Name a run directory, the runs' folder, or a folder of `aos experiment run`",
         )
     return missions

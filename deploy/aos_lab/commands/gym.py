@@ -13,7 +13,7 @@ import typer
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
-from aos_deploy.printing import print_json
+from aos_deploy.printing import show
 from aos_deploy.terminal import progress
 from aos_protocol.errors import DeployError
 from aos_runtime.distribution import pip_install
@@ -83,10 +83,7 @@ def gym(
         )
     finally:
         environment.close()
-    if as_json:
-        print_json(spaces)
-    else:
-        _print(spaces, bundle, {value.name: value.text for value in given})
+    show(spaces, as_json, lambda spaces: _print(spaces, bundle, {value.name: value.text for value in given}))
 
 
 def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:

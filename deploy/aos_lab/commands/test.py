@@ -15,7 +15,7 @@ from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, writable
-from aos_deploy.printing import print_json
+from aos_deploy.printing import show
 from aos_deploy.terminal import progress
 from aos_lab.commands.interrupted import interruption_among_missions
 
@@ -79,10 +79,7 @@ def run_tests(
             tested[name] = Tested.of(test, asyncio.run(missions).trials)
     if junit is not None:
         write_junit(junit, tested)
-    if as_json:
-        print_json(tested)
-    else:
-        _print_tested(tested)
+    show(tested, as_json, _print_tested)
     if not all(test.passed for test in tested.values()):
         raise typer.Exit(ExitCode.MISSION_FAILED)
 

@@ -17,6 +17,9 @@ _MAX_NAMES = 2_000_000
 _MAX_OUTCOMES = 20_000_000
 """A line such as `T: * uniform` has as many as actions times the square of the states."""
 
+_WHOLE = Word("", 1, 0)
+"""The place of what the file lacks."""
+
 
 def read_pomdp(name: str, data: bytes) -> ExplicitModel:
     """The model in a file; DocumentError with all findings, at their line and column, if it has mistakes."""
@@ -33,6 +36,7 @@ class _Reader:
     def __init__(self, name: str, findings: ProblemFindings) -> None:
         self._name = name
         self._findings = findings
+        self._error = findings.error
         self._names: dict[str, tuple[str, ...]] = {}
         self._numbers: dict[str, dict[str, int]] = {}
         self._discount = 1.0
@@ -50,7 +54,7 @@ class _Reader:
         self._is_seen = not keywords & {"observations", "O"}
         for kind in ("discount", "states", "actions", "observations"):
             if kind not in keywords and not (kind == "observations" and self._is_seen):
-                self._findings.error("AOS105", f"there is no `{kind}:`", 1)
+                self._error("AOS105", f"there is no `{kind}:`", _WHOLE)
         for statement in statements:
             if statement.keyword.text in ("discount", "values", "states", "actions", "observations"):
                 self._preamble(statement)
@@ -239,11 +243,11 @@ class _Reader:
             total = totals.get(id(row), 0.0)
             if not row and (keyword, action, state) not in self._last_rule:
                 where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
-                self._findings.error("AOS105", f"there is no `{where}`", 1)
+                self._error("AOS105", f"there is no `{where}`", _WHOLE)
             elif abs(total - 1) > _SUM_TOLERANCE:
                 where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
                 message = f"the probabilities of `{where}` sum to {total:g}"
-                rule = self._last_rule.get((keyword, action, state), Word("", 1, 0))
+                rule = self._last_rule.get((keyword, action, state), _WHOLE)
                 self._error("AOS122", message, rule, "They have to sum to 1")
             elif total != 1:
                 if id(row) not in scaled:
@@ -251,9 +255,6 @@ class _Reader:
                 table[action, state] = scaled[id(row)]
 
     # --- words ---
-
-    def _error(self, code: str, message: str, word: Word, hint: str = "") -> None:
-        self._findings.error(code, message, word.line, word.column, hint)
 
     def _all(self, kind: str) -> Sequence[int]:
         return range(len(self._names[kind]))

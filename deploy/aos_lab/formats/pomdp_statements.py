@@ -40,7 +40,7 @@ def statements_of(text: str, findings: ProblemFindings) -> Iterator[Statement]:
             hint = (
                 did_you_mean(word.text, KEYWORDS) or "Expected discount:, values:, states:, T: and their like"
             )
-            findings.error("AOS102", f"{word.text} is no keyword", word.line, word.column, hint)
+            findings.error("AOS102", f"{word.text} is no keyword", word, hint)
 
 
 def _words(text: str) -> Iterator[Word]:

@@ -34,7 +34,7 @@ class _Reader:
     def model(self) -> FactoredModel | None:
         if self._root.tag != "pomdpx":
             message = f"<{self._root.tag}> is no POMDP problem"
-            self._findings.error("AOS107", message, self._root.line, self._root.column, "Expected <pomdpx>")
+            self._findings.error("AOS107", message, self._root, "Expected <pomdpx>")
             return None
         variables = self._section("Variable")
         if variables is None:
@@ -45,7 +45,7 @@ class _Reader:
         rewards = {e.attributes.get("vname", "") for e in variables.all("RewardVar")}
         for found, tag in ((states, "StateVar"), (actions, "ActionVar")):
             if not found:
-                self._findings.error("AOS105", f"Variable has no {tag}", variables.line, variables.column)
+                self._findings.error("AOS105", f"Variable has no {tag}", variables)
         before = {state.before.name: state.before for state in states}
         after = {state.after.name: state.after for state in states}
         chosen = {variable.name: variable for variable in actions}
@@ -67,7 +67,7 @@ class _Reader:
     def _section(self, tag: str) -> Element | None:
         element = self._root.first(tag)
         if element is None:
-            self._findings.error("AOS105", f"there is no {tag}", self._root.line, self._root.column)
+            self._findings.error("AOS105", f"there is no {tag}", self._root)
         return element
 
     def _discount(self) -> float:
@@ -81,14 +81,14 @@ class _Reader:
             discount = -1.0
         if not 0 <= discount <= 1:
             where = words[0] if words else element
-            self._findings.error("AOS106", "Discount needs a number from 0 to 1", where.line, where.column)
+            self._findings.error("AOS106", "Discount needs a number from 0 to 1", where)
         return discount
 
     def _state(self, element: Element) -> StateVariable:
         names = [element.attributes.get(key, "") for key in ("vnamePrev", "vnameCurr")]
         if not all(names):
             message = "StateVar needs vnamePrev and vnameCurr"
-            self._findings.error("AOS105", message, element.line, element.column)
+            self._findings.error("AOS105", message, element)
         values = self._values(element, "s")
         is_seen = element.attributes.get("fullyObs", "false").strip().lower() == "true"
         before = Variable(names[0], values, element.line)
@@ -100,7 +100,7 @@ class _Reader:
     def _name_of(self, element: Element) -> str:
         name = element.attributes.get("vname", "")
         if not name:
-            self._findings.error("AOS105", f"{element.tag} needs vname", element.line, element.column)
+            self._findings.error("AOS105", f"{element.tag} needs vname", element)
         return name
 
     def _values(self, element: Element, letter: str) -> tuple[str, ...]:
@@ -111,7 +111,7 @@ class _Reader:
             values = tuple(word.text for word in words)
             for place, word in enumerate(words):
                 if word.text in values[:place]:
-                    self._findings.error("AOS103", f"{word.text} is there twice", word.line, word.column)
+                    self._findings.error("AOS103", f"{word.text} is there twice", word)
             if values:
                 return values
         elif counted is not None:
@@ -123,8 +123,7 @@ class _Reader:
         self._findings.error(
             "AOS105",
             f"{element.tag} has no values",
-            where.line,
-            where.column,
+            where,
             "Write them as ValueEnum, or how many as NumValues",
         )
         return ("",)
@@ -145,11 +144,11 @@ class _Reader:
                 table = read_table(conditional, variables, True, self._findings)
                 if table.own in tables:
                     message = f"a second CondProb of {table.own}"
-                    self._findings.error("AOS103", message, conditional.line, conditional.column)
+                    self._findings.error("AOS103", message, conditional)
                 tables[table.own] = table
         for name in wanted.keys() - tables.keys() if not has_broken else ():
             message = f"{section} says nothing about {name}"
-            self._findings.error("AOS105", message, element.line, element.column)
+            self._findings.error("AOS105", message, element)
         return tuple(tables.values())
 
     def _rewards(self, names: Iterable[str], known: Mapping[str, Variable]) -> tuple[Table, ...]:
@@ -171,7 +170,7 @@ class _Reader:
         own, parents = element.first("Var"), element.first("Parent")
         words = own.words() if own is not None else []
         if len(words) != 1:
-            self._findings.error("AOS105", f"{element.tag} needs one Var", element.line, element.column)
+            self._findings.error("AOS105", f"{element.tag} needs one Var", element)
             return None
         if words[0].text not in wanted:
             self._findings.unknown("variable here called", words[0], wanted)

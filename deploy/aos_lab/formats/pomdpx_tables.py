@@ -19,7 +19,7 @@ def read_table(
     table = Table(tuple(variables), [], is_distribution, element.line)
     parameter = element.first("Parameter")
     if parameter is None:
-        findings.error("AOS105", f"{element.tag} has no Parameter", element.line, element.column)
+        findings.error("AOS105", f"{element.tag} has no Parameter", element)
         return table
     kind = parameter.attributes.get("type", "TBL")
     if kind == "TBL":
@@ -28,9 +28,7 @@ def read_table(
     elif kind == "DD":
         _Diagram(parameter, table, findings).read()
     else:
-        findings.error(
-            "AOS106", f"{kind} is no type of Parameter", parameter.line, parameter.column, "Write TBL or DD"
-        )
+        findings.error("AOS106", f"{kind} is no type of Parameter", parameter, "Write TBL or DD")
     return table
 
 
@@ -39,13 +37,13 @@ def _read_entry(element: Element, table: Table, findings: ProblemFindings) -> No
     numbers = element.first("ProbTable" if table.is_distribution else "ValueTable")
     if instance is None or numbers is None:
         wanted = "ProbTable" if table.is_distribution else "ValueTable"
-        findings.error("AOS105", f"Entry needs Instance and {wanted}", element.line, element.column)
+        findings.error("AOS105", f"Entry needs Instance and {wanted}", element)
         return
     words = instance.words()
     if len(words) != len(table.variables):
         names = " ".join(variable.name for variable in table.variables)
         message = f"the Instance has {len(words)} values for {len(table.variables)} variables"
-        findings.error("AOS106", message, instance.line, instance.column, f"They are: {names}")
+        findings.error("AOS106", message, instance, f"They are: {names}")
         return
     pattern = tuple(
         _choice(word, variable, findings) for word, variable in zip(words, table.variables, strict=True)
@@ -76,27 +74,27 @@ def _cells(element: Element, sizes: list[int], table: Table, findings: ProblemFi
     if keyword == "identity":
         if len(sizes) != 2 or sizes[0] != sizes[1]:
             message = "identity needs two `-` of as many values in the Instance"
-            findings.error("AOS106", message, words[0].line, words[0].column)
+            findings.error("AOS106", message, words[0])
             return None
         return np.eye(sizes[0])
     try:
         numbers = np.array([word.text for word in words], dtype=float)
     except ValueError:
         wrong = next(word for word in words if not is_number(word.text))
-        findings.error("AOS106", f"{wrong.text} is not a number", wrong.line, wrong.column)
+        findings.error("AOS106", f"{wrong.text} is not a number", wrong)
         return None
     wanted = int(np.prod(sizes, dtype=int))
     if len(numbers) != wanted:
         message = f"{len(numbers)} numbers where the Instance asks for {wanted}"
-        findings.error("AOS106", message, element.line, element.column)
+        findings.error("AOS106", message, element)
         return None
     if table.is_distribution and (numbers.min(initial=0) < 0 or numbers.max(initial=0) > 1 + 1e-9):
         wrong = next(word for word in words if not 0 <= float(word.text) <= 1 + 1e-9)
-        findings.error("AOS122", f"{wrong.text} is no probability", wrong.line, wrong.column)
+        findings.error("AOS122", f"{wrong.text} is no probability", wrong)
         return None
     if not np.isfinite(numbers).all():
         wrong = next(word for word in words if not np.isfinite(float(word.text)))
-        findings.error("AOS106", f"{wrong.text} is not a finite number", wrong.line, wrong.column)
+        findings.error("AOS106", f"{wrong.text} is not a finite number", wrong)
         return None
     return numbers.reshape(sizes)
 
@@ -117,7 +115,7 @@ class _Diagram:
         dag = self._parameter.first("DAG")
         if dag is None:
             where = self._parameter
-            self._findings.error("AOS105", "a Parameter of type DD needs a DAG", where.line, where.column)
+            self._findings.error("AOS105", "a Parameter of type DD needs a DAG", where)
             return
         for chosen, number in self._ways(dag, {}, 0):
             pattern = tuple(chosen.get(place, ANY) for place in range(len(self._table.variables)))
@@ -128,7 +126,7 @@ class _Diagram:
     ) -> Iterator[tuple[dict[int, int], float]]:
         """All assignments below an element, each with its number."""
         if depth > len(self._table.variables) + len(self._templates) + 1:
-            self._findings.error("AOS106", "the diagram refers to itself", parent.line, parent.column)
+            self._findings.error("AOS106", "the diagram refers to itself", parent)
             return
         for element in parent.children:
             if element.tag == "Node":
@@ -138,7 +136,7 @@ class _Diagram:
                 if len(words) == 1 and is_number(words[0].text):
                     yield chosen, float(words[0].text)
                 else:
-                    self._findings.error("AOS106", "Terminal needs a number", element.line, element.column)
+                    self._findings.error("AOS106", "Terminal needs a number", element)
             elif element.tag == "SubDAG":
                 yield from self._sub_diagram(element, chosen, depth)
 
@@ -161,7 +159,7 @@ class _Diagram:
             template = self._templates.get(element.attributes.get("idref", ""))
             if template is None:
                 message = f"there is no SubDAGTemplate {element.attributes.get('idref', '')}"
-                self._findings.error("AOS110", message, element.line, element.column)
+                self._findings.error("AOS110", message, element)
                 return
             yield from self._ways(template, chosen, depth + 1)
             return
@@ -179,7 +177,7 @@ class _Diagram:
             ]
             if len(before) != 1:
                 message = "persistent needs one parent with the same values"
-                self._findings.error("AOS106", message, element.line, element.column)
+                self._findings.error("AOS106", message, element)
                 return
             place = self._places[before[0].name]
             known = chosen.get(place, ANY)
@@ -187,7 +185,7 @@ class _Diagram:
             for value, after in itertools.product(ways, range(len(values))):
                 yield {**chosen, place: value, own: after}, float(value == after)
         else:
-            self._findings.error("AOS106", f"{kind} is no type of SubDAG", element.line, element.column)
+            self._findings.error("AOS106", f"{kind} is no type of SubDAG", element)
 
     def _place(self, element: Element) -> int | None:
         name = element.attributes.get("var", "")

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import msgspec
 
@@ -16,6 +16,16 @@ _WORD = re.compile(r"\S+")
 _MAX_FINDINGS = 50
 _EXCERPT_LENGTH = 200
 _MAX_DIGITS = 18
+
+
+class Placed(Protocol):
+    """What stands at a line and a column of the file; both count from 1."""
+
+    @property
+    def line(self) -> int: ...
+
+    @property
+    def column(self) -> int: ...
 
 
 class TooManyFindingsError(Exception):
@@ -53,11 +63,11 @@ class ProblemFindings:
         self._lines = text.split("\n")
         self._found: list[Diagnostic] = []
 
-    def error(self, code: str, message: str, line: int, column: int = 0, hint: str = "") -> None:
+    def error(self, code: str, message: str, at: Placed, hint: str = "") -> None:
         """Raises TooManyFindingsError where the file seems to be something else."""
-        excerpt = self._lines[line - 1] if 0 < line <= len(self._lines) else ""
-        excerpt = excerpt[: column + _EXCERPT_LENGTH].rstrip()
-        span = Span(self._name, line, column)
+        excerpt = self._lines[at.line - 1] if 0 < at.line <= len(self._lines) else ""
+        excerpt = excerpt[: at.column + _EXCERPT_LENGTH].rstrip()
+        span = Span(self._name, at.line, at.column)
         self._found.append(Diagnostic(Severity.ERROR, code, message, span, hint, excerpt))
         if len(self._found) >= _MAX_FINDINGS:
             raise TooManyFindingsError
@@ -66,7 +76,7 @@ class ProblemFindings:
         """A name that nothing has."""
         names = list(known)
         shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-        self.error("AOS110", f"there is no {kind} {word.text}", word.line, word.column, f"There is: {shown}")
+        self.error("AOS110", f"there is no {kind} {word.text}", word, f"There is: {shown}")
 
     @property
     def has_any(self) -> bool:

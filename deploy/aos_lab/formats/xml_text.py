@@ -60,7 +60,9 @@ def read_xml(data: bytes, findings: ProblemFindings) -> Element | None:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
-        findings.error("AOS104", f"this is not well-formed XML: {reason}", error.lineno, error.offset + 1)
+        findings.error(
+            "AOS104", f"this is not well-formed XML: {reason}", Word("", error.lineno, error.offset + 1)
+        )
         return None
     return open_elements[0].children[0]
 

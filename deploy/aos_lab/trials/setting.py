@@ -86,7 +86,7 @@ def _named(names: tuple[str, ...], folder: Path) -> tuple[Path, ...]:
     bundles = tuple((folder / bundle).resolve() for bundle in names)
     for bundle in bundles:
         if not bundle.exists():
-            raise DeployError(f"there is no bundle {bundle}", code="AOS801", hint="Look at `bundles:`")
+            raise DeployError(f"there is no bundle {bundle}", hint="Look at `bundles:`")
     return bundles
 
 

@@ -100,7 +100,6 @@ class Calls:
         if self._running is not None:
             raise SkillError(
                 f"{request.path} is refused: {self._running.call.path} is running",
-                code="AOS502",
                 hint="One skill runs at a time",
             )
         path = "/" + request.path.strip("/")

@@ -40,7 +40,6 @@ def translated(expressions: Mapping[str, str] | None, fields: Mapping[str, Any],
             known = ", ".join(sorted(fields)) or "none"
             raise SkillError(
                 f"the field {name} of {what} cannot be computed by {text!r}: {type(error).__name__}: {error}",
-                code="AOS502",
                 hint=f"See `bind:` in the deploy file; the fields that come in are {known}",
             ) from error
     return values

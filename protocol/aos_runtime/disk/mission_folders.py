@@ -77,7 +77,5 @@ def _made(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise StorageError(
-            f"{folder} cannot be made: {error.strerror}", code="AOS701", hint="Make space there"
-        ) from error
+        raise StorageError(f"{folder} cannot be made: {error.strerror}", hint="Make space there") from error
     return folder

@@ -122,7 +122,7 @@ class Catalogue:
                 raise
             self._db.execute("COMMIT")
         except sqlite3.Error as error:
-            raise StorageError(f"the catalogue cannot be written: {error}", code="AOS701") from error
+            raise StorageError(f"the catalogue cannot be written: {error}") from error
 
     def _newest_number(self, project: str) -> int:
         """The number of the newest revision; 0 if there is none."""

@@ -165,7 +165,7 @@ def _made(folder: Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         text = f"the watched folder {folder} cannot be made: {error.strerror}"
-        raise StorageError(text, code="AOS701") from error
+        raise StorageError(text) from error
     return folder.resolve()
 
 

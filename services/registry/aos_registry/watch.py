@@ -54,7 +54,7 @@ def _bundles_in(folder: Path) -> list[Path]:
 
 def _unwatched(folder: Path, error: OSError) -> StorageError:
     text = f"the folder {folder} cannot be watched: {error.strerror or error}"
-    return StorageError(text, code="AOS701", hint="Name another one by `watch:`")
+    return StorageError(text, hint="Name another one by `watch:`")
 
 
 def _may_be_bundle(path: Path) -> bool:

@@ -269,7 +269,5 @@ def _fitting(function: Callable[..., Any], call: Call) -> dict[str, Any]:
         hint = f"The function takes {takes}; the mapping sends {sends}. See `fields:` in the deploy file"
         if first in call.fields:
             hint = f"The first argument is the call, and no field: write (call, {sends})"
-        raise SkillError(
-            f"{call.path} cannot be called with these fields: {error}", code="AOS502", hint=hint
-        ) from error
+        raise SkillError(f"{call.path} cannot be called with these fields: {error}", hint=hint) from error
     return call.fields

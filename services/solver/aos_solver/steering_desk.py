@@ -1,16 +1,22 @@
-"""The desk of a solver where operators ask: finds the mission that runs, and answers when it has turned."""
+"""The desk of a solver where operators ask: finds the mission that runs, and answers when it has turned.
 
+Where they end it, what moves for it is cancelled, until it has ended.
+"""
+
+import asyncio
 import uuid
 from collections.abc import Callable
+from contextlib import suppress
 
 import msgspec
 
-from aos_protocol.errors import SteeringError
+from aos_protocol.errors import AosError, SteeringError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import MissionState, Steer, StopMission
+from aos_protocol.messages import Cancel, Cancelled, MissionState, Steer, StopMission
 from aos_runtime.bus.bus import Bus
+from aos_runtime.parties.served import served
+from aos_solver.mission.loop import Mission
 from aos_solver.mission_runner import MissionRunner
-from aos_solver.stopping import until_stopped
 
 _SOMEBODY = "somebody"
 
@@ -59,3 +65,33 @@ class SteeringDesk:
         elif steer.verb == "stop":
             await until_stopped(mission, steer.reason, self._missions.ended, self._bus, self._keys)
         return mission.state
+
+
+CANCEL_AGAIN_S = 0.2
+"""A mission that is stopped cancels again after this time: what it asked for may not have begun before."""
+CANCEL_TIMEOUT_S = 5.0
+
+
+async def until_stopped(mission: Mission, reason: str, ended: asyncio.Event, bus: Bus, keys: Keys) -> None:
+    """Returns when a mission that was told to stop has ended, which `ended` tells."""
+    while mission.state.phase != "ended":
+        await _cancel(mission, reason, bus, keys)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(CANCEL_AGAIN_S):
+                await ended.wait()
+
+
+async def _cancel(mission: Mission, reason: str, bus: Bus, keys: Keys) -> None:
+    """Cancels what the mission has asked for, whoever serves it."""
+    if mission.activation is None:
+        return
+    cancel = Cancel(reason, mission.activation, mission.state.epoch)
+    # All at once: one that is slow to answer keeps nothing else moving.
+    questions = [
+        bus.ask(keys.cancel(path), cancel, Cancelled, timeout_s=CANCEL_TIMEOUT_S)
+        for path in sorted({server.path for server in await served(bus, keys)})
+    ]
+    answers = await asyncio.gather(*questions, return_exceptions=True)
+    for answer in answers:
+        if isinstance(answer, BaseException) and not isinstance(answer, AosError):
+            raise answer

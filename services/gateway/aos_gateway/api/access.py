@@ -96,7 +96,7 @@ def kept_token(path: Path) -> str:
     except FileExistsError:
         return path.read_text().strip()
     except OSError as error:
-        raise StorageError(f"{path} cannot be written: {error.strerror}", code="AOS701") from error
+        raise StorageError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def _without_port(host: str) -> str:

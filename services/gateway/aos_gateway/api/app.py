@@ -106,7 +106,7 @@ async def _no_operation(request: Request, error: Exception) -> Response:
     status = HTTPStatus(error.status_code)
     if status == HTTPStatus.NOT_FOUND:
         hint = "Metrics are off: `aos serve --metrics`" if request.url.path == _METRICS else ""
-        return response_of(GatewayError(f"there is nothing at {request.url.path}", code="AOS902", hint=hint))
+        return response_of(GatewayError(f"there is nothing at {request.url.path}", hint=hint))
     if status == HTTPStatus.METHOD_NOT_ALLOWED:
         allowed = ", ".join(_methods_at(request))
         text = f"there is no {request.method} of {request.url.path}"

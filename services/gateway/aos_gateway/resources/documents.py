@@ -63,14 +63,14 @@ async def documents(gateway: Gateway, mission: str, query: OfDocuments) -> Docum
     """The documents of a mission's project, with the lines of each skill."""
     found: Run = await gateway.shelf.run_of_mission(mission)
     if not isinstance(found, KeptRun):
-        raise GatewayError(f"the documents of {mission} are not on this machine", code="AOS902")
+        raise GatewayError(f"the documents of {mission} are not on this machine")
     return await asyncio.to_thread(_documents, found, query.revision)
 
 
 def _catalogue(run: KeptRun) -> KeptCatalogue:
     path = run.directory.path / "catalogue.db"
     if not path.is_file():
-        raise GatewayError(f"the run {run.name} has no documents", code="AOS902")
+        raise GatewayError(f"the run {run.name} has no documents")
     try:
         connection = sqlite3.connect(path, isolation_level=None)
         connection.execute("PRAGMA query_only = ON")
@@ -108,10 +108,10 @@ def _documents(run: KeptRun, number: int) -> Documents:
     with closing(_catalogue(run)) as catalogue:
         names = [entry.project for entry in catalogue.entries()]
         if not names:
-            raise GatewayError(f"the run {run.name} has no documents", code="AOS902")
+            raise GatewayError(f"the run {run.name} has no documents")
         found = catalogue.revision(names[0], number) if number else catalogue.current(names[0])
     if found is None:
-        raise GatewayError(f"{names[0]} has no revision {number}", code="AOS902")
+        raise GatewayError(f"{names[0]} has no revision {number}")
     project = load_files(found.files, name=found.project).project
     files = tuple(
         DocumentFile(name, data.decode("utf-8", "replace")) for name, data in sorted(found.files.items())

@@ -199,7 +199,7 @@ async def decision(gateway: Gateway, mission: str, step: str) -> DecisionView:
         has_more = page.has_more and last is not None and last.step <= number
         since = last.sequence + 1 if last is not None else since
     if decided is None and observed is None:
-        raise GatewayError(f"the mission {mission} has no step {number}", code="AOS902")
+        raise GatewayError(f"the mission {mission} has no step {number}")
     return DecisionView(decided, observed)
 
 

@@ -61,7 +61,7 @@ async def log(gateway: Gateway, run: str, service: str, query: OfLog) -> Content
     """The end of a service's log, as text."""
     found = _kept(gateway, run)
     if not _SERVICE.fullmatch(service) or service not in found.directory.read_record().pids:
-        raise GatewayError(f"the run {run} has no service {service}", code="AOS902")
+        raise GatewayError(f"the run {run} has no service {service}")
     return Content(await asyncio.to_thread(_tail, found, service, query.tail), "text/plain; charset=utf-8")
 
 
@@ -76,7 +76,7 @@ async def picture(gateway: Gateway, mission: str, step: str) -> Content:
     found = await gateway.shelf.run_of_mission(mission)
     path = _pictures(found).get(number_of_step(step)) if isinstance(found, KeptRun) else None
     if path is None:
-        raise GatewayError(f"there is no picture of step {step}", code="AOS902")
+        raise GatewayError(f"there is no picture of step {step}")
     media = "image/png" if path.suffix == ".png" else "image/jpeg"
     return Content(await asyncio.to_thread(_bytes_of, path), media)
 
@@ -91,7 +91,7 @@ def number_of_step(step: str) -> int:
 def _kept(gateway: Gateway, name: str) -> KeptRun:
     found = gateway.shelf.run(name)
     if not isinstance(found, KeptRun):
-        raise GatewayError(f"the run {name} has no directory on this machine", code="AOS902")
+        raise GatewayError(f"the run {name} has no directory on this machine")
     return found
 
 

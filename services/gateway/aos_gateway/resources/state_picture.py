@@ -18,11 +18,11 @@ async def state_picture(gateway: Gateway, mission: str, step: str) -> Content:
     record = view.observed or view.decided
     found = await gateway.shelf.run_of_mission(mission)
     if record is None or not isinstance(found, KeptRun):
-        raise GatewayError(f"the documents of {mission} are not on this machine", code="AOS902")
+        raise GatewayError(f"the documents of {mission} are not on this machine")
     source = await asyncio.to_thread(picture_of, found, record.revision)
     if source is None:
         hint = "A bundle may have a picture.py; see docs/page.md"
-        raise GatewayError(f"the documents of {mission} draw no state", code="AOS902", hint=hint)
+        raise GatewayError(f"the documents of {mission} draw no state", hint=hint)
     drawn = await gateway.drawings.of(record, source)
     media = "image/svg+xml" if drawn.is_svg else "image/png"
     return Content(drawn.data, media, _NEVER_CHANGES_S if view.observed is not None else 0)

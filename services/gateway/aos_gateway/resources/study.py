@@ -82,6 +82,6 @@ async def _answer(
         async with run.asking() as client:
             return await client.bus.ask(key(client.keys), asked, kind, timeout_s=STUDY_TIMEOUT_S)
     if not isinstance(run, KeptRun):
-        raise GatewayError(f"the mission {asked.mission} is over, and not on this machine", code="AOS902")
+        raise GatewayError(f"the mission {asked.mission} is over, and not on this machine")
     async with gateway.studying:
         return await StudiedRun.open(run.directory.path, number_in(run.name, asked.mission)).study(study)

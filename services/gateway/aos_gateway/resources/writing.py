@@ -115,9 +115,7 @@ async def start(gateway: Gateway, body: StartSystem) -> StartedRun:
     else:
         known = {entry.project: entry for entry in await asyncio.to_thread(_projects, gateway)}
         if body.project not in known:
-            raise GatewayError(
-                f"there is no project {body.project}", code="AOS902", hint="GET /v1/projects lists them"
-            )
+            raise GatewayError(f"there is no project {body.project}", hint="GET /v1/projects lists them")
         path = Path(known[body.project].deploy_file)
     await asyncio.to_thread(read_deploy_file, path)  # What is wrong with it is told here, with its place.
     options = [*(["--model"] if body.model else []), *(["--stay"] if body.stay else [])]

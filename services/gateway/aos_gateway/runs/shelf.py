@@ -72,7 +72,7 @@ class RunShelf:
             name = next((one for one in runs if one not in self._remote), name)
         found = runs.get(name)
         if found is None:
-            raise GatewayError(f"there is no run {name}", code="AOS902", hint="GET /v1/runs lists them")
+            raise GatewayError(f"there is no run {name}", hint="GET /v1/runs lists them")
         return found
 
     async def named(self, mission: str) -> str:
@@ -81,7 +81,7 @@ class RunShelf:
             return mission
         names = [entry.missions[-1] for entry in await self.entries() if entry.missions]
         if not names:
-            raise GatewayError("there is no mission yet", code="AOS902", hint="POST /v1/runs starts one")
+            raise GatewayError("there is no mission yet", hint="POST /v1/runs starts one")
         return max(names)  # They begin with the time in UTC.
 
     async def run_of_mission(self, mission: str) -> Run:
@@ -94,6 +94,4 @@ class RunShelf:
         for run in self._remote.values():
             if any(entry.mission == mission for entry in await run.missions()):
                 return run
-        raise GatewayError(
-            f"there is no mission {mission}", code="AOS902", hint="GET /v1/missions lists them"
-        )
+        raise GatewayError(f"there is no mission {mission}", hint="GET /v1/missions lists them")

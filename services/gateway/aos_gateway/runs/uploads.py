@@ -65,7 +65,7 @@ def keep_project(folder: Path, project: str, files: Mapping[str, bytes]) -> Proj
             shutil.rmtree(target, ignore_errors=True)
             new.rename(target)
     except OSError as error:
-        raise StorageError(f"{target} cannot be written: {error.strerror}", code="AOS701") from error
+        raise StorageError(f"{target} cannot be written: {error.strerror}") from error
     return ProjectEntry(name, str(deploy_file), is_uploaded=True)
 
 

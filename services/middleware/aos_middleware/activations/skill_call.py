@@ -109,7 +109,7 @@ class Call:
             raise
         except TooLargeError as error:
             has_ended = True
-            raise SkillError(error.message, code="AOS502", hint=error.hint) from error
+            raise SkillError(error.message, hint=error.hint) from error
         finally:
             if not has_ended:
                 self._around.gate.doubt(request, path)

@@ -44,11 +44,7 @@ class MotionGate:
     def passing(self, path: str) -> Iterator[None]:
         """While the block runs, nothing else may move. SkillError AOS502 if something does."""
         if self._moving:
-            raise SkillError(
-                f"{path} is refused: {self._moving} is running",
-                code="AOS502",
-                hint="One skill runs at a time",
-            )
+            raise SkillError(f"{path} is refused: {self._moving} is running", hint="One skill runs at a time")
         self._moving = path
         try:
             yield

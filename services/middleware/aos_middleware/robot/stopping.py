@@ -44,7 +44,7 @@ class Stop:
         """Lets the call go out; SkillError AOS502 where it is to be stopped already."""
         if self.by:
             self._came_first = True
-            raise SkillError(f"{self.reason} before it was called", code="AOS502", hint=self._hint())
+            raise SkillError(f"{self.reason} before it was called", hint=self._hint())
         self._goes_out.set()
 
     def is_cause(self, error: AosError) -> bool:

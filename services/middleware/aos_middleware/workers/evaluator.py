@@ -99,7 +99,7 @@ class Evaluator:
         try:
             self._child = await self._start_worker()
         except OSError as error:
-            raise StorageError(f"the log {self._log_path}: {error}", code="AOS701") from error
+            raise StorageError(f"the log {self._log_path}: {error}") from error
         limits = self._limits
         load = frames.Load(
             self.emitted.python,

@@ -83,7 +83,6 @@ class PybulletAdapter:
         except (KeyError, TypeError, ValueError) as error:
             raise SkillError(
                 f"{call.target} cannot use the fields {call.fields}: {error!r}",
-                code="AOS502",
                 hint="Look at the parameters that the abstraction mapping assigns",
             ) from error
         finally:

@@ -42,7 +42,7 @@ class ActionClient:
                 action, "send_goal", fields, goal_type, max(ends_at_s - loop.time(), 0.1)
             )
             if not accepted["accepted"]:
-                raise SkillError(f"{action} refused the goal", code="AOS502", hint="See the node's log")
+                raise SkillError(f"{action} refused the goal", hint="See the node's log")
             async with asyncio.TaskGroup() as tasks:
                 # It is answered at the goal's end, and outlives the deadline by that of cancelling.
                 timeout_s = max(ends_at_s - loop.time(), 0.0) + 2 * CANCEL_S

@@ -180,9 +180,7 @@ class RosTypes:
         if unknown:
             names = ", ".join(name for name, _ in fields if name != _FILLER) or "none"
             raise SkillError(
-                f"{type_name} has no field {where}{sorted(unknown)[0]}",
-                code="AOS502",
-                hint=f"Its fields are {names}",
+                f"{type_name} has no field {where}{sorted(unknown)[0]}", hint=f"Its fields are {names}"
             )
         parts = [self._part(field[1], value.get(field[0]), where + field[0]) for field in fields]
         return self._store.types[type_name](*parts)
@@ -199,7 +197,7 @@ class RosTypes:
             items = [None] * size
         if (kind == Nodetype.ARRAY and len(items) != size) or (size and len(items) > size):
             bound = "exactly" if kind == Nodetype.ARRAY else "at most"
-            raise SkillError(f"{where} holds {bound} {size} values, not {len(items)}", code="AOS502")
+            raise SkillError(f"{where} holds {bound} {size} values, not {len(items)}")
         if inner_kind == Nodetype.BASE and inner[0] != "string":
             numbers = [_scalar(inner[0], item, f"{where}[{at}]") for at, item in enumerate(items)]
             return np.array(numbers, dtype=_DTYPES[inner[0]])
@@ -314,4 +312,4 @@ def _scalar(base: str, value: Any, where: str) -> Any:
 
 def _misfit(where: str, type_name: str, value: Any) -> SkillError:
     place = where.rstrip(".") or "the value"
-    return SkillError(f"{place} is a {type_name} and cannot be {value!r}", code="AOS502")
+    return SkillError(f"{place} is a {type_name} and cannot be {value!r}")

@@ -192,4 +192,4 @@ def _skill_error(service: str, timeout_s: float, error: BusError) -> SkillError:
         return not_answered(service, timeout_s)
     if isinstance(error, NobodyAnswersError):
         return node_lost(service)
-    return SkillError(error.message, code="AOS502", hint=error.hint)
+    return SkillError(error.message, hint=error.hint)

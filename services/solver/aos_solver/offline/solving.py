@@ -83,7 +83,7 @@ async def solve(
             hint="Divide all rewards by one number",
         )
     if not model.starts:
-        raise PlanningError(f"{model.name} is over at the start", code="AOS302")
+        raise PlanningError(f"{model.name} is over at the start")
     executable = await build_solver(cache_dir)
     with tempfile.TemporaryDirectory(prefix="aos-solve-") as folder:
         flat, found = Path(folder) / "model.flat", Path(folder) / "vectors"

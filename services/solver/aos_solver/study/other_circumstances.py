@@ -2,7 +2,6 @@
 
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
@@ -10,8 +9,8 @@ import msgspec
 from aos_language.load import load_files
 from aos_protocol.errors import DocumentError, SkillError, StudyError
 from aos_protocol.messages import ActionValue, DecisionRecord, WhatIf, WhatIfQuery
-from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Restriction
+from aos_solver.earlier_models import built_for
 from aos_solver.mission.models.past import replayed
 from aos_solver.study.aside import put_aside
 from aos_solver.study.replaying import ReplayedMission
@@ -20,10 +19,9 @@ from aos_solver.study.valuing import deciding_search
 
 
 class OtherDocuments(NamedTuple):
-    """The source of a revision's files, and the cache of what is compiled from changed ones."""
+    """The source of a revision's files, and how much an engine of changed ones gives way."""
 
     files: Callable[[int], Awaitable[dict[str, bytes]]]
-    cache_dir: Path
     niceness: int
 
 
@@ -131,18 +129,10 @@ async def _engine(
         raise DocumentError(
             "the changed documents have errors", hint="Suppose another", diagnostics=loaded.diagnostics
         )
-    project = msgspec.structs.replace(
-        loaded.project, constraints=replay.settings.constraints, mission_values=()
-    )
-    built = await build_project(project, documents.cache_dir)
-    begun = replay.mission.begun
-    assert begun is not None
-    known = built.emitted.parameters
-    values = {name: text for name, text in begun.mission_parameters.items() if name in known}
-    built = msgspec.structs.replace(built, mission_values=values)
+    built = await built_for(replay.begun, loaded.project, replay.settings, lambda text: None)
     async with await Engine.start(
         built,
-        seed=begun.seed,
+        seed=replay.begun.seed,
         impossible_observation=replay.settings.impossible_observation,
         niceness=documents.niceness,
     ) as engine:

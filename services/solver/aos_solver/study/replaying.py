@@ -98,10 +98,8 @@ class ReplayedMission:
 
     def search_by(self, decision: messages.DecisionRecord) -> Search:
         """The way in which a decision was made, with the mission's budget."""
-        begun = self.mission.begun
-        assert begun is not None
         search = msgspec.convert(self.settings, Search, from_attributes=True)
-        search = msgspec.structs.replace(search, seed=begun.seed)
+        search = msgspec.structs.replace(search, seed=self.begun.seed)
         return following(search, self._policy if decision.chosen_by == "policy" else None)
 
     async def rows(self, until: int | None = None) -> AsyncIterator[Remade]:
@@ -141,6 +139,13 @@ class ReplayedMission:
         return await self.built(self._running.revision)
 
     @property
+    def begun(self) -> messages.MissionBegun:
+        """The row with which the mission began."""
+        begun = self.mission.begun
+        assert begun is not None
+        return begun
+
+    @property
     def revision(self) -> int:
         """The revision of the documents where the replay is."""
         assert self._running is not None
@@ -164,14 +169,10 @@ class ReplayedMission:
 
     async def built(self, revision: int) -> BuiltModel:
         """The model of a revision, with the mission's values."""
-        begun = self.mission.begun
-        assert begun is not None
         project = await self.documents.revision(revision)
-        return await built_for(begun, project, self.settings, self._on_progress)
+        return await built_for(self.begun, project, self.settings, self._on_progress)
 
     async def _engine(self, revision: int, digest: str) -> RunningModel:
-        begun = self.mission.begun
-        assert begun is not None
         built = await self.built(revision)
         if built.emitted.digest != digest:
             raise StudyError(
@@ -180,7 +181,7 @@ class ReplayedMission:
             )
         engine = await Engine.start(
             built,
-            seed=begun.seed,
+            seed=self.begun.seed,
             impossible_observation=self.settings.impossible_observation,
             niceness=self._niceness,
         )

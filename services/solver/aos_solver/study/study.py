@@ -58,7 +58,6 @@ class Study:
         self._source = source
         self._niceness = niceness
         self._flips_s = flips_s
-        self._cache_dir = cache_dir
         self._replay: ReplayedMission | None = None
         self._traced = TracedEngines(cache_dir, niceness, patience_s)
         self._asking = asyncio.Lock()
@@ -72,7 +71,7 @@ class Study:
     async def what_if(self, query: WhatIfQuery) -> WhatIf:
         """The decision under other circumstances; errors as from `why`."""
         async with self._asked(query) as (replay, decision):
-            others = OtherDocuments(self._source.files, self._cache_dir, self._niceness)
+            others = OtherDocuments(self._source.files, self._niceness)
             return await decided_otherwise(replay, decision, query, others)
 
     async def tree(self, query: TreeQuery) -> DecisionTree:

@@ -26,10 +26,9 @@ from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress
 from aos_solver.child.lines.belief_draws import draws_of
-from aos_solver.child.process.blame_page import new_blame_page, running_piece
 from aos_solver.child.process.confinement import confinement_of
 from aos_solver.child.process.printed import pass_on
-from aos_solver.child.process.shared_memory import SharedMemory
+from aos_solver.child.process.shared_memory import SharedMemory, new_blame_page, running_piece
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
 

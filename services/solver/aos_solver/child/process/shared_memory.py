@@ -1,6 +1,7 @@
-"""Memory that a child process writes and its parent keeps when the child is gone."""
+"""Memory that a child process writes and its parent keeps when the child is gone, such as its blame page."""
 
 import os
+import struct
 from typing import Self
 
 
@@ -37,3 +38,18 @@ class SharedMemory:
     def close(self) -> None:
         """Gives the memory back once no child has it."""
         os.close(self._file)
+
+
+_BYTES = 65536
+"""The largest page that blame.hpp maps; each of its threads has a line of 64 bytes in the first 4096."""
+
+
+def new_blame_page() -> SharedMemory:
+    """A page of a child that is yet to be started."""
+    return SharedMemory.create("aos-blame", _BYTES)
+
+
+def running_piece(page: SharedMemory) -> int:
+    """The number of the piece that ran last; of several threads, the first one's. 0 where none did."""
+    lines = struct.iter_unpack("=I60x", page.read(4096))
+    return next((piece for (piece,) in lines if piece != 0), 0)

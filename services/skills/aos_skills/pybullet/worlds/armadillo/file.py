@@ -2,9 +2,7 @@
 
 import msgspec
 
-from aos_skills.pybullet.parts.numbers import Deviation, Length, Share
-from aos_skills.pybullet.parts.place import Place
-from aos_skills.pybullet.parts.room_file import RoomFile
+from aos_skills.pybullet.parts.room_file import Deviation, Length, Place, RoomFile, Share
 
 
 class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from aos_skills.pybullet.parts.numbers import Deviation, Share
-from aos_skills.pybullet.parts.place import Place
-from aos_skills.pybullet.parts.room_file import RoomFile
+from aos_skills.pybullet.parts.room_file import Deviation, Place, RoomFile, Share
 
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

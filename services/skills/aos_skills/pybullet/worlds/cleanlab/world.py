@@ -6,7 +6,7 @@ from typing import Any
 
 from aos_skills.pybullet.parts.camera import Camera, Pose
 from aos_skills.pybullet.parts.faults import Faults
-from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.parts.room_file import Place
 from aos_skills.pybullet.parts.scene import Scene
 from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm

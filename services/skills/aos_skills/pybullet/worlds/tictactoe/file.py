@@ -4,8 +4,7 @@ from typing import Literal
 
 import msgspec
 
-from aos_skills.pybullet.parts.numbers import Deviation, Share
-from aos_skills.pybullet.parts.room_file import RoomFile
+from aos_skills.pybullet.parts.room_file import Deviation, RoomFile, Share
 from aos_skills.pybullet.worlds.tictactoe.rules import Rules
 
 
