@@ -19,7 +19,7 @@ _MAX_DIGITS = 18
 
 
 class Placed(Protocol):
-    """What stands at a line and a column of the file; both count from 1."""
+    """A thing at a line and a column of the file; both count from 1."""
 
     @property
     def line(self) -> int: ...
