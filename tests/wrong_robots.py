@@ -10,7 +10,7 @@ import argparse
 import asyncio
 import sys
 import tempfile
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import msgspec
@@ -60,33 +60,43 @@ class Wrong(msgspec.Struct, frozen=True):
         return judge(asking_the_world(self.claim, by, truth), trials, by)
 
 
-def wrong_robots() -> Iterator[Wrong]:
+@cache
+def wrong_robots() -> tuple[Wrong, ...]:
     """Every claim of every shipped experiment, with its robot if it has one."""
     yaml = YAML(typ="safe", pure=True)
     entries = yaml.load((Path(__file__).parent / "wrong_robots.yaml").read_text(encoding="utf-8"))
     robots = msgspec.convert(entries, dict[str, dict[str, dict[str, WrongRobot]]])
+    found = []
     for path in sorted(shipped("deploy/experiments").glob("*.yaml")):
         experiment = read_experiment(path)
         for name, part in experiment.parts.items():
             known = robots.get(path.stem, {}).get(name, {})
             for claim in part.claims:
                 place = f"{path.stem}/{name}"
-                yield Wrong(experiment, path.parent, place, part, claim, known.get(claim.says))
+                found.append(Wrong(experiment, path.parent, place, part, claim, known.get(claim.says)))
+    return tuple(found)
+
+
+@cache
+def _missions(name: str, plans: tuple[str, ...]) -> ModelMissions:
+    """Those of a part, whose documents its claims share, or of a planner that is wrong about its world."""
+    wrong = next(wrong for wrong in wrong_robots() if wrong.name == name)
+    with tempfile.TemporaryDirectory() as out:
+        own = deployment_of(msgspec.structs.replace(wrong.part, by="model"), wrong.folder, Path(out))
+    world = world_deployment_of(wrong.part, own, wrong.folder) or own
+    if not plans:
+        return ModelMissions.of(world)
+    bundles = tuple((wrong.folder / bundle).resolve() for bundle in plans)
+    return ModelMissions.of(msgspec.structs.replace(own, bundles=bundles), world)
 
 
 async def tried_by_model(wrong: Wrong) -> Verdict:
     """The verdict on missions in the world of the documents."""
     robot = wrong.robot
     assert robot is not None
-    with tempfile.TemporaryDirectory() as out:
-        own = deployment_of(msgspec.structs.replace(wrong.part, by="model"), wrong.folder, Path(out))
-    world = world_deployment_of(wrong.part, own, wrong.folder) or own
+    player = await ModelPlayer.prepared(_missions(wrong.name, robot.plans))
     if robot.plans:
-        bundles = tuple((wrong.folder / bundle).resolve() for bundle in robot.plans)
-        planned = msgspec.structs.replace(own, bundles=bundles)
-        player = await ModelPlayer.prepared(ModelMissions.of(planned, world))
         return wrong.verdict([await player.play(seed) for seed in robot.missions], "model")
-    player = await ModelPlayer.prepared(ModelMissions.of(world))
     engine = await Engine.start(player.model, seed=1, keeps_belief=False)
     try:
         trials = [await _scripted(engine, robot, seed) for seed in robot.missions]

@@ -3,7 +3,7 @@
 import pytest
 from wrong_robots import Wrong, tried_by_model, wrong_robots
 
-WRONG = list(wrong_robots())
+WRONG = wrong_robots()
 
 
 def test_no_claim_is_without_a_robot_that_does_otherwise():
