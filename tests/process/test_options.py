@@ -174,9 +174,9 @@ for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
     charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n"
     patrol.skill("charge", ["charged"], charge + "__moduleResponse = charged;")
     async with engine_of_text(patrol.files, cache_dir) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=45)
+        limits = MissionLimits(goal_probability=1, step_limit=30)
         run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
         plan = await engine.plan(simulations=100, seed=1, planner="auto")
     assert "what is neglected costs more than ways to rewards earn" in plan.why
-    assert len(run.actions) == 45
-    assert run.actions.count("charge") >= 2
+    assert len(run.actions) == 30, "longer than a battery lasts"
+    assert "charge" in run.actions

@@ -12,14 +12,14 @@ from aos_solver.mission.simulation import simulate_mission
 
 
 async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo(cache_dir: Path):
-    """A drone without a price of information flies to and fro: -5.1 in these worlds and two more."""
-    async with engine_of_text(photo(12), cache_dir) as engine:
+    """A drone without a price of information flies to and fro: -0.6 in these worlds, and 25 with it."""
+    async with engine_of_text(photo(8), cache_dir) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
         assert plan.planner == "pomcp"
         assert "information has a price" in plan.why
         limits = MissionLimits(goal_probability=1, step_limit=80)
-        searches = [Search(simulations=1000, seed=seed) for seed in range(101, 105)]
+        searches = [Search(simulations=500, seed=seed) for seed in (101, 102)]
         runs = [await simulate_mission(engine, search, limits) for search in searches]
-    assert plan.best.q < 20, "the tree alone promises 33"
-    assert fmean(run.discounted_return for run in runs) > 2
-    assert sum(run.actions.count("take") > 0 for run in runs) >= 3
+    assert plan.best.q < 30, "the tree alone promises 40"
+    assert fmean(run.discounted_return for run in runs) > 15
+    assert all("take" in run.actions for run in runs)
