@@ -11,21 +11,11 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
+from aos_deploy import planning_options
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, finite
-from aos_deploy.planning_options import (
-    Horizon,
-    Never,
-    PlannerName,
-    PolicyFile,
-    Seed,
-    Simulations,
-    Threads,
-    Time,
-    with_engine,
-)
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress
 from aos_lab.formats import PROBLEM_ENDINGS
@@ -69,14 +59,14 @@ States = Annotated[bool, typer.Option("--states", help="Also tell the world's st
 def simulate(
     bundle: Target,
     runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,
-    seed: Seed = 1,
-    simulations: Simulations = 100_000,
-    time_s: Time = None,
-    horizon: Horizon = None,
-    planner: PlannerName = "auto",
-    threads: Threads = 1,
-    policy: PolicyFile = None,
-    never: Never = None,
+    seed: planning_options.Seed = 1,
+    simulations: planning_options.Simulations = 100_000,
+    time_s: planning_options.Time = None,
+    horizon: planning_options.Horizon = None,
+    planner: planning_options.PlannerName = "auto",
+    threads: planning_options.Threads = 1,
+    policy: planning_options.PolicyFile = None,
+    never: planning_options.Never = None,
     set_values: SetValues = None,
     goal_probability: GoalProbability = 0.9,
     step_limit: StepLimit = None,
@@ -110,7 +100,7 @@ def simulate(
         else:
             search = following(search, policy)
             play = partial(_play, search=search, limits=limits, runs=runs, with_states=states, done=done)
-            with_engine(bundle, seed, play, never=never, set_values=set_values)
+            planning_options.with_engine(bundle, seed, play, never=never, set_values=set_values)
     except KeyboardInterrupt:
         was_stopped = True
     if done and as_json:

@@ -15,14 +15,7 @@ import numpy as np
 
 from aos_protocol.errors import DeployError, SkillError
 from aos_runtime.distribution import pip_install
-from aos_skills.ros.definitions import (
-    SHIPPED,
-    InterfaceName,
-    definitions_in,
-    interface_name,
-    messages_of,
-    missing_interface,
-)
+from aos_skills.ros import definitions
 
 try:
     from rosbags.interfaces import Nodetype
@@ -85,7 +78,7 @@ class RosTypes:
         }
         self._hashes: dict[str, str] = {}
         self._has_hashes = distribution not in _WITHOUT_HASHES
-        self._files = definitions_in((*interfaces, SHIPPED))
+        self._files = definitions.definitions_in((*interfaces, definitions.SHIPPED))
 
     def encoded(self, type_name: str, value: Mapping[str, Any]) -> bytes:
         """The value as CDR with its four bytes of encapsulation.
@@ -142,13 +135,13 @@ class RosTypes:
         """Reads the files that define a type and all that it uses."""
         if type_name in self._store.fielddefs:
             return
-        name = interface_name(type_name, "msg")
+        name = definitions.interface_name(type_name, "msg")
         file_name = next((known for known in _defining(name) if known in self._files), None)
         if file_name is None:
-            raise missing_interface(next(iter(_defining(name))), used_by)
+            raise definitions.missing_interface(next(iter(_defining(name))), used_by)
         path = self._files[file_name]
         found: dict[str, Any] = {}
-        for definition in messages_of(file_name, path.read_text(encoding="utf-8")):
+        for definition in definitions.messages_of(file_name, path.read_text(encoding="utf-8")):
             parsed_as = f"{definition.name.package}/msg/{definition.name.name}"
             try:
                 parsed = get_types_from_msg(definition.text, parsed_as)
@@ -168,7 +161,7 @@ class RosTypes:
                     self._know(used, used_by=str(path))
         self._store.register(found)
         if type_name not in self._store.fielddefs:
-            raise missing_interface(name, used_by)
+            raise definitions.missing_interface(name, used_by)
 
     # --- values ---
 
@@ -222,7 +215,7 @@ class RosTypes:
         return value.tolist() if isinstance(value, np.ndarray) else list(value)
 
 
-def _defining(name: InterfaceName) -> Iterator[InterfaceName]:
+def _defining(name: definitions.InterfaceName) -> Iterator[definitions.InterfaceName]:
     """The files in which a message may be defined: `X_SendGoal_Request` is made from the action `X`."""
     short = name.name
     if name.kind == "action":

@@ -10,16 +10,8 @@ from typing import Any
 
 from aos_protocol.errors import AosError
 from aos_runtime.background import Background
+from aos_skills.ros import faults
 from aos_skills.ros.definitions import definitions_in
-from aos_skills.ros.faults import (
-    CANCEL_S,
-    check_type,
-    node_lost,
-    not_answered,
-    not_cancelled,
-    not_ended,
-    not_served,
-)
 from aos_skills.ros.node import (
     DEFAULT_QOS,
     DISCOVERY_S,
@@ -104,7 +96,7 @@ class Ros1Node(RosNode):
         try:
             response: Fields = await asyncio.wait_for(asked, timeout_s)
         except TimeoutError as error:
-            raise not_answered(service, timeout_s) from error
+            raise faults.not_answered(service, timeout_s) from error
         return response
 
     def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
@@ -127,21 +119,21 @@ class Ros1Node(RosNode):
                 return_when=asyncio.FIRST_COMPLETED,
             )
             if leaving.done() and not answer.done():
-                raise node_lost(action)
+                raise faults.node_lost(action)
             is_late = not answer.done() and not cancelling.done()
             if not answer.done():
                 self._process.tell("cancel", of=number)
-                await asyncio.wait([answer], timeout=CANCEL_S)
+                await asyncio.wait([answer], timeout=faults.CANCEL_S)
                 if not answer.done():
                     self.unended.add(action, answer, self._gone(action))
-                    raise not_cancelled(action)
+                    raise faults.not_cancelled(action)
         finally:
             cancelling.cancel()
             leaving.cancel()
             del self._feedback[number]
         end = answer.result()
         if is_late:
-            raise not_ended(action, timeout_s)
+            raise faults.not_ended(action, timeout_s)
         return ActionEnd(end["status"], end["result"], end["text"])
 
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
@@ -222,8 +214,8 @@ class Ros1Node(RosNode):
     async def _type(self, kind: str, name: str, type_name: str, timeout_s: float) -> str:
         found = await self._wait_for(kind, name, timeout_s)
         if not found:
-            raise not_served(f"no ROS 1 node serves {name}", sorted(self._names[kind]))
-        check_type(name, found, _ros1(type_name) if type_name else "")
+            raise faults.not_served(f"no ROS 1 node serves {name}", sorted(self._names[kind]))
+        faults.check_type(name, found, _ros1(type_name) if type_name else "")
         return found
 
 
