@@ -78,8 +78,5 @@ def _started(runs: Path) -> str:
         if (address := _found()) is not None:
             return address
         time.sleep(_LOOK_S)
-    raise DeployError(
-        f"the page cannot be served; {log} says why",
-        code="AOS805",
-        hint="pip install 'aos-autonomy[page]' brings what it needs",
-    )
+    hint = "pip install 'aos-autonomy[page]' brings what it needs"
+    raise DeployError(f"the page cannot be served; {log} says why", code="AOS805", hint=hint)

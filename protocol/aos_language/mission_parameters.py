@@ -141,12 +141,9 @@ def usable_values(values: Sequence[MissionValue], leaves: Mapping[str, Parameter
     found = checked_values(values, leaves, findings)
     if findings.has_errors:
         wrong = findings.diagnostics
-        raise DocumentError(
-            "; ".join(diagnostic.message for diagnostic in wrong),
-            code="AOS146",
-            hint=next((diagnostic.hint for diagnostic in wrong if diagnostic.hint), ""),
-            diagnostics=wrong,
-        )
+        message = "; ".join(diagnostic.message for diagnostic in wrong)
+        hint = next((diagnostic.hint for diagnostic in wrong if diagnostic.hint), "")
+        raise DocumentError(message, code="AOS146", hint=hint, diagnostics=wrong)
     return found
 
 

@@ -36,10 +36,8 @@ def encode(message: Message, *, sender: str, stamp_ns: int) -> bytes:
     body = msgspec.Raw(_encoder.encode(message))
     payload = _encoder.encode(Envelope(PROTOCOL_VERSION, stamp_ns, sender, body))
     if len(payload) > MAX_BYTES:
-        raise TooLargeError(
-            f"a {type(message).__name__} of {len(payload)} bytes is too large for the bus",
-            hint=f"The limit is {MAX_BYTES} bytes",
-        )
+        text = f"a {type(message).__name__} of {len(payload)} bytes is too large for the bus"
+        raise TooLargeError(text, hint=f"The limit is {MAX_BYTES} bytes")
     return payload
 
 
@@ -49,11 +47,8 @@ def open_envelope(payload: bytes) -> Envelope:
         raise BusError(f"a message of {len(payload)} bytes is too large", code="AOS602")
     envelope = _checked_decode(payload, Envelope)
     if envelope.version.split(".")[0] != PROTOCOL_VERSION.split(".")[0]:
-        raise BusError(
-            f"{envelope.sender} speaks protocol {envelope.version}, this is {PROTOCOL_VERSION}",
-            code="AOS603",
-            hint="Install the same AOS version on both sides",
-        )
+        message = f"{envelope.sender} speaks protocol {envelope.version}, this is {PROTOCOL_VERSION}"
+        raise BusError(message, code="AOS603", hint="Install the same AOS version on both sides")
     return envelope
 
 

@@ -68,11 +68,8 @@ def _send_spans(runs: list[Path], address: str, *, as_json: bool) -> None:
         collector.check_reachable()
         number, is_whole = Sender(run, collector, keeps_place=False).send()
         if not is_whole:
-            raise DeployError(
-                f"{collector.address} does not take spans",
-                code="AOS805",
-                hint="Start a collector that takes OTLP over HTTP, or name another address",
-            )
+            hint = "Start a collector that takes OTLP over HTTP, or name another address"
+            raise DeployError(f"{collector.address} does not take spans", code="AOS805", hint=hint)
         sent[str(from_here(run))] = number
     if as_json:
         print_json({"spans": sent})

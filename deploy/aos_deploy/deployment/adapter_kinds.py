@@ -100,8 +100,5 @@ def adapter_kinds() -> dict[str, Kind]:
 def check_installed(adapter: str, kind: Kind) -> None:
     """Raises DeployError AOS805 if an adapter of this kind needs a package that is not installed."""
     if kind.needs and find_spec(kind.needs) is None:
-        raise DeployError(
-            f"the adapter {adapter} needs the package {kind.needs}, which is not installed",
-            code="AOS805",
-            hint=f"Run {pip_install(kind.extra)}",
-        )
+        message = f"the adapter {adapter} needs the package {kind.needs}, which is not installed"
+        raise DeployError(message, code="AOS805", hint=f"Run {pip_install(kind.extra)}")

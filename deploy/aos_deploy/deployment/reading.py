@@ -101,10 +101,8 @@ def check_endpoint(endpoint: str) -> None:
     first."""
     match = _ENDPOINT.fullmatch(endpoint)
     if match is None or int(match[2]) > _LAST_PORT:
-        raise DeployError(
-            f"{endpoint!r} is not an endpoint of this machine",
-            hint="Write it as tcp/127.0.0.1:7447, with port 0 for any free one, or leave it out",
-        )
+        hint = "Write it as tcp/127.0.0.1:7447, with port 0 for any free one, or leave it out"
+        raise DeployError(f"{endpoint!r} is not an endpoint of this machine", hint=hint)
 
 
 def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) -> Deployment:

@@ -54,11 +54,8 @@ async def until_skills_can_run(
         )
 
     def not_all(state: MappingState, why: str) -> DeployError:
-        return DeployError(
-            f"not every skill can be run{why}: {_reasons(state, state.unavailable)}",
-            code="AOS807",
-            hint=_hint(supervisor, deployment),
-        )
+        message = f"not every skill can be run{why}: {_reasons(state, state.unavailable)}"
+        return DeployError(message, code="AOS807", hint=_hint(supervisor, deployment))
 
     settled_s = min(longest_s, _SETTLED_S)
     try:

@@ -32,10 +32,8 @@ def serving_program(deployment: Deployment, kind: str) -> Program:
     _check_keys(f"serve.{kind}", options, _OPTIONS[kind], deployment)
     types = _types(deployment, part.get("types") or {})
     if not types:
-        raise DeployError(
-            f"nothing in {deployment.path.name} has a ROS type to be served with",
-            hint="Name them, as in serve: {types: {/pick: std_srvs/srv/Trigger}}",
-        )
+        hint = "Name them, as in serve: {types: {/pick: std_srvs/srv/Trigger}}"
+        raise DeployError(f"nothing in {deployment.path.name} has a ROS type to be served with", hint=hint)
     settings = {
         "kind": kind,
         "folder": str(deployment.path.parent),
@@ -50,10 +48,8 @@ def _check_keys(where: str, given: Any, known: tuple[str, ...], deployment: Depl
         raise DeployError(f"{where} in {deployment.path.name} is not a mapping")
     for name in given:
         if name not in known:
-            raise DeployError(
-                f"{where} in {deployment.path.name} has an unknown key {name}",
-                hint=f"Its keys are {', '.join(known)}",
-            )
+            hint = f"Its keys are {', '.join(known)}"
+            raise DeployError(f"{where} in {deployment.path.name} has an unknown key {name}", hint=hint)
 
 
 def _types(deployment: Deployment, given: dict[str, Any]) -> dict[str, str]:

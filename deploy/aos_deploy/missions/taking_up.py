@@ -36,18 +36,12 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
     run = RunDirectory(path.resolve())
     record = run.read_record()
     if not run.hold():
-        raise DeployError(
-            f"{run.path.name} goes on",
-            code="AOS810",
-            hint="Follow it with `aos decisions`, or end it with a signal to its aos-up",
-        )
+        hint = "Follow it with `aos decisions`, or end it with a signal to its aos-up"
+        raise DeployError(f"{run.path.name} goes on", code="AOS810", hint=hint)
     has_begun, ending = _of_system(run) if stays(run.path) else _of_mission(run)
     if ending:
-        raise DeployError(
-            f"{run.path.name} has ended: {ending}",
-            code="AOS810",
-            hint="Start a new run with aos-up and the deploy file",
-        )
+        hint = "Start a new run with aos-up and the deploy file"
+        raise DeployError(f"{run.path.name} has ended: {ending}", code="AOS810", hint=hint)
     run.keeps_settings = True
     deployment = read_deploy_file(Path(record.deploy_file))
     if record.is_played:

@@ -160,7 +160,5 @@ def _index(world: _World, call: Call) -> int:
     for parameters, index in world.skills.get(call.skill, ()):
         if parameters == call.parameters:
             return index
-    raise SkillError(
-        f"the model has no action {call.skill} with {call.parameters}",
-        hint="A model plays what a planner has decided; a call by hand does not say which action it is",
-    )
+    hint = "A model plays what a planner has decided; a call by hand does not say which action it is"
+    raise SkillError(f"the model has no action {call.skill} with {call.parameters}", hint=hint)

@@ -76,8 +76,5 @@ def _try_to_bind(address: str, port: int) -> None:
 
 
 def _refusal(address: str, port: int, reason: str) -> BusError:
-    return BusError(
-        f"cannot listen at {address}:{port}: {reason}",
-        code="AOS802",
-        hint="`aos runs` lists what runs; stop it, or use --listen tcp/127.0.0.1:0 for a free port",
-    )
+    hint = "`aos runs` lists what runs; stop it, or use --listen tcp/127.0.0.1:0 for a free port"
+    return BusError(f"cannot listen at {address}:{port}: {reason}", code="AOS802", hint=hint)

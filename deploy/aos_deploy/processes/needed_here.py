@@ -46,11 +46,8 @@ def _check_limit(kind: int, option: str, least: int, unit: int, what: str) -> No
     limit, _ = resource.getrlimit(kind)
     if limit not in range(least):
         return
-    raise DeployError(
-        f"`ulimit {option}` is {limit // unit}, and a mission needs {least // unit} {what}",
-        code="AOS805",
-        hint="Raise this limit of the shell, the container or the unit",
-    )
+    message = f"`ulimit {option}` is {limit // unit}, and a mission needs {least // unit} {what}"
+    raise DeployError(message, code="AOS805", hint="Raise this limit of the shell, the container or the unit")
 
 
 def _check_name(path: Path) -> None:

@@ -73,8 +73,6 @@ def _lasting(path: Path) -> str:
         return write_password(path)
     status = path.stat()
     if status.st_mode & 0o077 or status.st_uid != os.getuid():
-        raise DeployError(
-            f"others can read the credential {path}",
-            hint=f"Run chmod 600 {path}, or remove it: aos-up makes a new one",
-        )
+        hint = f"Run chmod 600 {path}, or remove it: aos-up makes a new one"
+        raise DeployError(f"others can read the credential {path}", hint=hint)
     return read_password(path)

@@ -86,11 +86,9 @@ _HINTS = {
 def check_ssh(adapter: str, host: str) -> None:
     """Raises DeployError AOS805 if this machine has no ssh."""
     if shutil.which("ssh") is None:
-        raise DeployError(
-            f"the adapter {adapter} is to run on {host}, and there is no program ssh here",
-            code="AOS805",
-            hint="Install an SSH client, such as Debian's openssh-client",
-        )
+        message = f"the adapter {adapter} is to run on {host}, and there is no program ssh here"
+        hint = "Install an SSH client, such as Debian's openssh-client"
+        raise DeployError(message, code="AOS805", hint=hint)
 
 
 def dialled(host: str) -> list[str]:

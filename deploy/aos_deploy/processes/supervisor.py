@@ -202,11 +202,8 @@ class Supervisor:
                 async with asyncio.timeout(program.start_s - elapsed_s):
                     await running.ready.wait()
             except TimeoutError:
-                raise DeployError(
-                    f"{program.name} was not ready within {program.start_s:g} s",
-                    code="AOS802",
-                    hint=self.look_at_log(program.name),
-                ) from None
+                message = f"{program.name} was not ready within {program.start_s:g} s"
+                raise DeployError(message, code="AOS802", hint=self.look_at_log(program.name)) from None
 
     async def until_one_ended(self, *, timeout_s: float) -> None:
         """Returns after the timeout if every process goes on; if one ends, so does the supervision."""
@@ -244,11 +241,9 @@ class Supervisor:
                     log = self._run.log(program.name)
                     await until_seen_ready(ready, log, before, _folder_of(program))
         except TimeoutError:
-            raise DeployError(
-                f"{program.name} was not ready within {program.start_s:g} s: {ready}",
-                code="AOS802",
-                hint=f"See `ready` and `start_s` in the deploy file. {self.look_at_log(program.name)}",
-            ) from None
+            message = f"{program.name} was not ready within {program.start_s:g} s: {ready}"
+            hint = f"See `ready` and `start_s` in the deploy file. {self.look_at_log(program.name)}"
+            raise DeployError(message, code="AOS802", hint=hint) from None
         self._set_ready(running)
 
     async def _follow_presence(self, bus: Bus) -> None:

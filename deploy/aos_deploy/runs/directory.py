@@ -69,11 +69,8 @@ class RunDirectory:
             created = cls(path)
             created._lock = _locked(path, fcntl.LOCK_EX)
         except OSError as error:
-            raise DeployError(
-                f"no run directory can be made in {runs}: {error.strerror}",
-                code="AOS805",
-                hint="Name another folder with --runs",
-            ) from error
+            message = f"no run directory can be made in {runs}: {error.strerror}"
+            raise DeployError(message, code="AOS805", hint="Name another folder with --runs") from error
         return created
 
     def hold(self) -> bool:
@@ -101,22 +98,16 @@ class RunDirectory:
         try:
             self._socket = place_of_socket(self.path)
         except OSError as error:
-            raise DeployError(
-                f"the bus has no place: {error.strerror}",
-                code="AOS805",
-                hint="Name a folder with a shorter path with --runs",
-            ) from error
+            hint = "Name a folder with a shorter path with --runs"
+            raise DeployError(f"the bus has no place: {error.strerror}", code="AOS805", hint=hint) from error
         return f"unixsock-stream/{self._socket}"
 
     @classmethod
     def latest(cls, runs: Path) -> RunDirectory:
         """The newest run below `runs`; BusError AOS605 if there is none."""
         if not (runs / LATEST / "run.json").is_file():
-            raise BusError(
-                f"there is no run in {runs}",
-                code="AOS605",
-                hint="Start one with aos-up, or name a run directory or an endpoint",
-            )
+            hint = "Start one with aos-up, or name a run directory or an endpoint"
+            raise BusError(f"there is no run in {runs}", code="AOS605", hint=hint)
         return cls((runs / LATEST).resolve())
 
     def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
@@ -258,10 +249,8 @@ def _kept(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise StorageError(
-            f"{path} cannot be written: {error.strerror}",
-            hint="Make space there, or name another folder with --runs",
-        ) from error
+        hint = "Make space there, or name another folder with --runs"
+        raise StorageError(f"{path} cannot be written: {error.strerror}", hint=hint) from error
 
 
 def _locked(path: Path, kind: int) -> int:

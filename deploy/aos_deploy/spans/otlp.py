@@ -28,11 +28,8 @@ _PATH = "/v1/traces"
 def check_otel_installed() -> None:
     """Raises DeployError AOS805 where OpenTelemetry's packages are not installed."""
     if not all(map(_is_there, _NEEDS)):
-        raise DeployError(
-            "spans need OpenTelemetry's packages, which are not installed",
-            code="AOS805",
-            hint=f"Run {pip_install('otel')}",
-        )
+        message = "spans need OpenTelemetry's packages, which are not installed"
+        raise DeployError(message, code="AOS805", hint=f"Run {pip_install('otel')}")
 
 
 def _is_there(module: str) -> bool:
@@ -73,11 +70,9 @@ class Collector:
         try:
             socket.create_connection((host, port), timeout=self._timeout_s).close()
         except OSError as error:
-            raise DeployError(
-                f"no collector answers at {host}, port {port}: {error.strerror or error}",
-                code="AOS805",
-                hint="Start a collector that takes OTLP over HTTP, or name another address",
-            ) from error
+            message = f"no collector answers at {host}, port {port}: {error.strerror or error}"
+            hint = "Start a collector that takes OTLP over HTTP, or name another address"
+            raise DeployError(message, code="AOS805", hint=hint) from error
 
     def send(self, spans: Sequence[Span]) -> bool:
         """Sends spans and says whether the collector has taken them; waits, so call it in a thread."""

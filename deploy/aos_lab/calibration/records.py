@@ -52,10 +52,8 @@ def read_missions(path: Path) -> tuple[RecordedMission, ...]:
     """
     missions = tuple(_missions(path))
     if not missions:
-        raise DeployError(
-            f"{path} holds no recorded missions",
-            hint="Name a run directory, the runs' folder, or a folder of `aos experiment run`",
-        )
+        hint = "Name a run directory, the runs' folder, or a folder of `aos experiment run`"
+        raise DeployError(f"{path} holds no recorded missions", hint=hint)
     return missions
 
 

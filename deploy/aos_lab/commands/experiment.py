@@ -212,11 +212,8 @@ def _check_place(on: str, seeds: int, system_seeds: int) -> None:
 def _check_installed() -> None:
     """Raises DeployError AOS805 before anything has run, if the report could not be made in the end."""
     if find_spec("markdown_it") is None:
-        raise DeployError(
-            "a report needs the package markdown_it, which is not installed",
-            code="AOS805",
-            hint=f"Run {pip_install('report')}",
-        )
+        message = "a report needs the package markdown_it, which is not installed"
+        raise DeployError(message, code="AOS805", hint=f"Run {pip_install('report')}")
 
 
 def _experiments(where: str = "deploy/experiments") -> dict[str, Path]:

@@ -168,11 +168,8 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
         endings = " or ".join(_GRAPH_ENDINGS)
         raise typer.BadParameter(f"{graph} needs to end in {endings}", param_hint="--graph")
     if graph is not None and graph.suffix == ".svg" and shutil.which("dot") is None:
-        raise DeployError(
-            "drawing an .svg needs Graphviz",
-            code="AOS805",
-            hint="Install it (apt install graphviz), or write a .dot file",
-        )
+        hint = "Install it (apt install graphviz), or write a .dot file"
+        raise DeployError("drawing an .svg needs Graphviz", code="AOS805", hint=hint)
 
 
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:

@@ -55,11 +55,8 @@ def c_header(graph: PolicyGraph, name: str) -> str:
     PlanningError AOS320 if nodes or observations are more than 16 bits can number.
     """
     if max(len(graph.nodes), len(graph.model.observations)) >= _MAX_NUMBERED:
-        raise PlanningError(
-            f"{graph.model.name} has too many observations or nodes for 16 bits",
-            code="AOS320",
-            hint="Ask for fewer --nodes, or use the .policy file",
-        )
+        message = f"{graph.model.name} has too many observations or nodes for 16 bits"
+        raise PlanningError(message, code="AOS320", hint="Ask for fewer --nodes, or use the .policy file")
     return _header(graph, symbols([name.lower()])[0])
 
 

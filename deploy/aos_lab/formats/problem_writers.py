@@ -71,11 +71,8 @@ def _rewards(model: ExplicitModel, names: _Names) -> Iterator[tuple[str, str, fl
 def _pomdp(sensing: SensingByState) -> Iterator[str]:
     model = sensing.model
     if len(model.starts) > 1:
-        raise PlanningError(
-            f"the robot is told at the start of {model.name} where it is, which .pomdp cannot say",
-            code="AOS320",
-            hint="Write a .pomdpx file",
-        )
+        message = f"the robot is told at the start of {model.name} where it is, which .pomdp cannot say"
+        raise PlanningError(message, code="AOS320", hint="Write a .pomdpx file")
     names = _Names(model)
     yield f"# {model.name}"
     yield f"discount: {model.discount!r}"

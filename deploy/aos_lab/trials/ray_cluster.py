@@ -95,11 +95,9 @@ def _ray() -> Any:
     try:
         import ray
     except ImportError:
-        raise DeployError(
-            "missions on a cluster need the package ray, which is not installed here",
-            code="AOS805",
-            hint=f"Run {pip_install('ray')}, or leave --on out",
-        ) from None
+        message = "missions on a cluster need the package ray, which is not installed here"
+        hint = f"Run {pip_install('ray')}, or leave --on out"
+        raise DeployError(message, code="AOS805", hint=hint) from None
     return ray
 
 

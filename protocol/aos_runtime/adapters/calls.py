@@ -98,10 +98,8 @@ class Calls:
         if stored is not None:
             return stored
         if self._running is not None:
-            raise SkillError(
-                f"{request.path} is refused: {self._running.call.path} is running",
-                hint="One skill runs at a time",
-            )
+            hint = "One skill runs at a time"
+            raise SkillError(f"{request.path} is refused: {self._running.call.path} is running", hint=hint)
         path = "/" + request.path.strip("/")
         if not self._is_served(path):
             raise SkillError(f"{self._settings.service} does not serve {path} now", code="AOS505")
@@ -171,11 +169,9 @@ class Calls:
     async def _answer_of(self, adapter: Adapter, call: Call) -> Answer:
         answer = adapter.call(call)
         if not inspect.isawaitable(answer):
-            raise SkillError(
-                f"{call.path} answered at once, which `call` of an adapter may not",
-                code="AOS510",
-                hint=f"Write it as `async def call(self, call)` in the adapter {self._settings.service}",
-            )
+            message = f"{call.path} answered at once, which `call` of an adapter may not"
+            hint = f"Write it as `async def call(self, call)` in the adapter {self._settings.service}"
+            raise SkillError(message, code="AOS510", hint=hint)
         return await answer
 
     async def _ended(self, running: RunningCall) -> Answer:
@@ -202,11 +198,8 @@ class Calls:
         if isinstance(error, AosError):
             raise error
         _log.error("%s failed", call.path, exc_info=error)
-        raise SkillError(
-            f"{call.path} failed: {type(error).__name__}: {error}",
-            code="AOS510",
-            hint=f"See the log of {self._settings.service}",
-        ) from error
+        message = f"{call.path} failed: {type(error).__name__}: {error}"
+        raise SkillError(message, code="AOS510", hint=f"See the log of {self._settings.service}") from error
 
     async def cancel(self, cancel: Cancel, _: str) -> Cancelled:
         """Cancels the call that is meant, if it runs.

@@ -93,10 +93,8 @@ class Host:
             target = str(binding.target if binding.target is not None else path)
             if target.strip("/") not in targets:
                 has = f"It has {', '.join(sorted(targets.values())) or 'none'}"
-                raise DeployError(
-                    f"the adapter {self.name} has no skill at {target}",
-                    hint=f"{did_you_mean(target, targets.values())} {has}".strip(),
-                )
+                hint = f"{did_you_mean(target, targets.values())} {has}".strip()
+                raise DeployError(f"the adapter {self.name} has no skill at {target}", hint=hint)
         return [*self.bound, *(path for path in targets.values() if self.wants(path))]
 
     def wants(self, path: str) -> bool:
@@ -240,11 +238,9 @@ def load_adapter(name: str, host: Host) -> Adapter:
     adapter: Adapter = _made(name, _class_named(name), host)
     lacking = [f"`{attribute}`" for attribute in _PARTS if not hasattr(adapter, attribute)]
     if lacking:
-        raise DeployError(
-            f"{name} is no adapter: it has no {' and no '.join(lacking)}",
-            code="AOS802",
-            hint="An adapter has `version`, and `async def` start(self), call(self, call) and close(self)",
-        )
+        message = f"{name} is no adapter: it has no {' and no '.join(lacking)}"
+        hint = "An adapter has `version`, and `async def` start(self), call(self, call) and close(self)"
+        raise DeployError(message, code="AOS802", hint=hint)
     return adapter
 
 
@@ -253,11 +249,8 @@ def _made(name: str, of: Any, host: Host) -> Any:
         try:
             inspect.signature(of).bind(host)
         except TypeError as error:
-            raise DeployError(
-                f"the adapter {name} cannot be made with its host: {error}",
-                code="AOS802",
-                hint="Write `def __init__(self, host)`",
-            ) from error
+            message = f"the adapter {name} cannot be made with its host: {error}"
+            raise DeployError(message, code="AOS802", hint="Write `def __init__(self, host)`") from error
     return of(host)
 
 
@@ -266,14 +259,9 @@ def _class_named(name: str) -> Any:
     try:
         return getattr(importlib.import_module(module), attribute)
     except (ImportError, AttributeError) as error:
-        raise DeployError(
-            f"the adapter {name} cannot be loaded: {error}",
-            code="AOS802",
-            hint="It is named module:Class; see that the module can be imported here",
-        ) from error
+        message = f"the adapter {name} cannot be loaded: {error}"
+        hint = "It is named module:Class; see that the module can be imported here"
+        raise DeployError(message, code="AOS802", hint=hint) from error
     except SyntaxError as error:
-        raise DeployError(
-            f"the adapter {name} cannot be loaded: {error.filename}:{error.lineno}: {error.msg}",
-            code="AOS802",
-            hint="It is no Python as it stands there",
-        ) from error
+        message = f"the adapter {name} cannot be loaded: {error.filename}:{error.lineno}: {error.msg}"
+        raise DeployError(message, code="AOS802", hint="It is no Python as it stands there") from error

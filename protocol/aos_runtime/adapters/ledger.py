@@ -49,11 +49,8 @@ class Ledger:
         if ended is not None:
             return ended
         if id in self._started:
-            raise SkillError(
-                f"activation {id} started and was never seen to end",
-                code="AOS504",
-                hint="Let the robot sense what became of it",
-            )
+            hint = "Let the robot sense what became of it"
+            raise SkillError(f"activation {id} started and was never seen to end", code="AOS504", hint=hint)
         return None
 
     def calls(self) -> tuple[SkillCall, ...]:

@@ -39,11 +39,8 @@ def _result_of(
     try:
         given = dict(answer)
     except (TypeError, ValueError) as error:
-        raise SkillError(
-            f"{call.path} answered {answer!r}, which is no mapping of field names to values",
-            code="AOS510",
-            hint=f"Mend the adapter {adapter}",
-        ) from error
+        message = f"{call.path} answered {answer!r}, which is no mapping of field names to values"
+        raise SkillError(message, code="AOS510", hint=f"Mend the adapter {adapter}") from error
     fields = translated(binding.result, given, f"the result of {call.path}")
     fields = sendable(fields, f"the result of {call.path}")
     return SkillResult(call.id, fields, published)

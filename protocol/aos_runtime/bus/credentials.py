@@ -49,11 +49,9 @@ def read_password(path: Path) -> str:
     try:
         password = path.read_text(encoding="utf-8").strip()
     except (OSError, UnicodeDecodeError) as error:
-        raise BusError(
-            f"the password file {path} cannot be read: {error}",
-            code="AOS605",
-            hint="It is made when the system starts, for the user who starts it",
-        ) from error
+        message = f"the password file {path} cannot be read: {error}"
+        hint = "It is made when the system starts, for the user who starts it"
+        raise BusError(message, code="AOS605", hint=hint) from error
     if not password:
         raise BusError(f"the password file {path} is empty", code="AOS605")
     return password

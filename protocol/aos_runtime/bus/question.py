@@ -57,10 +57,8 @@ class Question(Generic[R]):
         """The reply, or no reply in time where waiting was given up; errors as in `Bus.ask`."""
         result = (False, _ZENOH_TIMEOUT) if self.settled.cancelled() else self.settled.result()
         if result is None and self._is_taken:
-            raise LostAnswerError(
-                f"who took the question on {self._key} ended before the answer",
-                hint="See the logs of the services for what ended",
-            )
+            hint = "See the logs of the services for what ended"
+            raise LostAnswerError(f"who took the question on {self._key} ended before the answer", hint=hint)
         return self._read(result)
 
     def _on_reply(self, received: zenoh.Reply) -> None:

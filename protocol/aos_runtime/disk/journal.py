@@ -224,11 +224,8 @@ def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: b
     version = int(connection.execute("PRAGMA user_version").fetchone()[0])
     is_empty = version == 0 and not connection.execute("SELECT 1 FROM sqlite_schema").fetchone()
     if version != _SCHEMA_VERSION and not (is_to_write and is_empty):
-        raise StorageError(
-            f"{path} is not a journal of this version",
-            code="AOS702",
-            hint=f"Its schema is {version}, this program reads {_SCHEMA_VERSION}",
-        )
+        hint = f"Its schema is {version}, this program reads {_SCHEMA_VERSION}"
+        raise StorageError(f"{path} is not a journal of this version", code="AOS702", hint=hint)
 
 
 def _fault(code: str, path: Path, error: Exception) -> StorageError:

@@ -66,11 +66,9 @@ class Fence:
         await self._check_epoch(request.id, request.epoch)
         known = self._meanings.get(request.id)
         if known is not None and known != meaning(request):
-            raise SkillError(
-                f"activation {request.id} stands for another skill or other parameters",
-                code="AOS514",
-                hint="Somebody has used an id that is not his; nothing moves for it",
-            )
+            message = f"activation {request.id} stands for another skill or other parameters"
+            hint = "Somebody has used an id that is not his; nothing moves for it"
+            raise SkillError(message, code="AOS514", hint=hint)
 
     def is_stale(self, cancel: Cancel) -> bool:
         """Says whether a cancellation comes from a solver that was replaced."""
@@ -89,11 +87,8 @@ class Fence:
     def _check_mission(self, id: ActivationId) -> None:
         place = number_of(id.mission)
         if place is not None and place[1] < self._newest.get(place[0], 0):
-            raise SkillError(
-                f"activation {id} comes from a mission that is over",
-                code="AOS506",
-                hint=f"Mission {self._newest[place[0]]} has begun since",
-            )
+            hint = f"Mission {self._newest[place[0]]} has begun since"
+            raise SkillError(f"activation {id} comes from a mission that is over", code="AOS506", hint=hint)
 
     async def _check_epoch(self, id: ActivationId, epoch: int) -> None:
         newest = self._epochs.get(id.mission, 0)
@@ -101,11 +96,8 @@ class Fence:
             raise SkillError(f"activation {id} comes from an older epoch, {epoch}", code="AOS506")
         # The first one needs no word: it makes none stale. Any other would, if it were made up.
         if epoch > max(newest, 1) and await self._epoch_of_solver(id.mission) != epoch:
-            raise SkillError(
-                f"activation {id} comes from epoch {epoch}, which is not the mission's",
-                code="AOS506",
-                hint="Only the mission's solver counts its epochs",
-            )
+            message = f"activation {id} comes from epoch {epoch}, which is not the mission's"
+            raise SkillError(message, code="AOS506", hint="Only the mission's solver counts its epochs")
 
 
 def epoch_of_solver(bus: Bus, keys: Keys) -> Callable[[str], Awaitable[int | None]]:

@@ -75,11 +75,9 @@ class Service(Generic[S]):
         key = self.keys.live(self.settings.service)
         async with self.bus.presence(key) as present:
             if present.has_items:
-                raise DeployError(
-                    f"{self.settings.service} of the robot {self.settings.robot} is on this bus already",
-                    code="AOS803",
-                    hint="Stop the other one, or give this one another robot name or endpoint",
-                )
+                message = f"{self.settings.service} of the robot {self.settings.robot} is on this bus already"
+                hint = "Stop the other one, or give this one another robot name or endpoint"
+                raise DeployError(message, code="AOS803", hint=hint)
         await self.bus.announce(key)
         gc.freeze()  # What is there now stays; looking through it again and again takes milliseconds.
         _log.info("ready")

@@ -58,10 +58,8 @@ def _listening(config: zenoh.Config, endpoint: str) -> zenoh.Session:
     try:
         session = zenoh.open(config)
     except zenoh.ZError as error:
-        raise BusError(
-            f"the router cannot listen at {endpoint}: {error}",
-            code="AOS605",
-            hint="Another program listens there? Give another endpoint, or port 0 for any free one",
-        ) from error
+        message = f"the router cannot listen at {endpoint}: {error}"
+        hint = "Another program listens there? Give another endpoint, or port 0 for any free one"
+        raise BusError(message, code="AOS605", hint=hint) from error
     _log.info("listening at %s", endpoint)
     return session

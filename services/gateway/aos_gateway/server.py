@@ -95,11 +95,9 @@ def listening(host: str, port: int) -> Iterator[socket.socket]:
         try:
             listener.bind((host, port))
         except OSError as error:
-            raise DeployError(
-                f"cannot listen at {host}:{port}: {error.strerror}",
-                code="AOS802",
-                hint="Another gateway may run there; `--port 0` takes any free port",
-            ) from error
+            message = f"cannot listen at {host}:{port}: {error.strerror}"
+            hint = "Another gateway may run there; `--port 0` takes any free port"
+            raise DeployError(message, code="AOS802", hint=hint) from error
         listener.listen(_BACKLOG)
         yield listener
 

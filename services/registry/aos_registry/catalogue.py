@@ -72,11 +72,9 @@ class Catalogue:
             raise StorageError(f"the catalogue {path} cannot be opened: {error}", code="AOS702") from error
         if version not in (0, _SCHEMA_VERSION):
             connection.close()
-            raise StorageError(
-                f"the catalogue {path} has schema {version}, this program knows {_SCHEMA_VERSION}",
-                code="AOS702",
-                hint="Use the AOS that wrote it, or move the file away",
-            )
+            message = f"the catalogue {path} has schema {version}, this program knows {_SCHEMA_VERSION}"
+            hint = "Use the AOS that wrote it, or move the file away"
+            raise StorageError(message, code="AOS702", hint=hint)
         return cls(connection)
 
     def close(self) -> None:

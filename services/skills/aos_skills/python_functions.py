@@ -80,10 +80,8 @@ class PythonAdapter:
             if ":" not in target and "file" in self._host.options:
                 target = f"{self._host.options['file']}:{target or path.rpartition('/')[2]}"
             if ":" not in target:
-                raise DeployError(
-                    f"{path} is not bound to a function",
-                    hint=f"Write it as {path}: {{{self._host.name}: my_robot.py:function}}",
-                )
+                hint = f"Write it as {path}: {{{self._host.name}: my_robot.py:function}}"
+                raise DeployError(f"{path} is not bound to a function", hint=hint)
             self._functions[path] = self._function(path, target)
 
     def _function(self, path: str, target: str) -> Callable[..., Any]:
@@ -106,10 +104,8 @@ class PythonAdapter:
             raise DeployError(f"{path} is bound to {target}, which cannot be called")
         if not _takes_call(found):
             short = name.rpartition(".")[2]
-            raise DeployError(
-                f"{path} is bound to {target}, which takes no arguments",
-                hint=f"A function gets the call first, and then the call's fields: def {short}(call)",
-            )
+            hint = f"A function gets the call first, and then the call's fields: def {short}(call)"
+            raise DeployError(f"{path} is bound to {target}, which takes no arguments", hint=hint)
         return found  # type: ignore[no-any-return]
 
     def _module(self, path: str, place: str) -> ModuleType:
@@ -125,10 +121,8 @@ class PythonAdapter:
             hint = f"A file is found from the deploy file's folder, {self._host.folder}; see the log too"
             if isinstance(error, SystemExit):
                 hint = "What it does as a program stands behind `if __name__ == '__main__':`"
-            raise DeployError(
-                f"{path} is bound to {place}, which cannot be loaded: {type(error).__name__}: {error}",
-                hint=hint,
-            ) from error
+            message = f"{path} is bound to {place}, which cannot be loaded: {type(error).__name__}: {error}"
+            raise DeployError(message, hint=hint) from error
         self._modules[place] = module
         return module
 

@@ -96,10 +96,8 @@ class MissionRunner:
             if self._settings.stay:
                 await self._begin_next(start)
             elif start.request:
-                raise MissionRunsError(
-                    f"the system of {self._books.name} has one mission",
-                    hint="Start the system with `aos-up --stay`",
-                )
+                hint = "Start the system with `aos-up --stay`"
+                raise MissionRunsError(f"the system of {self._books.name} has one mission", hint=hint)
             elif self.mission is None and not self._has_ended:
                 with contextlib.suppress(SteeringError):  # It has ended then.
                     await self._begin_only()

@@ -40,11 +40,8 @@ class Access(msgspec.Struct, frozen=True):
         """
         host = headers.get("host", "").lower()
         if _without_port(host) not in self.hosts:
-            raise GatewayError(
-                f"the gateway does not answer to the name {host!r}",
-                code="AOS904",
-                hint="Name it with `aos serve --host`",
-            )
+            hint = "Name it with `aos serve --host`"
+            raise GatewayError(f"the gateway does not answer to the name {host!r}", code="AOS904", hint=hint)
         origin = headers.get("origin")
         if origin is not None and origin.partition("://")[2].lower() != host:
             raise GatewayError(f"a page of {origin} may not ask this gateway", code="AOS904")
@@ -56,11 +53,8 @@ class Access(msgspec.Struct, frozen=True):
             return
         if not has_token:
             what = "reading" if method in _READING else "writing"
-            raise GatewayError(
-                f"{what} needs the token",
-                code="AOS903",
-                hint="Send `Authorization: Bearer TOKEN`; `aos serve` prints the page's address with it",
-            )
+            hint = "Send `Authorization: Bearer TOKEN`; `aos serve` prints the page's address with it"
+            raise GatewayError(f"{what} needs the token", code="AOS903", hint=hint)
 
     def _is_token(self, given: str) -> bool:
         return hmac.compare_digest(given.strip().encode(), self.token.encode())

@@ -72,11 +72,8 @@ class Call:
             if fault := self._around.served.fault(path):
                 raise fault
             if self._clock.monotonic_s() >= self._ends_at_s:
-                raise SkillError(
-                    f"the time of {path} was over before what ran earlier stood still",
-                    code="AOS512",
-                    hint=_TIME_HINT,
-                )
+                message = f"the time of {path} was over before what ran earlier stood still"
+                raise SkillError(message, code="AOS512", hint=_TIME_HINT)
             self._stop.let_out()
             return await self._call_path(path, fields)
 
@@ -115,11 +112,8 @@ class Call:
                 self._around.gate.doubt(request, path)
         if not has_ended:
             self._note_stray("foreign", result)
-            raise SkillError(
-                f"the adapter of {path} answered for {result.id}, not for {request.id}",
-                code="AOS504",
-                hint="Mend the adapter: a result has the id of its call",
-            )
+            message = f"the adapter of {path} answered for {result.id}, not for {request.id}"
+            raise SkillError(message, code="AOS504", hint="Mend the adapter: a result has the id of its call")
         return result
 
     async def _answer(self, path: str, call: SkillCall) -> SkillResult:
@@ -176,8 +170,5 @@ def _timed_out(path: str, limit_s: float, before_s: float) -> SkillError:
 
 
 def _lost_adapter(path: str, after_s: float) -> SkillError:
-    return SkillError(
-        f"the adapter of {path} was lost {after_s:.1f} s after it was called",
-        code="AOS504",
-        hint="Whether the skill did its work is not known",
-    )
+    message = f"the adapter of {path} was lost {after_s:.1f} s after it was called"
+    return SkillError(message, code="AOS504", hint="Whether the skill did its work is not known")

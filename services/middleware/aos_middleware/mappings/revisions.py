@@ -43,12 +43,9 @@ def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
         except DocumentError as error:
             diagnostics += error.diagnostics
     if diagnostics:
-        raise DocumentError(
-            f"abstraction mappings of {project.name} cannot be used",
-            code="AOS121",
-            hint="Mend the places named with this error",
-            diagnostics=tuple(diagnostics),
-        )
+        message = f"abstraction mappings of {project.name} cannot be used"
+        hint = "Mend the places named with this error"
+        raise DocumentError(message, code="AOS121", hint=hint, diagnostics=tuple(diagnostics))
     return tuple(emitted)
 
 

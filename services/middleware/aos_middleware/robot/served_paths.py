@@ -92,11 +92,8 @@ class ServedPaths:
             return no_adapter(path, "; ".join(told))
         if len(servers) > 1:
             names = " and ".join(server.who for server in servers)
-            return SkillError(
-                f"{path} is served by {names}",
-                code="AOS511",
-                hint="End one of them, or bind it to another path",
-            )
+            hint = "End one of them, or bind it to another path"
+            return SkillError(f"{path} is served by {names}", code="AOS511", hint=hint)
         return None
 
     def is_for_good(self, path: str) -> bool:
@@ -143,8 +140,5 @@ def no_adapter(path: str, lacks: str = "") -> SkillError:
     """Nothing was begun. Adapters that are there may have told what they lack."""
     if lacks:
         return SkillError(f"{NO_ADAPTER}{path}: {lacks}", code="AOS505", hint="See the adapter's log")
-    return SkillError(
-        f"{NO_ADAPTER}{path}",
-        code="AOS505",
-        hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
-    )
+    hint = f"Name one for {path} under `bind:` in the deploy file, and see that it runs"
+    return SkillError(f"{NO_ADAPTER}{path}", code="AOS505", hint=hint)

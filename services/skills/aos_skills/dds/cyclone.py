@@ -93,11 +93,9 @@ class Participant:
             self._domain = Domain(domain, _configuration(interface, peers))
             self._participant = DomainParticipant(domain)
         except DDSException as error:
-            raise BusError(
-                f"DDS cannot be used on the network interface {interface}: {error}",
-                code="AOS605",
-                hint="See the names of interfaces with: ip link",
-            ) from error
+            message = f"DDS cannot be used on the network interface {interface}: {error}"
+            hint = "See the names of interfaces with: ip link"
+            raise BusError(message, code="AOS605", hint=hint) from error
         self._follow(BuiltinTopicDcpsPublication, is_writer=True)
         self._follow(BuiltinTopicDcpsSubscription, is_writer=False)
 

@@ -45,10 +45,8 @@ def way_to(path: str, target: Any) -> Way:
         kinds = [kind for kind in ("service", "action") if isinstance(target.get(kind), str)]
         if len(kinds) == 1 and target.keys() <= {kinds[0], "type"}:
             return Way(kinds[0], "/" + target[kinds[0]].strip("/"), str(target.get("type", "")))
-    raise DeployError(
-        f"{path} is bound to {target!r}, which is neither a service nor an action",
-        hint="Write the name of one, or {service: /pick}, or {action: /navigate, type: package/action/Name}",
-    )
+    hint = "Write the name of one, or {service: /pick}, or {action: /navigate, type: package/action/Name}"
+    raise DeployError(f"{path} is bound to {target!r}, which is neither a service nor an action", hint=hint)
 
 
 class RosAdapter:
@@ -198,11 +196,9 @@ class RosAdapter:
                 ServiceRequest(way.name, call.fields, call.deadline_s + _LONGER_S, way.type_name)
             )
         except asyncio.CancelledError:
-            raise SkillError(
-                f"the service {way.name} was given up; services of ROS cannot be cancelled",
-                code="AOS504",
-                hint="The robot may still move. Skills that take long are better actions",
-            ) from None
+            message = f"the service {way.name} was given up; services of ROS cannot be cancelled"
+            hint = "The robot may still move. Skills that take long are better actions"
+            raise SkillError(message, code="AOS504", hint=hint) from None
 
     async def _run_action(self, call: Call, way: Way) -> dict[str, Any]:
         cancelled = asyncio.Event()
@@ -224,11 +220,9 @@ class RosAdapter:
                 raise
             # It has not even been accepted yet, or the node does not answer at all.
             running.cancel()
-            raise SkillError(
-                f"the action {way.name} was to be cancelled, and its node does not answer",
-                code="AOS504",
-                hint="The robot may still move: look at it, and at the node's log",
-            ) from None
+            message = f"the action {way.name} was to be cancelled, and its node does not answer"
+            hint = "The robot may still move: look at it, and at the node's log"
+            raise SkillError(message, code="AOS504", hint=hint) from None
         if end.status == "succeeded":
             return end.result
         code = "AOS507" if end.status == "canceled" else "AOS510"

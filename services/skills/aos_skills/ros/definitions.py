@@ -41,11 +41,8 @@ def interface_name(text: str, kind: str) -> InterfaceName:
     if len(parts) == 2:
         parts.insert(1, kind)
     if len(parts) != 3 or parts[1] not in KINDS:
-        raise DeployError(
-            f"{text!r} is not the name of a ROS interface",
-            code="AOS106",
-            hint=f"Write it as package/{kind}/Name, such as {_EXAMPLES[kind]}",
-        )
+        hint = f"Write it as package/{kind}/Name, such as {_EXAMPLES[kind]}"
+        raise DeployError(f"{text!r} is not the name of a ROS interface", code="AOS106", hint=hint)
     return InterfaceName(*parts)
 
 
@@ -65,11 +62,8 @@ def definitions_in(places: Iterable[Path]) -> dict[InterfaceName, Path]:
     found: dict[InterfaceName, Path] = {}
     for place in places:
         if not place.exists():
-            raise DeployError(
-                f"there is no interface file or folder {place}",
-                code="AOS101",
-                hint="Name a .msg, .srv or .action file, or a folder of them",
-            )
+            hint = "Name a .msg, .srv or .action file, or a folder of them"
+            raise DeployError(f"there is no interface file or folder {place}", code="AOS101", hint=hint)
         for path in [place] if place.is_file() else sorted(_interface_files(place)):
             folder = path.resolve().parent
             package = folder.parent if folder.name in KINDS else folder

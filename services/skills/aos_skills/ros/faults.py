@@ -21,20 +21,15 @@ def not_answered(service: str, timeout_s: float) -> SkillError:
 def check_type(name: str, found: str, wanted: str) -> None:
     """Raises SkillError AOS509 where what is served is of another type than the wanted one, if any is."""
     if wanted and found != wanted:
-        raise SkillError(
-            f"{name} is of type {found}, not {wanted}",
-            code="AOS509",
-            hint="Correct the type in the deploy file, or leave it out",
-        )
+        hint = "Correct the type in the deploy file, or leave it out"
+        raise SkillError(f"{name} is of type {found}, not {wanted}", code="AOS509", hint=hint)
 
 
 def not_cancelled(action: str) -> SkillError:
     """The error where a goal does not end although its end was asked for."""
-    return SkillError(
-        f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s",
-        code="AOS504",
-        hint="The robot may still move: look at it, and at the node's log",
-    )
+    message = f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s"
+    hint = "The robot may still move: look at it, and at the node's log"
+    return SkillError(message, code="AOS504", hint=hint)
 
 
 def not_ended(action: str, timeout_s: float) -> SkillError:
@@ -44,17 +39,12 @@ def not_ended(action: str, timeout_s: float) -> SkillError:
 
 def node_lost(action: str) -> SkillError:
     """The error where the node of an action leaves while a goal runs."""
-    return SkillError(
-        f"the node that serves {action} has left while it ran",
-        code="AOS504",
-        hint="Whether the skill did its work is not known",
-    )
+    hint = "Whether the skill did its work is not known"
+    return SkillError(f"the node that serves {action} has left while it ran", code="AOS504", hint=hint)
 
 
 def goal_forgotten(action: str) -> SkillError:
     """The error where the node that is asked for a result does not know the goal."""
-    return SkillError(
-        f"the node of {action} does not know the goal that was accepted",
-        code="AOS504",
-        hint="Was the node started anew meanwhile, or do two nodes serve it? What the skill did is not known",
-    )
+    message = f"the node of {action} does not know the goal that was accepted"
+    hint = "Was the node started anew meanwhile, or do two nodes serve it? What the skill did is not known"
+    return SkillError(message, code="AOS504", hint=hint)

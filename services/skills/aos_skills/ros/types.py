@@ -66,11 +66,8 @@ class RosTypes:
 
     def __init__(self, distribution: str = "jazzy", interfaces: Iterable[Path] = ()) -> None:
         if distribution not in DISTRIBUTIONS:
-            raise DeployError(
-                f"{distribution!r} is not a distribution of ROS 2 that is known here",
-                code="AOS106",
-                hint=f"Known are {', '.join(DISTRIBUTIONS)}",
-            )
+            message = f"{distribution!r} is not a distribution of ROS 2 that is known here"
+            raise DeployError(message, code="AOS106", hint=f"Known are {', '.join(DISTRIBUTIONS)}")
         self._store = get_typestore(Stores(f"ros2_{distribution}"))
         self._store.fielddefs = {
             name: (constants, [_with_uint8(field) for field in fields])
@@ -96,11 +93,8 @@ class RosTypes:
         try:
             message = self._store.deserialize_cdr(payload, type_name)
         except (SerdeError, IndexError) as error:
-            raise SkillError(
-                f"what came is no {type_name}: {error}",
-                code="AOS508",
-                hint="Is the sender's definition of this type the one that is given here?",
-            ) from error
+            hint = "Is the sender's definition of this type the one that is given here?"
+            raise SkillError(f"what came is no {type_name}: {error}", code="AOS508", hint=hint) from error
         return self._plain(type_name, message)
 
     def hash(self, type_name: str) -> str:

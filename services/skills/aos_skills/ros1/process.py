@@ -160,8 +160,5 @@ def _start_error(python: str, master: str, error: Exception) -> AosError:
         )
     why = error.message if isinstance(error, AosError) else f"{python} was not ready in {START_S:g} s"
     why = " ".join(why.split())  # Whoever is there may have answered anything.
-    return BusError(
-        f"no ROS master answers at {master}: {why[:LONGEST_REASON]}",
-        code="AOS605",
-        hint="Start one with roscore, or name yours: adapters: {robot: {ros1: http://HOST:11311}}",
-    )
+    hint = "Start one with roscore, or name yours: adapters: {robot: {ros1: http://HOST:11311}}"
+    return BusError(f"no ROS master answers at {master}: {why[:LONGEST_REASON]}", code="AOS605", hint=hint)

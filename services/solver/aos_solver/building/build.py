@@ -253,11 +253,8 @@ class _Build(msgspec.Struct, frozen=True):
         project = self.emitted.project
         report = read_messages(output, _SOURCE, self.emitted)
         if report.diagnostics:
-            return ModelError(
-                f"the model code of {project} does not compile",
-                hint="Mend the places named",
-                diagnostics=report.diagnostics,
-            )
+            message = f"the model code of {project} does not compile"
+            return ModelError(message, hint="Mend the places named", diagnostics=report.diagnostics)
         if ran_out(output, status):
             return self._limit_error()
         return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())

@@ -48,9 +48,6 @@ def emitted_model(project: Project) -> EmittedModel:
     """
     program, diagnostics = lowered(project)
     if program is None or has_errors(diagnostics):
-        raise ModelError(
-            f"the documents of {project.name} have mistakes",
-            hint="Mend the places named above",
-            diagnostics=tuple(diagnostics),
-        )
+        message = f"the documents of {project.name} have mistakes"
+        raise ModelError(message, hint="Mend the places named above", diagnostics=tuple(diagnostics))
     return emit(program)

@@ -57,9 +57,5 @@ async def built_with_conditions(project: Project, given: Sequence[str], cache_di
 
 def _refused(diagnostics: tuple[Diagnostic, ...]) -> AosError:
     first = diagnostics[0]
-    return DocumentError(
-        f"what is given has errors: {first.message} ({first.span})",
-        code=first.code,
-        hint=first.hint,
-        diagnostics=diagnostics,
-    )
+    message = f"what is given has errors: {first.message} ({first.span})"
+    return DocumentError(message, code=first.code, hint=first.hint, diagnostics=diagnostics)

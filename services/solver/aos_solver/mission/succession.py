@@ -124,11 +124,8 @@ class Succession:
             return None
         book = self._books.newest
         if book is None:
-            raise PlanningError(
-                "there is no mission before this one whose belief it could keep",
-                code="AOS516",
-                hint="Begin with `--belief initial`",
-            )
+            message = "there is no mission before this one whose belief it could keep"
+            raise PlanningError(message, code="AOS516", hint="Begin with `--belief initial`")
         if last is not None:
             return _Kept(await running.engine.export_beliefs(), last.past)
         begun = await self.at_start_of(running, book.number)

@@ -94,11 +94,8 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
         """Raises PlanningError AOS322 unless it was solved for the model with this digest and these
         values."""
         if digest != self.header.model_digest:
-            raise PlanningError(
-                f"the policy was solved for other documents of {self.header.model}",
-                code="AOS322",
-                hint="Solve it again with aos solve",
-            )
+            message = f"the policy was solved for other documents of {self.header.model}"
+            raise PlanningError(message, code="AOS322", hint="Solve it again with aos solve")
         solved = self.header.mission_parameters
         if solved != mission_parameters:
             names = [name for name in mission_parameters if solved.get(name) != mission_parameters[name]]

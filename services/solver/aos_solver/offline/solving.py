@@ -77,11 +77,8 @@ async def solve(
     """
     check_discount(model.name, model.discount)
     if np.abs(model.rewards).max(initial=0.0) > _LARGEST * (1 - model.discount):
-        raise PlanningError(
-            f"returns of {model.name} are too large to be added up",
-            code="AOS320",
-            hint="Divide all rewards by one number",
-        )
+        hint = "Divide all rewards by one number"
+        raise PlanningError(f"returns of {model.name} are too large to be added up", code="AOS320", hint=hint)
     if not model.starts:
         raise PlanningError(f"{model.name} is over at the start")
     executable = await build_solver(cache_dir)
@@ -102,11 +99,9 @@ async def solve(
 def check_discount(name: str, discount: float) -> None:
     """Raises PlanningError AOS320 for a discount with which the model of this name cannot be solved."""
     if not 0 <= discount < 1:
-        raise PlanningError(
-            f"{name} has the discount {discount:g}, and values without an end have no bounds",
-            code="AOS320",
-            hint="Solve it with a discount below 1, for example --discount 0.99",
-        )
+        message = f"{name} has the discount {discount:g}, and values without an end have no bounds"
+        hint = "Solve it with a discount below 1, for example --discount 0.99"
+        raise PlanningError(message, code="AOS320", hint=hint)
 
 
 async def _run(

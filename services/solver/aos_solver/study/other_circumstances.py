@@ -30,10 +30,8 @@ async def decided_otherwise(
 ) -> WhatIf:
     """The decision that would be made at the step at which a replay is; the replay stays there."""
     if not (query.forbid or query.without or query.believe or query.change):
-        raise StudyError(
-            "nothing is supposed",
-            hint="Use --forbid, --without, --believe or --change; `aos why` explains the decision as it was",
-        )
+        hint = "Use --forbid, --without, --believe or --change; `aos why` explains the decision as it was"
+        raise StudyError("nothing is supposed", hint=hint)
     async with _engine(replay, query.change, documents) as (engine, said), put_aside(engine):
         return await _decided(replay, decision, query, engine, said)
 

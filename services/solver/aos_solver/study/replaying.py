@@ -175,10 +175,8 @@ class ReplayedMission:
     async def _engine(self, revision: int, digest: str) -> RunningModel:
         built = await self.built(revision)
         if built.emitted.digest != digest:
-            raise StudyError(
-                f"revision {revision} gives another model here: another version of AOS ran it",
-                hint="Replay it with the version that `run.json` names",
-            )
+            message = f"revision {revision} gives another model here: another version of AOS ran it"
+            raise StudyError(message, hint="Replay it with the version that `run.json` names")
         engine = await Engine.start(
             built,
             seed=self.begun.seed,

@@ -54,15 +54,11 @@ async def believe_all(engine: Engine, texts: Iterable[str], *, cautious: bool = 
                 f"there is no variable {wanted.variable}", code="AOS501", hint=f"Name one of {names}"
             )
         if believed.probability <= 0 < wanted.probability:
-            raise StudyError(
-                f"{named} is excluded: no state that is believed to be possible has it",
-                hint=f"Believed are {_values(believed.summary, wanted.variable)}",
-            )
+            message = f"{named} is excluded: no state that is believed to be possible has it"
+            raise StudyError(message, hint=f"Believed are {_values(believed.summary, wanted.variable)}")
         if believed.probability >= 1 > wanted.probability:
-            raise StudyError(
-                f"anything but {named} is excluded: every state that is believed to be possible has it",
-                hint="Suppose something of a variable that is in doubt",
-            )
+            message = f"anything but {named} is excluded: every state that is believed to be possible has it"
+            raise StudyError(message, hint="Suppose something of a variable that is in doubt")
         said.append(f"{named}: {wanted.probability:g} instead of {believed.probability:.6g}")
     return tuple(said)
 

@@ -189,11 +189,9 @@ class Successor:
     async def _projected(self, running: RunningModel) -> BeliefSummary:
         common = running.engine.layout.common_with(self.model.engine.layout)
         if not common.kept:
-            raise ModelError(
-                f"no variable of the running model is in the new documents, and {self._cannot_replay}",
-                code="AOS112",
-                hint="End the mission and start it with the new documents",
-            )
+            message = f"no variable of the running model is in the new documents, and {self._cannot_replay}"
+            hint = "End the mission and start it with the new documents"
+            raise ModelError(message, code="AOS112", hint=hint)
         return await self.model.engine.project(await running.engine.export_joint(common), common)
 
     def _takeover(

@@ -22,10 +22,8 @@ class PersonAtTerminal:
         try:
             self._listener = socket.create_server(("127.0.0.1", port))
         except OSError as error:
-            raise DeployError(
-                f"port {port} for the person's terminal: {error.strerror}",
-                hint="Give another `port:` in the world file",
-            ) from error
+            message = f"port {port} for the person's terminal: {error.strerror}"
+            raise DeployError(message, hint="Give another `port:` in the world file") from error
         self._listener.settimeout(0)
         self.port: int = self._listener.getsockname()[1]
         self._terminal: socket.socket | None = None
