@@ -1,14 +1,11 @@
-// Policies in belief space that need no search: what they return from a belief, by simulation.
-//
-// Where there are hundreds of actions, a search opens each of them a few times and finds next to nothing from below. A
-// policy that asks what tells most, and acts once it knows enough, is found at once. A policy of this file takes the action
-// with the highest sum of
+// Policies in belief space that need no search: what they return from a belief, by simulation. Where there are hundreds of
+// actions, a search hardly opens them, and a policy that asks what tells most, and acts once it knows enough, is found at once.
+// A policy of this file takes the action with the highest sum of
 //
 //   the reward, a share of what follows if more is known from then on (QMDP: Littman, Cassandra and Kaelbling, 1995), and
 //   a weight times the mutual information between the state and the next observation.
 //
-// Missions are played by each policy from the belief, in turns. The better half goes on, until one is left. So does the policy
-// that decided last.
+// Missions are played by each in turns. The better half goes on, until one is left, and so does the policy that decided last.
 #pragma once
 
 #include <algorithm>

@@ -9,19 +9,8 @@
 #include <string_view>
 #endif
 
-// Which planner decides:
-//   lists (of states), estimated_draws, exact, near_states, belief_tree, options, savings, seek
-// Options:
-//   enough_ways, tests_first, goal_conditions, plain_plans, whole_lists, retries, kept_ways, detours
-// What saves most:
-//   saving_lookahead
-// SARSOP:
-//   endless, certainty_equivalent, repeated_trials, lower_trials, simple_policies
-// POMCP's values of states, and its prior:
-//   listed_values, wide_values, learned_values, prior, prior_draw, asked_leaves, first_state, priced_information, step_table, expected_rewards
-// POMCP's search:
-//   rollout_repeats, rollout_ends, rollout_shares, own_spread, max_backup, turns, certain_actions, sooner, observation_cells,
-//   kept_tree
+// The lines have what tells which planner decides; mechanisms of options; of savings; of SARSOP; of POMCP's values of states
+// and its prior (two lines); and of its search (two lines).
 #define AOS_MECHANISMS(of)                                                                                     \
   of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek) \
   of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) \

@@ -1,21 +1,16 @@
 // Resample-move (Gilks and Berzuini, 2001). Particles that have become few, or that descend from few origins,
 // are copied. Each copy is moved by the Metropolis-Hastings rule, which leaves the belief as it is.
 //
-// A move changes the trace of a particle: all draws from the origin on, as numbers in [0, 1) that are uniform
-// and independent under the documents (primary sample space: Kelemen and others, 2002). A proposal changes
-// some draws of one block, the origin's or a step's. The rest is replayed, and the later steps decide on the
-// proposal. A step that was drawn freely must give what was observed then. A guided step is guided anew from
-// its new state, and its likelihood counts (pseudo-marginal: Andrieu and Roberts, 2009). So variables of two
-// particles are never mixed, and what all histories have in common stays.
+// A proposal changes some draws of one block of a particle's trace, the origin's or a step's: numbers in [0, 1) that are uniform
+// and independent under the documents (primary sample space: Kelemen and others, 2002). The rest is replayed, and the later
+// steps decide. One that was drawn freely must give what was observed then. A guided one is guided anew from its new state, and
+// its likelihood counts (pseudo-marginal: Andrieu and Roberts, 2009).
 //
-// Another kind of proposal makes many draws of the origin anew on which no observation seems to depend
-// (free_draws.hpp). All later steps are replayed with their own draws, guided ones too, which costs one run a
-// step. A guided step keeps its estimated likelihood. It has to draw from the same weights as before, so that
-// other draws would have been guided alike. The parameters of continuous draws are not compared: there the
-// kept likelihood is an approximation.
+// Another kind of proposal makes many draws of the origin anew on which no observation seems to depend (free_draws.hpp). All later
+// steps are replayed with their own draws. A guided one keeps its estimated likelihood and has to draw from the same weights as
+// before. The parameters of continuous draws are not compared: there the kept likelihood is an approximation.
 //
-// The states that a copy has passed are kept (passage.hpp), so that a proposal repeats nothing that it leaves as it is. The
-// limits of `moved` are in counted work: the steps of a proposal that repeats all.
+// The states that a copy has passed are kept (passage.hpp). The limits of `moved` count the steps of a proposal that repeats all.
 #pragma once
 
 #include <algorithm>

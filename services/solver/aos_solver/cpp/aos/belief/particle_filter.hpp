@@ -1,13 +1,10 @@
-// The particle filter of beliefs that cannot be enumerated.
+// The particle filter of beliefs that cannot be enumerated. All limits are numbers of steps, so that a seed gives one belief.
 //
-// Each particle makes trials in proportion to its weight, and at least one. If many steps agree with the
-// observation, or if the last draw has too many outcomes to guide any, a trial draws the whole step (the
-// bootstrap filter: Gordon, Salmond and Smith, 1993).
-// Otherwise a trial is guided towards the observation and weighted (guided_step.hpp). Equal states are
-// merged, and light particles are thinned out (gathering.hpp). Particles are moved (moves.hpp) if too few
-// agree, if they are worth too few samples, or if they descend from too few origins.
-//
-// All limits are numbers of steps, so that the same seed gives the same belief.
+// Each particle makes trials in proportion to its weight, and at least one. If many steps agree with the observation, or if the
+// last draw has too many outcomes to guide any, a trial draws the whole step (the bootstrap filter: Gordon, Salmond and Smith,
+// 1993). Otherwise it is guided towards the observation and weighted (guided_step.hpp). Equal states are merged, and light
+// particles are thinned out (gathering.hpp). Particles are moved (moves.hpp) if too few agree, if they are worth too few samples,
+// or if they descend from too few origins.
 #pragma once
 
 #include <algorithm>

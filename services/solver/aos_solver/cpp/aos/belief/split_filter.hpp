@@ -1,10 +1,7 @@
-// The update of a belief whose steps have too many outcomes to list, by draws that split (split_draws.hpp).
-//
-// The weighted states stay as many as those of an exact belief: paths of heavy states are enumerated, those of light ones are
-// drawn, equal states are merged, and the lightest are thinned out (Fearnhead and Clifford, 2003). Nothing is moved: where an
-// observation leaves too few, particle_filter.hpp takes over.
-//
-// All limits are numbers of draws and paths, so that the same seed gives the same belief.
+// The update of a belief whose steps have too many outcomes to list, by draws that split (split_draws.hpp): paths of heavy states
+// are enumerated, those of light ones are drawn, equal states are merged, and the lightest are thinned out (Fearnhead and
+// Clifford, 2003). Nothing is moved: where an observation leaves too few, particle_filter.hpp takes over. All limits are numbers
+// of draws and paths, so that the same seed gives the same belief.
 #pragma once
 
 #include <algorithm>

@@ -1,18 +1,9 @@
 // What a decision tells of its actions: estimates of the discounted return of the next `horizon` decisions, beginning with
-// the action, with honest standard errors.
+// the action, with honest standard errors (docs/planning.md).
 //
-// A search decides by what it has found so far: a lower bound, or a value that rests on guesses where the search ended.
-// The mission plans anew at each step, and each time it finds more. Three rules turn the one into the other.
-//
-// - Between proven bounds nothing is known: the value is in their middle, and its error is that of an even distribution.
-// - A tree that ends in values of seen states promises too much, and a tree does not know that the mission plans anew.
-//   Missions that are played by these values with next to no planning return too little (group_missions.hpp). Neither is
-//   proven. The value stays the tree's, and its error is half of the distance to the one that is further away.
-//   Values that are learned are no bounds, however long a search ends in them. There the value is what the missions return, as
-//   where missions have found a price of information.
-// - A tree that ends in rollouts guesses too low. At the root, the search has moved the guess by its gain. Searches from
-//   the tree's leaves may move their guesses as far. The value is moved by half of that, with an error of the other half.
-//   The share of the value that lies beyond the leaves is `beyond`.
+// A search decides by a lower bound, or by guesses where it ended, and the mission plans anew at each step, and finds more. Three
+// rules turn the one into the other: `set_between` for proven bounds, `values_of_promise` for trees that end in values of seen
+// states, which promise too much, and `values_of_tree` for trees that end in rollouts, which guess too low.
 #pragma once
 
 #include <algorithm>

@@ -58,13 +58,10 @@ struct ActionEstimate {
   double at_most = std::numeric_limits<double>::infinity();
 };
 
-// The action with the highest value of those that count. Of actions that are as good as this one, it is the
-// one with the highest immediate reward. The value of waiting is that of the best of many later choices, and
-// so it tends to be estimated too high. Without this rule, what is as good later would be put off for ever.
-//
-// An action is as good if its value is less by a small difference, in two senses. The difference is at most
-// sqrt(2 ln horizon) errors, by which the best of `horizon` values of the same error exceeds their mean. And
-// the difference is at most what a delay by one of `horizon` steps can be worth.
+// The action with the highest value of those that count, or, of actions that are as good, the one with the highest immediate
+// reward: what is as good later would else be put off for ever, since the best of many later choices is estimated too high. As
+// good is a value that is less by at most sqrt(2 ln horizon) errors, by which the best of `horizon` values of the same error
+// exceeds their mean, and by at most what a delay by one of `horizon` steps can be worth.
 template <class Counts>
 int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, Counts&& counts) {
   const ActionEstimate* best = nullptr;

@@ -1,15 +1,10 @@
-// Search in a tree of beliefs, for models whose states can be listed and whose observations are too many: PFT-DPW
-// (Sunberg and Kochenderfer, 2018).
+// Search in a tree of beliefs (PFT-DPW: Sunberg and Kochenderfer, 2018), for models whose states can be listed and whose
+// observations are too many for a tree of histories. The probabilities of observations are looked up (sensing_tables.hpp).
 //
-// Where nearly each observation of a search is new, a tree of histories tells nothing of what an observation is worth.
-// Here a node is a belief of some listed states, and the probabilities of observations are looked up
-// (sensing_tables.hpp). Departures from the paper: an action's value is that of the beliefs after it on average, and a
-// belief's value that of its best action. A new belief is worth what it is if all is seen after one action (QMDP), so
-// actions that were never tried have the highest value that they can have.
-//
-// That promises too much of an action that costs little and tells nothing: all would be seen after it, too, and after the next
-// one like it. What a belief is worth less than its states if they are seen is a concave function of the belief, and never
-// below 0. So of a belief that has a share of another one in it, at least this share of what that one loses is lost.
+// Departures from the paper: an action's value is that of the beliefs after it on average, a belief's value that of its best
+// action, and a new belief is worth what it is if all is seen after one action (QMDP). That promises too much of an action that
+// tells nothing. What a belief is worth less than its states if they are seen is a concave function of it, and never below 0. So
+// of a belief that has a share of another one in it, at least this share of what that one loses is lost.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,5 @@
-// The best action of a history, whose value is the value of the history.
-//
-// POMCP's paper backs up the mean of all simulations, which exploring ones pull down. Here a history has the
-// value of its best action (Coulom, 2006). Only actions with enough visits for a reliable value count. The
-// decision at the root is made in the same way.
+// The best action of a history, whose value is the value of the history (Coulom, 2006): the mean of all simulations is pulled
+// down by those that explore. Only actions with enough visits for a reliable value count, in the decision at the root, too.
 #pragma once
 
 #include <cstdint>

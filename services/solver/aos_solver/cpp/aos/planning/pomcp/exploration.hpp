@@ -1,9 +1,5 @@
-// How much a search explores: the bonus of an action in its upper confidence bound.
-//
-// POMCP's paper adds c * sqrt(log(N) / n), with one constant c for all actions. A constant that is too small
-// is the commonest way for POMCP to fail, and immediate rewards say little about the right one. So c is the
-// spread of the action's own returns here. The bonus is polynomial and not logarithmic, since values drift
-// while the tree below them grows (Shah, Xie and Xu, 2020).
+// How much a search explores: the bonus of an action in its upper confidence bound. It follows the spread of the action's own
+// returns, and is polynomial and not logarithmic, since values drift while the tree below them grows (Shah, Xie and Xu, 2020).
 #pragma once
 
 #include <algorithm>

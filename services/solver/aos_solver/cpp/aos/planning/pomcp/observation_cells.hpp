@@ -1,10 +1,7 @@
-// Observed numbers in a search tree. No two simulations observe the same numbers, so a tree that branched on each of
-// them would look ahead by one decision only. Here the numbers after an action and a response fall into cells. Each
-// cell lies around one drawn observation, and a new observation belongs to the nearest cell, in units of the
-// distributions' spreads. The number of cells grows with the visits (progressive widening: Couetoux and others, 2011).
-//
-// Each state that reaches a cell could have given an observation in it. So the history of a cell has a proper belief:
-// that after the cell in place of the numbers. What a policy over cells earns can be earned by numbers, too.
+// Observed numbers in a search tree, where no two simulations observe the same ones. The numbers after an action and a response
+// fall into cells around drawn observations, into the nearest one in units of the distributions' spreads. The number of cells
+// grows with the visits (progressive widening: Couetoux and others, 2011). The history of a cell has a proper belief, that after
+// the cell in place of the numbers: what a policy over cells earns can be earned by numbers, too.
 #pragma once
 
 #include <cmath>

@@ -1,9 +1,6 @@
-// What observations leave open where the state is known, and what they tell where it is not.
-//
-// A tree that ends in values of seen states does not pay for what is not seen there. So an action is worth more by what its
-// observation tells of the state (mutual information), at a price for each nat: then a leaf counts as if it paid the price
-// for the entropy of its belief, but for a constant. What is observed is counted in the tree, and what of it is noise is
-// found from all outcomes of the steps.
+// What observations leave open where the state is known, and what they tell where it is not. An action is worth more by the
+// mutual information of the state and its observation, at a price for each nat: then a leaf counts as if it paid the price for
+// the entropy of its belief, but for a constant. What is observed is counted in the tree; noise is found from all outcomes.
 #pragma once
 
 #include <algorithm>

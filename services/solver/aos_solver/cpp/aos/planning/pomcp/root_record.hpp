@@ -1,6 +1,5 @@
-// What one decision's simulations found at the root besides values: immediate rewards, and the range of returns.
-//
-// POMCP's paper uses up the budget. Here a budget in time ends once the choice cannot change.
+// What one decision's simulations found at the root besides values: immediate rewards, and the range of returns, by which a
+// budget in time ends once the choice cannot change.
 #pragma once
 
 #include <algorithm>

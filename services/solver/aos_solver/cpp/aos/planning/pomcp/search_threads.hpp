@@ -1,7 +1,5 @@
-// One search by several threads. Each thread has a tree of its own, and the values of the trees are merged by visits.
-//
-// POMCP's paper has one tree. Here each thread has a fixed share of a budget in simulations, so that a seed
-// gives the same result however the threads are scheduled.
+// One search by several threads. Each has a tree of its own and a fixed share of a budget in simulations, so that a seed gives
+// the same result however the threads are scheduled. The values of the trees are merged by visits.
 #pragma once
 
 #include <chrono>

@@ -51,7 +51,7 @@ class SavingsPlanner final : public Planner<Model> {
     const std::uint64_t simulations = policy_.search(belief, horizon);
     // Played once in a mission: the values know what a later belief is worth less.
     if (!missions_.is_known() && missions_.is_due(budget, horizon)) {
-      missions_.play(belief, policy_.worths(), nullptr, horizon, choice(policy_.estimates(), horizon, barred), Sampler{Sampler{random}.bits()});
+      missions_.play(belief, policy_.worths(), nullptr, horizon, this->choice(policy_.estimates(), horizon, barred), Sampler{Sampler{random}.bits()});
     }
     return simulations;
   }
@@ -69,14 +69,6 @@ class SavingsPlanner final : public Planner<Model> {
       estimate.standard_error = std::hypot(running * missions_.loss_error(), open);
     }
     return estimates;
-  }
-  int choice(const Estimates& estimates, int /*horizon*/, const BarredActions& barred) const override {
-    int best = -1;
-    for (std::size_t a = 0; a < estimates.size(); ++a) {
-      if (estimates[a].n == 0 || barred.contains(a)) continue;
-      if (best < 0 || estimates[a].q > estimates[static_cast<std::size_t>(best)].q) best = static_cast<int>(a);
-    }
-    return std::max(best, 0);
   }
   void start_over() override { policy_.start_over(); }
 

@@ -99,19 +99,10 @@ class RunningDown {
 
   static std::vector<PlacedLeaf> leaves_of(const State& state) {
     std::vector<PlacedLeaf> leaves;
-    NamedLeaves named{[&](const std::string&, const Leaf& leaf) {
-      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
-      if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(Model::state_bytes()) && !is_text(leaf)) leaves.emplace_back(offset, leaf);
-    }};
-    Model::visit_values(state, named);
+    for_each_number<Model>(state, [&](const std::string&, const Leaf& leaf, std::size_t offset) { leaves.emplace_back(offset, leaf); });
     return leaves;
   }
-  static double number(const PlacedLeaf& leaf, const State& state) {
-    const std::byte* const place = Model::bytes_of(state) + leaf.first;
-    const std::size_t size = leaf.second.size;
-    if (leaf.second.kind == Leaf::Kind::real) return size == sizeof(float) ? static_cast<double>(stored_at<float>(place)) : stored_at<double>(place);
-    return size == sizeof(std::int32_t) ? static_cast<double>(stored_at<std::int32_t>(place)) : static_cast<double>(std::to_integer<int>(*place));
-  }
+  static double number(const PlacedLeaf& leaf, const State& state) { return number_at(leaf.second, Model::bytes_of(state) + leaf.first); }
 
   LeafCells<Model> cells_;
   std::vector<std::uint64_t> cell_;  // of the state that is looked at

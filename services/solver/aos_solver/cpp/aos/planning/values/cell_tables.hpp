@@ -23,13 +23,7 @@ class CellVariable {
  public:
   CellVariable(const Leaf& leaf, std::size_t offset) : leaf_(leaf), offset_(offset) {}
 
-  double number(const void* state) const {
-    Leaf leaf = leaf_;
-    leaf.place = static_cast<const std::byte*>(state) + offset_;
-    double number = 0;
-    with_number(leaf, [&](auto value) { number = static_cast<double>(value); });
-    return number;
-  }
+  double number(const void* state) const { return number_at(leaf_, static_cast<const std::byte*>(state) + offset_); }
 
   // Makes the cells from the numbers of the examples. Returns whether these differ.
   bool divide(std::vector<double>& numbers) {

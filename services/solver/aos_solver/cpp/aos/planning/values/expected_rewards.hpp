@@ -1,9 +1,6 @@
-// The expected reward of a step, where its outcomes are few.
-//
-// A search that draws rewards learns of a loss of 100,000 with a probability of 1e-4 from one simulation in 10,000,
-// and prefers whatever action has not met it yet. So the rewards of a simulation's first steps count by their
-// expectation, and what is left to chance is the next state (a Rao-Blackwell estimate). The second step counts as the
-// first one does, since the search keeps what it found there for the next decision.
+// The expected reward of a step, where its outcomes are few. A search that draws rewards learns of a loss of 100,000 with a
+// probability of 1e-4 from one simulation in 10,000. So the rewards of a simulation's first steps count by their expectation, and
+// what is left to chance is the next state (a Rao-Blackwell estimate). The second step does, too: the search keeps what is below.
 #pragma once
 
 #include <optional>

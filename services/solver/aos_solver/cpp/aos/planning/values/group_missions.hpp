@@ -1,15 +1,9 @@
-// Missions that are played to find what planning by values of seen states promises too much.
+// Missions that are played to find what planning by values of seen states promises too much. No search draws their numbers.
 //
-// A group of states of the belief follows one policy: the action that is best on average over the group (QMDP: Littman,
-// Cassandra and Kaelbling, 1995), with the whole horizon to go at each decision. A group splits by what is observed. States
-// with rare observations stay together, since a policy that followed so few states would know what no robot can know.
-// Half of the states choose the actions, and the others tell what is returned: what is best for a few drawn states is too
-// good for these.
-// The robot of a mission can do all that, and it takes next to no time. So a mission that plans can be expected to
-// return as much, or more.
-//
-// A group is played at the beginning of a mission. The work for further ones is saved up, a small share of each decision.
-// No search draws any of the numbers that are drawn here.
+// A group of states of the belief follows the action that is best on average over the group (QMDP: Littman, Cassandra and
+// Kaelbling, 1995), and splits by what is observed. States with rare observations stay together, since a policy that followed so
+// few states would know what no robot can know. Half of the states choose the actions, and the others tell what is returned: what
+// is best for a few drawn states is too good for these. A mission that plans can be expected to return as much, or more.
 #pragma once
 
 #include <algorithm>

@@ -91,13 +91,10 @@ class LeafCells {
   void find_leaves(const State& state) {
     leaves_.clear();
     std::map<std::string, std::size_t> lists;
-    NamedLeaves named{[&](const std::string& name, const Leaf& leaf) {
-      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
-      if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
+    for_each_number<Model>(state, [&](const std::string& name, const Leaf& leaf, std::size_t offset) {
       const std::size_t list = lists.emplace(switches::whole_lists ? without_indices(name) : name, leaves_.size()).first->second;
-      leaves_.push_back({static_cast<std::size_t>(offset), leaf.size, leaf.kind == Leaf::Kind::real, list});
-    }};
-    Model::visit_values(state, named);
+      leaves_.push_back({offset, leaf.size, leaf.kind == Leaf::Kind::real, list});
+    });
   }
   static std::string without_indices(std::string name) {
     for (std::size_t start; (start = name.find('[')) != std::string::npos;) name.erase(start, name.find(']', start) - start + 1);

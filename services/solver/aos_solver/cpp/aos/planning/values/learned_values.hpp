@@ -1,17 +1,12 @@
 // Estimates of the fully observable (MDP) values of states, for models whose states are too many to list. They are
 // tables over few variables (cell_tables.hpp), learned from simulations by fitted value iteration. They are no bounds.
 //
-// Examples are states of walks that begin in the belief. The first walks are random; half of the later ones
-// follow the values. A walk puts off its end where another action leads on: a danger, or an exit that is open
-// everywhere, would keep all examples near the start. Each action is simulated once from each example, all of them
-// under the same luck. A sweep values each example by its best action. One half of the examples chooses that action
-// and the other one values it, since the best of many estimates is too high.
+// Examples are states of walks from the belief, which put off their end where another action leads on. Each action is simulated
+// once from each example, all under the same luck. One half of the examples chooses the best action and the other one values it,
+// since the best of many estimates is too high.
 //
-// The values are tested before they are used, by a policy that observes the state and follows the values. It has to
-// earn at least half of what they promise beyond the return of random play: values fail by counting the same income
-// twice, and then nothing like it is earned. Values that fail are learned once more from more examples. The policy also
-// has to earn more than one that follows a few rollouts after each action (Bertsekas and Castanon, 1999): otherwise a
-// search is better off with rollouts.
+// They are used if a policy that follows them earns at least half of what they promise beyond random play, since values fail by
+// counting the same income twice, and more than one that follows a few rollouts (Bertsekas and Castanon, 1999).
 #pragma once
 
 #include <algorithm>

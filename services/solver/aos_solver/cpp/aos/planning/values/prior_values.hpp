@@ -1,9 +1,6 @@
-// Draws the values of a search towards a prior, unless the search shows that the prior is wrong: empirical
-// Bayes (Efron and Morris, 1973).
-//
-// With many actions and few simulations, the best of many noisy values is rarely the best action. The prior ranks
-// actions by values of states and has no noise. The error of the prior is estimated from the distances between values
-// and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
+// Draws the values of a search towards a prior, unless the search shows that the prior is wrong: empirical Bayes (Efron and
+// Morris, 1973). The prior ranks actions by values of states and has no noise. Its error is estimated from the distances between
+// values and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
 #pragma once
 
 #include <algorithm>

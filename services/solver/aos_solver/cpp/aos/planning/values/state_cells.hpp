@@ -21,16 +21,12 @@ class StateCells {
   bool find(const std::vector<State>& examples) {
     variables_.clear();
     std::vector<double> numbers;
-    const State& any = examples.front();
-    NamedLeaves leaves{[&](const std::string&, const Leaf& leaf) {
-      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(any);
-      if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
-      CellVariable variable{leaf, static_cast<std::size_t>(offset)};
+    for_each_number<Model>(examples.front(), [&](const std::string&, const Leaf& leaf, std::size_t offset) {
+      CellVariable variable{leaf, offset};
       numbers.clear();
       for (const State& example : examples) numbers.push_back(variable.number(Model::bytes_of(example)));
       if (variable.divide(numbers)) variables_.push_back(variable);
-    }};
-    Model::visit_values(any, leaves);
+    });
     return !variables_.empty();
   }
   void forget() { variables_.clear(); }

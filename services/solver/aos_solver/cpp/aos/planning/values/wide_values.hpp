@@ -1,10 +1,6 @@
-// The fully observable (MDP) values of models with up to eight million states. POMCP counts from them.
-//
-// The state space holds observations, too, and is full with 400,000 states. Here a state has no more than its
-// distinct outcomes (compact_model.hpp). Draws that shape only what is observed are skipped.
-//
-// Listing takes some ten seconds, once. Random walks tell beforehand whether it is worth beginning, by how many values
-// each variable takes.
+// The fully observable (MDP) values of models with up to eight million states, from which POMCP counts. A state has no more than
+// its distinct outcomes (compact_model.hpp), and draws that shape only what is observed are skipped. Random walks tell beforehand
+// whether the list, which takes some ten seconds, is worth beginning.
 #pragma once
 
 #include <algorithm>
