@@ -36,7 +36,7 @@ from aos_protocol.messages import (
 from aos_runtime.bus.bus import Bus
 from aos_runtime.client import AosClient
 from aos_runtime.disk.journal import Journal
-from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.processes.settings import ServiceSettings
 from aos_solver.mission.records.history import history_page
 
 ROBOT, MISSION = "tiger", "20260101T000000Z-tiger"

@@ -8,7 +8,8 @@ from pathlib import Path
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError, SkillError, StorageError
 from aos_runtime.processes.children import PIPE, Child, guarded
-from aos_runtime.processes.lifecycle import Service, ServiceSettings, run_service
+from aos_runtime.processes.lifecycle import Service, run_service
+from aos_runtime.processes.settings import ServiceSettings
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):

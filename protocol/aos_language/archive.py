@@ -97,7 +97,8 @@ def read_archive(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
                 continue
             if not is_document_name(name.name):
                 hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
-                remarks.append(_remark("this is not an AOS document", entry.name, hint))
+                message, span = "this is not an AOS document", Span(entry.name)
+                remarks.append(Diagnostic(Severity.REMARK, "AOS107", message, span, hint))
                 continue
             data = content.read(MAX_BUNDLE_BYTES + 1)
             if sum(map(len, files.values())) + len(data) > MAX_BUNDLE_BYTES:
@@ -212,7 +213,3 @@ def _in_one_folder(files: dict[PurePosixPath, bytes], path: Path) -> dict[str, b
 
 def _error(message: str, archive: str, hint: str = "") -> Diagnostic:
     return Diagnostic(Severity.ERROR, "AOS120", message, Span(archive), hint)
-
-
-def _remark(message: str, name: str, hint: str) -> Diagnostic:
-    return Diagnostic(Severity.REMARK, "AOS107", message, Span(name), hint)

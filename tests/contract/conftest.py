@@ -18,8 +18,8 @@ from ros1_core import roscore, skip_without_ros1
 from aos_language.load import read_bundle_files
 from aos_protocol.keys import Keys
 from aos_runtime.bus.bus import Bus
-from aos_runtime.processes.lifecycle import ServiceSettings
 from aos_runtime.processes.parent import PARENT_VARIABLE
+from aos_runtime.processes.settings import ServiceSettings
 
 
 def free_endpoint() -> str:

@@ -15,6 +15,7 @@ from aos_deploy.runs.end import account_of, beginning_of
 from aos_deploy.runs.living import living_runs, runs_here
 from aos_deploy.runs.pruning import Pruned, pruned
 from aos_deploy.runs.record import RunRecord
+from aos_deploy.runs.summary import Summary
 from aos_protocol.errors import DeployError, StorageError
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 
@@ -118,17 +119,7 @@ def _entry(run: RunDirectory) -> Entry:
     summary = run.read_summary()
     missions = tuple(_mission(run, number, record) for number in mission_folders(run.path))
     ending = summary.ending if summary else _ending_without_summary(run, missions)
-    return Entry(
-        directory=str(from_here(run.path)),
-        robot=record.robot,
-        started=record.started,
-        ending=ending,
-        steps=summary.steps if summary else None,
-        duration_s=summary.duration_s if summary else None,
-        endpoint=record.endpoint,
-        missions=missions,
-        mission_parameters=_mission_parameters(run.path),
-    )
+    return _entry_of(run.path, record, summary, record.started, ending, missions)
 
 
 def _ending_without_summary(run: RunDirectory, missions: tuple[Entry, ...]) -> str:
@@ -142,19 +133,26 @@ def _mission(run: RunDirectory, number: int, record: RunRecord) -> Entry:
     folder, summary = mission_folder(run.path, number), run.read_summary(number)
     otherwise = "running" if run.is_running else "killed"
     ending = summary.ending if summary else _ending_in_journal(folder, otherwise)
+    return _entry_of(folder, record, summary, summary.started if summary else "", ending)
+
+
+def _entry_of(
+    folder: Path,
+    record: RunRecord,
+    summary: Summary | None,
+    started: str,
+    ending: str,
+    missions: tuple[Entry, ...] = (),
+) -> Entry:
+    begun = beginning_of(folder)  # Also of a mission that runs or was killed.
     return Entry(
         directory=str(from_here(folder)),
         robot=record.robot,
-        started=summary.started if summary else "",
+        started=started,
         ending=ending,
         steps=summary.steps if summary else None,
         duration_s=summary.duration_s if summary else None,
         endpoint=record.endpoint,
-        mission_parameters=_mission_parameters(folder),
+        missions=missions,
+        mission_parameters=begun.mission_parameters if begun is not None else {},
     )
-
-
-def _mission_parameters(folder: Path) -> dict[str, str]:
-    """The values with which a mission began, also of one that runs or was killed."""
-    begun = beginning_of(folder)
-    return begun.mission_parameters if begun is not None else {}

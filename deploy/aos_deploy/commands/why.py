@@ -17,6 +17,7 @@ from aos_deploy.views.reasons import what_if_lines, why_lines
 from aos_protocol.access import WATCHER
 from aos_protocol.messages import WhatIf, WhatIfQuery, Why, WhyQuery
 from aos_runtime.client import AosClient
+from aos_solver.study.study import Study
 
 T = TypeVar("T", Why, WhatIf)
 
@@ -43,14 +44,12 @@ def why(
     through its solver, which has an engine of its own for this; one that is
     over is read from its directory.
     """
-
-    async def ask(aos: AosClient) -> Why:
-        return await aos.why(step, instead=instead, mission=mission)
-
-    async def look(studied: StudiedRun) -> Why:
-        return await studied.study(lambda study: study.why(WhyQuery(step, instead)))
-
-    found = _found(system, mission, ask, look)
+    found = _found(
+        system,
+        mission,
+        lambda aos: aos.why(step, instead=instead, mission=mission),
+        lambda study: study.why(WhyQuery(step, instead)),
+    )
     show(found, as_json, lambda why: typer.echo("\n".join(why_lines(why))))
 
 
@@ -86,14 +85,9 @@ def whatif(
     query = WhatIfQuery(
         step, tuple(forbid or ()), tuple(without or ()), tuple(believe or ()), tuple(change or ())
     )
-
-    async def ask(aos: AosClient) -> WhatIf:
-        return await aos.what_if(query, mission=mission)
-
-    async def look(studied: StudiedRun) -> WhatIf:
-        return await studied.study(lambda study: study.what_if(query))
-
-    found = _found(system, mission, ask, look)
+    found = _found(
+        system, mission, lambda aos: aos.what_if(query, mission=mission), lambda study: study.what_if(query)
+    )
     show(found, as_json, lambda what_if: typer.echo("\n".join(what_if_lines(what_if))))
 
 
@@ -101,17 +95,13 @@ def _found(
     system: System,
     mission: int | None,
     ask: Callable[[AosClient], Awaitable[T]],
-    look: Callable[[StudiedRun], Awaitable[T]],
+    study: Callable[[Study], Awaitable[T]],
 ) -> T:
     """The answer of the system that runs, or else from the directory of the run."""
     with waiting("looking into the decision", first_s=5.0):
         if not system.is_at_endpoint:
             directory = chosen_run(system.run, system.runs)
             if not directory.is_running:
-
-                async def looked() -> T:
-                    return await look(StudiedRun.open(directory.path, mission))
-
-                return asyncio.run(looked())
+                return asyncio.run(StudiedRun.open(directory.path, mission).study(study))
             system = System(run=directory.path)
         return system.do(ask, user=WATCHER)

@@ -1,6 +1,7 @@
 """Paths that files name: what stands there, also of names that no file system takes and links in a circle."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 _LONGEST = 200
@@ -8,24 +9,22 @@ _LONGEST = 200
 
 def is_there(path: Path) -> bool:
     """Returns whether there is anything; False where there cannot be."""
-    try:
-        return path.exists()
-    except OSError:
-        return False
+    return _holds(path.exists)
 
 
 def is_file(path: Path) -> bool:
     """Returns whether there is a file; False where there cannot be one."""
-    try:
-        return path.is_file()
-    except OSError:
-        return False
+    return _holds(path.is_file)
 
 
 def is_folder(path: Path) -> bool:
     """Returns whether there is a folder; False where there cannot be one."""
+    return _holds(path.is_dir)
+
+
+def _holds(of_path: Callable[[], bool]) -> bool:
     try:
-        return path.is_dir()
+        return of_path()
     except OSError:
         return False
 

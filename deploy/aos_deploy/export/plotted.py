@@ -83,9 +83,5 @@ def _finite(value: dict[str, Any]) -> dict[str, Any]:
     return {
         key: _finite(item) if isinstance(item, dict) else item
         for key, item in value.items()
-        if _is_finite(item)
+        if not isinstance(item, float) or math.isfinite(item)
     }
-
-
-def _is_finite(value: Any) -> bool:
-    return not isinstance(value, float) or math.isfinite(value)

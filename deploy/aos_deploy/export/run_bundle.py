@@ -92,7 +92,7 @@ def _unpack(path: Path, folder: Path) -> None:
 
 
 def _unpack_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, staging: Path, path: Path) -> None:
-    parts = _parts(entry.filename)
+    parts = PurePosixPath(entry.filename).parts
     kind = stat.S_IFMT(entry.external_attr >> 16)
     is_plain = kind in (0, stat.S_IFREG, stat.S_IFDIR)
     if (
@@ -150,10 +150,6 @@ def _database(path: Path) -> bytes:
             # A damaged one is sent as it is: whoever gets it will want to see that.
             shutil.copy(path, copy)
         return copy.read_bytes()
-
-
-def _parts(name: str) -> tuple[str, ...]:
-    return PurePosixPath(name).parts
 
 
 def _no_bundle(path: Path, why: str) -> DeployError:

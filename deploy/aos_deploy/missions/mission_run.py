@@ -39,7 +39,8 @@ from aos_runtime.clock import Clock
 from aos_runtime.disk.mission_folders import JOURNAL
 from aos_runtime.parties.asking import ask_until_answered
 from aos_runtime.parties.steering import start_mission
-from aos_runtime.processes.lifecycle import ServiceSettings, root_cause
+from aos_runtime.processes.lifecycle import root_cause
+from aos_runtime.processes.settings import ServiceSettings
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 
 _END_NOTICE_S = 5.0

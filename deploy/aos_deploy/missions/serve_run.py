@@ -17,7 +17,8 @@ from aos_deploy.runs.living import noted
 from aos_deploy.runs.record import record_of
 from aos_protocol.errors import AosError
 from aos_runtime.clock import Clock
-from aos_runtime.processes.lifecycle import ServiceSettings, root_cause
+from aos_runtime.processes.lifecycle import root_cause
+from aos_runtime.processes.settings import ServiceSettings
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 from aos_skills.ros.connect import DEFAULT_ROUTER
 

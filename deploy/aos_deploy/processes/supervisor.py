@@ -47,7 +47,8 @@ from aos_runtime.bus.bus import Access, Bus
 from aos_runtime.bus.subscription import merged
 from aos_runtime.clock import Clock
 from aos_runtime.failpoints import reach
-from aos_runtime.processes.lifecycle import ROUTER_S, ServiceSettings
+from aos_runtime.processes.lifecycle import ROUTER_S
+from aos_runtime.processes.settings import ServiceSettings
 
 ROUTER = Program(name="router", module=ROUTER_MODULE, start_s=ROUTER_S, is_restarted=True)
 

@@ -49,7 +49,8 @@ def pruned(folder: Path, keep: int) -> Pruned:
         run = RunDirectory(path)
         if run.hold():
             try:
-                removed.append(Removed(str(path), _size_bytes(path)))
+                size_bytes = sum(inside.lstat().st_blocks * 512 for inside in path.rglob("*"))
+                removed.append(Removed(str(path), size_bytes))
                 shutil.rmtree(path)
             except OSError as error:
                 raise StorageError(f"{path} cannot be removed: {error.strerror}") from error
@@ -65,7 +66,3 @@ def _runs_in(folder: Path) -> list[Path]:
     """The directories of runs, also of those that did not come as far as their record."""
     found = (path for path in folder.resolve().iterdir() if _NAME.fullmatch(path.name))
     return [path for path in found if not path.is_symlink() and (path / "logs").is_dir()]
-
-
-def _size_bytes(folder: Path) -> int:
-    return sum(path.lstat().st_blocks * 512 for path in folder.rglob("*"))

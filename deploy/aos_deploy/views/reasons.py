@@ -1,6 +1,6 @@
 """A decision explained for people, in eight lines at most."""
 
-from aos_protocol.messages import Consequence, Flip, ValueTerm, WhatIf, Why
+from aos_protocol.messages import Consequence, Flip, WhatIf, Why
 
 _SHOWN_TERMS = 4
 _LEAST_TERM = 5e-4
@@ -72,17 +72,13 @@ def _consequence(each: Consequence) -> str:
 def _terms(why: Why) -> list[str]:
     """The lines of documents that the margin comes from, and what of it is not told apart."""
     telling = [term for term in why.terms if abs(term.value - term.other) > _LEAST_TERM]
-    shown = [_term(term) for term in telling[:_SHOWN_TERMS]]
+    shown = [f"{term.value - term.other:+.4g} from {term.place}" for term in telling[:_SHOWN_TERMS]]
     left = sum(term.value - term.other for term in telling[_SHOWN_TERMS:])
     if telling[_SHOWN_TERMS:]:
         shown.append(f"{left:+.4g} from {len(telling) - _SHOWN_TERMS} other lines")
     if not why.is_exact and why.terms:
         shown.append(f"{why.rest - why.other_rest:+.4g} from later steps")
     return [f"  the margin is {', '.join(shown)}"] if shown else []
-
-
-def _term(term: ValueTerm) -> str:
-    return f"{term.value - term.other:+.4g} from {term.place}"
 
 
 def _flips(why: Why) -> str:

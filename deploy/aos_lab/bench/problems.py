@@ -17,10 +17,6 @@ class Problem(msgspec.Struct, frozen=True):
     steps: int = 90
 
 
-def _own_bundle(folder: Path) -> Problem:
-    return Problem(folder.resolve().name, folder, runs=50)
-
-
 def _ours(name: str, runs: int = 0, steps: int = 90) -> Problem:
     return Problem(name, shipped(f"deploy/bundles/bench/{name}"), runs, steps)
 
@@ -58,7 +54,7 @@ def problems_named(names: list[str]) -> list[Problem]:
     """
     ours = [_with_documents(problem) for name, problem in _PROBLEMS.items() if not names or name in names]
     bundles = [Path(name) for name in names if name not in _PROBLEMS]
-    return [*ours, *(_own_bundle(bundle) for bundle in bundles)]
+    return [*ours, *(Problem(bundle.resolve().name, bundle, runs=50) for bundle in bundles)]
 
 
 def _with_documents(problem: Problem) -> Problem:

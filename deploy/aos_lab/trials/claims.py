@@ -123,7 +123,7 @@ def asking_the_world(claim: Claim, by: str, truth: str) -> Claim:
 
 def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
     """The verdict on a claim; it is not seen where no mission is one that it is about, or where one broke."""
-    about = [trial for trial in trials if trial.fault or _is_about(claim, trial)]
+    about = [trial for trial in trials if trial.fault or claim.when is None or _all_hold(claim.when, trial)]
     failed = [trial.seed for trial in about if trial.fault or not _all_hold(claim, trial)]
     wanted = claim.share if claim.share is not None else _MODEL_SHARE if by == "model" else _SYSTEM_SHARE
     share = interval_of_share(len(about) - len(failed), len(about))
@@ -151,10 +151,6 @@ def _one_matches(pattern: str, step: str) -> bool:
     return (is_skill or fnmatchcase(action, wanted_action)) and (
         not has_response or fnmatchcase(response, wanted)
     )
-
-
-def _is_about(claim: Claim, trial: Trial) -> bool:
-    return claim.when is None or _all_hold(claim.when, trial)
 
 
 def _all_hold(said: When, trial: Trial) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 import msgspec
 
 from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_declarations, read_cpp_expression
-from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet, TemporaryVariable
+from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet
 
 
 class Role(msgspec.Struct, frozen=True):
@@ -142,15 +142,11 @@ def assignment_blocks(
     visible = dict(constants)
     for assignment in assignments:
         if assignment.temporary is not None:
-            visible[assignment.temporary.name] = _temporary_type(assignment.temporary)
+            visible[assignment.temporary.name] = assignment.temporary.enum_name or assignment.temporary.type
         for loops in (assignment.over_previous, assignment.over_next):
             yield from _loop_blocks(role, loops, visible, constants)
         if assignment.code is not None:
             yield Block(role, assignment.code, names=dict(visible), constants=constants)
-
-
-def _temporary_type(temporary: TemporaryVariable) -> str:
-    return temporary.enum_name or temporary.type
 
 
 def _loop_blocks(

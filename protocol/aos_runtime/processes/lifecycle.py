@@ -34,18 +34,6 @@ from aos_runtime.older_python import BaseExceptionGroup
 from aos_runtime.processes.parent import die_with_parent
 from aos_runtime.processes.settings import ServiceSettings, fault_path
 
-__all__ = [
-    "ROUTER_S",
-    "STORAGE_STATUS",
-    "Service",
-    "ServiceSettings",
-    "root_cause",
-    "run_process",
-    "run_service",
-    "serve_on_bus",
-]
-
-
 ROUTER_S = 10.0
 """The router may take this time to listen. Services start at the same time, and wait for it as long."""
 

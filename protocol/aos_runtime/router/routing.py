@@ -15,7 +15,7 @@ import zenoh
 from aos_protocol.access import Party
 from aos_protocol.errors import BusError
 from aos_runtime.bus.config import router_config
-from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.processes.settings import ServiceSettings
 from aos_runtime.router.access import access_control
 from aos_runtime.router.log import refusals_logged
 

@@ -1,6 +1,6 @@
 """The settings that the registry service is started with."""
 
-from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.processes.settings import ServiceSettings
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):

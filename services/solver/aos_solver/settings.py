@@ -5,7 +5,7 @@ from typing import Literal
 import msgspec
 
 from aos_protocol.documents import Constraint, MissionValue
-from aos_runtime.processes.lifecycle import ServiceSettings
+from aos_runtime.processes.settings import ServiceSettings
 from aos_solver.child.questions.missions import DEFAULT_PLANNER, Planner
 from aos_solver.mission.rules.failures import SkillRule
 

@@ -15,7 +15,7 @@ from aos_middleware.workers.picture_worker import FILE_NAME, MOST_BYTES, Drawn, 
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
-from aos_protocol.messages import BeliefSummary, Marginal
+from aos_protocol.messages import BeliefSummary
 from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 
 __all__ = ["Drawn", "draw", "likeliest_state"]
@@ -63,16 +63,12 @@ def likeliest_state(belief: BeliefSummary) -> dict[str, Any]:
     Of a number that has quantiles it is the median.
     """
     return {
-        each.variable: _median(each)
+        each.variable: each.quantiles[len(each.quantiles) // 2]
         if each.quantiles
         else _plain(max(each.values, key=each.values.__getitem__))
         for each in belief.marginals
         if each.values
     }
-
-
-def _median(marginal: Marginal) -> float:
-    return marginal.quantiles[len(marginal.quantiles) // 2]
 
 
 def _plain(text: str) -> Any:

@@ -16,7 +16,8 @@ import msgspec
 
 from aos_protocol.errors import AosError
 from aos_protocol.messages import ActivationId, Cancel, Cancelled, SkillCall, SkillResult, TopicMessage
-from aos_runtime.processes.lifecycle import Service, ServiceSettings, run_service
+from aos_runtime.processes.lifecycle import Service, run_service
+from aos_runtime.processes.settings import ServiceSettings
 from aos_skills.ros.connect import connect
 from aos_skills.ros.node import Fields, RosNode
 
