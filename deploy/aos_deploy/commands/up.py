@@ -117,8 +117,7 @@ def up(
     check_sandbox(deployment)
     check_needed_here(deployment)
     is_terminal = sys.stdout is not None and sys.stdout.isatty()  # None where it was closed before.
-    title = f"{deployment.file.robot} · {deployment.path.name}"
-    view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=is_terminal)
+    view = make_view(_title(deployment), is_plain=plain, is_json=as_json, is_terminal=is_terminal)
     is_unread = asyncio.Event()
     report, clock = told_while_read(view, is_unread), SystemClock()
     if serve is not None:
@@ -144,6 +143,10 @@ def _refuse_beside_resume(**options: object) -> None:
     if given:
         text = "a run that goes on has what it was started with"
         raise typer.BadParameter(text, param_hint=", ".join(given))
+
+
+def _title(deployment: Deployment) -> str:
+    return f"{deployment.file.robot} · {deployment.path.name}"
 
 
 def _refuse_beside_serve(serve: str | None, **options: bool) -> None:
