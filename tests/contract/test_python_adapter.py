@@ -258,6 +258,24 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
     assert "/skill did not stop within 2 s" in (robot.folder / "python.log").read_text()
 
 
+async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robot, root: Path):
+    page = (root / "docs/adapters/command.md").read_text(encoding="utf-8")
+    function = page.partition("```python\nimport asyncio")[2].partition("```")[0]
+    script = robot.folder / "take.sh"
+    (robot.folder / "take.py").write_text(f"import asyncio{function.replace('./take.sh', str(script))}")
+    script.write_text(
+        "#!/bin/sh\ntrap 'kill $!; exit 1' TERM\nread -r fields\n"
+        'case $fields in *never*) sleep 1000 & wait $! ;; *no*) exit 3 ;; esac\necho "$fields"\n'
+    )
+    script.chmod(0o700)
+    await robot.start(take="take.py:take")
+    assert (await robot.call("/take", 1, side="left")).fields == {"side": "left"}
+    refusal = await robot.refusal("/take", 2, side="none")
+    assert (refusal.code, "take.sh ended with 3" in refusal.message) == ("AOS510", True)
+    assert (await robot.refusal("/take", 3, side="never", deadline_s=0.5)).code == "AOS503"
+    assert (await robot.call("/take", 4, side="right")).fields == {"side": "right"}, "it runs on"
+
+
 @pytest.mark.parametrize(
     ("target", "text"),
     [
