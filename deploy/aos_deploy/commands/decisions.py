@@ -30,7 +30,7 @@ _SOLVER_S = 15.0
 """The solver may have gone since its run was found."""
 
 
-@command("Example: aos decisions --json | jq .action")
+@command("Example: aos decisions --json | jq 'select(.outcome).action'")
 @on_system
 def decisions(
     system: System,
