@@ -100,8 +100,7 @@ class SolverPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 class SpansPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """The collector that gets OpenTelemetry's spans of missions, by OTLP over HTTP; without one none are
-    made.
-    """
+    made."""
 
     otlp: str = ""
 

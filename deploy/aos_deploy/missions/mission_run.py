@@ -261,8 +261,7 @@ class MissionRun:
 
     def _has_journaled(self, state: MissionState) -> bool:
         """Says whether the journal has the end that somebody tells. One that is gone, or cannot be read, says
-        nothing.
-        """
+        nothing."""
         if not (self._run.path / JOURNAL).exists():
             return True
         try:

@@ -142,8 +142,7 @@ def _reasons(state: MappingState, skills: Collection[str]) -> str:
 
 def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str, ...]:
     """A remark for each path of `bind:` that no skill calls, and that is nearly one that a skill calls and
-    `"*"` binds: another adapter moves there. A path that is like none may be that of a skill to come.
-    """
+    `"*"` binds: another adapter moves there. A path that is like none may be that of a skill to come."""
     bound = {path for plan in deployment.adapters for path in plan.bind}
     remarks = []
     for path in sorted(bound.difference(called)):

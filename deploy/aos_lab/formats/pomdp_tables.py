@@ -13,8 +13,7 @@ Distribution = dict[int, float]
 
 class PomdpTables(msgspec.Struct, frozen=True):
     """The probabilities of next states by action and state, and of observations by action and next state; the
-    rewards, and the start. Where all `is_seen`, whoever acts sees the state.
-    """
+    rewards, and the start. Where all `is_seen`, whoever acts sees the state."""
 
     transitions: Mapping[tuple[int, int], Distribution]
     sensing: Mapping[tuple[int, int], Distribution]

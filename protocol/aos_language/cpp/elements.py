@@ -25,8 +25,7 @@ def asks_for_element(function: tree_sitter.Node) -> bool:
 
 def begun_container(iterator: tree_sitter.Node) -> tree_sitter.Node | None:
     """The container with a name that needs an element for an iterator to be read: `row` of `row.begin()`, and
-    of `max_element(row.begin(), row.end())`.
-    """
+    of `max_element(row.begin(), row.end())`."""
     if iterator.type != "call_expression":
         return None
     function = child_of(iterator, "function")

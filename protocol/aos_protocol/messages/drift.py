@@ -22,8 +22,7 @@ class ModelDrift(Message, frozen=True):
 
 class DriftTest(Message, frozen=True):
     """The state of the test of one response: its uses, how often it was seen, the sum of the predicted
-    probabilities, and the logarithms of what each bet has won.
-    """
+    probabilities, and the logarithms of what each bet has won."""
 
     skill: str
     response: str

@@ -160,8 +160,7 @@ class Cancelled(Message, frozen=True):
 
 class SkillProgress(Message, frozen=True):
     """The progress of a call: `state` is `accepted`, `executing`, `cancelling`, `succeeded`, `failed`,
-    `timed_out` or `cancelled`; `progress` goes from 0 to 1; `text` is for people.
-    """
+    `timed_out` or `cancelled`; `progress` goes from 0 to 1; `text` is for people."""
 
     id: ActivationId
     path: str

@@ -86,8 +86,7 @@ class Host:
 
     def chosen(self, known: Iterable[str]) -> list[str]:
         """The paths to serve for an adapter that knows its targets: those that are bound, and for `"*"` the
-        others that it has. DeployError AOS801 if a path is bound to a target that it does not know.
-        """
+        others that it has. DeployError AOS801 if a path is bound to a target that it does not know."""
         targets = {path.strip("/"): path for path in known}
         for path, binding in self.bound.items():
             target = str(binding.target if binding.target is not None else path)

@@ -145,8 +145,7 @@ def _become(
 
 def _give_way(niceness: int) -> None:
     """Makes this process nicer, and its session: where Linux shares processors among sessions first
-    (`sched_autogroup_enabled`), the niceness of a process counts within its own only.
-    """
+    (`sched_autogroup_enabled`), the niceness of a process counts within its own only."""
     if niceness == 0:
         return
     os.nice(niceness)

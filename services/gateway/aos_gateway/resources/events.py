@@ -32,8 +32,7 @@ async def stream(
     shelf: RunShelf, watches: Watches, run: Run | None, mission: str, since: int
 ) -> AsyncIterator[bytes]:
     """Yields the events: of the mission from record `since` on, what its system tells, and changes of the
-    list.
-    """
+    list."""
     yield b"retry: 1000\n\n"
     if run is None:
         async for frame in _list(shelf):

@@ -250,8 +250,7 @@ async def trace(gateway: Gateway, mission: str, query: OfTrace) -> Trace:
 
 async def events(gateway: Gateway, query: OfEvents, last_event_id: str) -> AsyncIterator[bytes]:
     """The event stream: decisions, states, progress, bundles and services of a mission's system, and the
-    runs.
-    """
+    runs."""
     mission, since = await gateway.shelf.named(query.mission), query.since
     seen_mission, seen = place_of(last_event_id)
     if seen_mission == mission:

@@ -45,8 +45,7 @@ class Otherwise(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 async def why(gateway: Gateway, mission: str, step: str, query: OfWhy) -> Why:
     """The reasons for a decision: margin, what was expected and what it leads to, lines of the documents,
-    beliefs.
-    """
+    beliefs."""
     asked = WhyQuery(number_of_step(step), query.instead, mission)
     return await _answer(gateway, asked, Why, lambda keys: keys.study_why, lambda study: study.why(asked))
 
@@ -61,8 +60,7 @@ async def tree(gateway: Gateway, mission: str, step: str, query: OfTree) -> Deci
 
 async def what_if(gateway: Gateway, mission: str, step: str, body: Otherwise) -> WhatIf:
     """The decision of a step under other circumstances. The mission is not touched, but a model may be
-    compiled.
-    """
+    compiled."""
     asked = WhatIfQuery(number_of_step(step), body.forbid, body.without, body.believe, body.change, mission)
     return await _answer(
         gateway, asked, WhatIf, lambda keys: keys.study_whatif, lambda study: study.what_if(asked)

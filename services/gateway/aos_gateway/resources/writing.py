@@ -76,8 +76,7 @@ class Steering(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 async def projects(gateway: Gateway) -> Projects:
     """The projects that can be started: deploy files in the gateway's folders, and bundles that were
-    uploaded.
-    """
+    uploaded."""
     return Projects(await asyncio.to_thread(_projects, gateway))
 
 
@@ -94,8 +93,7 @@ async def upload(gateway: Gateway, query: Named, body: bytes) -> ProjectEntry:
 
 async def check(gateway: Gateway, query: Named, body: bytes) -> Report:
     """Check a bundle, as `aos lint --no-compile` does. The body is an archive of documents, or one
-    document.
-    """
+    document."""
     files, loaded = await _loaded(query.name, body)
     found = with_excerpts(loaded.diagnostics, files)
     project = loaded.project
@@ -106,8 +104,7 @@ async def check(gateway: Gateway, query: Named, body: bytes) -> Report:
 
 async def start(gateway: Gateway, body: StartSystem) -> StartedRun:
     """Start a system and its first mission. Answered once its run is there; the documents may still be
-    refused.
-    """
+    refused."""
     if bool(body.project) is bool(body.deploy_file):
         raise GatewayError("name either a project or a deploy file", code="AOS901")
     if body.deploy_file:

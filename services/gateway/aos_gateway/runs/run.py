@@ -84,8 +84,7 @@ class Run(ABC):
     @abstractmethod
     async def last_state(self, mission: str) -> MissionState | None:
         """The last that is known of a mission; None before its first word, and of one that is not the
-        newest of a system elsewhere.
-        """
+        newest of a system elsewhere."""
 
     async def beginning(self, mission: str) -> MissionState:
         """The state of a mission of a system that runs, which has no record of it yet."""

@@ -29,8 +29,7 @@ class ProjectEntry(msgspec.Struct, frozen=True):
 
 def files_of_upload(name: str, body: bytes) -> tuple[dict[str, bytes], list[Diagnostic]]:
     """The documents in an upload, and a remark for each thing that is left out; DocumentError for another
-    file.
-    """
+    file."""
     plain = Path(name).name
     if not plain.isprintable() or len(plain.encode()) > _LONGEST_NAME_BYTES:
         raise DocumentError(f"{plain!r} is a name that no document has", code="AOS107", hint=_ENDINGS)
@@ -46,8 +45,7 @@ def files_of_upload(name: str, body: bytes) -> tuple[dict[str, bytes], list[Diag
 
 def keep_project(folder: Path, project: str, files: Mapping[str, bytes]) -> ProjectEntry:
     """Writes a bundle with a deploy file that plays it by its documents, in place of an older one of that
-    name.
-    """
+    name."""
     name = re.sub(r"[^A-Za-z0-9_-]", "-", project)[:_LONGEST_ROBOT]
     if name != project:  # Another project may look the same so.
         digest = hashlib.blake2b(project.encode(), digest_size=4).hexdigest()

@@ -14,8 +14,7 @@ MAX_FRAME_BYTES = 64 * 1024 * 1024
 class Load(msgspec.Struct, frozen=True, tag=True):
     """The module to run, once and first. Its statements may take `load_s`, each later evaluation
     `evaluation_s`. `allowed_imports` names the top-level modules it may import; None is any.
-    `truths` are the local variables of the type bool.
-    """
+    `truths` are the local variables of the type bool."""
 
     python: str
     file_name: str

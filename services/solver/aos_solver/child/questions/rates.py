@@ -39,6 +39,5 @@ class RateQuestions(Asking):
 
     async def slow_code(self) -> SlowCode | None:
         """The code in which random steps spend half of their time or more, of another child; None where no
-        place is such.
-        """
+        place is such."""
         return await slow_code(self._built, self._start)

@@ -40,8 +40,7 @@ class Copies(msgspec.Struct, frozen=True):
 
 class _Use(msgspec.Struct, frozen=True):
     """A mention of a state variable in the snippet of that number. What a write assigns is read before it; a
-    handle may be read at any time.
-    """
+    handle may be read at any time."""
 
     variable: str
     snippet: int

@@ -68,8 +68,7 @@ class Beginning(msgspec.Struct, frozen=True):
 
 class Past:
     """The steps since a belief started, in order: those of the mission, which adds to it, and before them
-    those of the missions whose beliefs it has kept.
-    """
+    those of the missions whose beliefs it has kept."""
 
     def __init__(self, refuted_below: float = 0.01, steps: Iterable[Evidence | Beginning] = ()) -> None:
         """`refuted_below` is that of the mission's limits."""

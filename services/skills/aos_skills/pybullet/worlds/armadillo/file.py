@@ -7,8 +7,7 @@ from aos_skills.pybullet.parts.room_file import Deviation, Length, Place, RoomFi
 
 class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A can as it is. The robot perceives it `perceived_scale` times as large, and with the probability
-    `misplaced` elsewhere: where there is nothing to grasp.
-    """
+    `misplaced` elsewhere: where there is nothing to grasp."""
 
     x: float
     y: float

@@ -23,8 +23,7 @@ CLOSE_EYE_M = (1.1, -0.9, 0.7)
 
 class Armadillo(World):
     """Outcomes come out of the physics. Faults that a simulator cannot produce (perception noise, an arm that
-    stays out, fingers that report nothing) are drawn; whether a grasp holds is not.
-    """
+    stays out, fingers that report nothing) are drawn; whether a grasp holds is not."""
 
     def __init__(self, file: ArmadilloFile, seed: int) -> None:
         self.file = file

@@ -9,8 +9,7 @@ from aos_skills.pybullet.parts.room_file import Deviation, Place, RoomFile, Shar
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Noise as a standard deviation in metres, faults as probabilities: a cup that glare hides, a cup that is
-    seen where none is, and a cup that is perceived where there is nothing to grasp.
-    """
+    seen where none is, and a cup that is perceived where there is nothing to grasp."""
 
     pose_noise_m: Deviation = 0.0
     glare: Share = 0.0
@@ -20,8 +19,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class CleanLabFile(RoomFile, frozen=True, forbid_unknown_fields=True):
     """Stations and bins by name: where the robot stands in front of each. `groups` are sets of stations with
-    cups on different ones.
-    """
+    cups on different ones."""
 
     robot: Place
     stations: dict[str, Place]

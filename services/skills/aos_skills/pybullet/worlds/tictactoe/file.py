@@ -10,8 +10,7 @@ from aos_skills.pybullet.worlds.tictactoe.rules import Rules
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Noise of the camera's place (metres), of each pixel (of 255) and of the sun's place (metres) as
-    standard deviations. `dry_centre` is the probability that the pen leaves nothing in the middle cell.
-    """
+    standard deviations. `dry_centre` is the probability that the pen leaves nothing in the middle cell."""
 
     camera_noise_m: Deviation = 0.0
     pixel_noise: Deviation = 0.0

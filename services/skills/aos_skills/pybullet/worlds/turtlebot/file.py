@@ -25,8 +25,7 @@ class Crate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Noise of the localisation as standard deviations; `lost_report` is a probability: the robot arrived and
-    its report says that it did not.
-    """
+    its report says that it did not."""
 
     place_noise_m: Deviation = 0.0
     yaw_noise_rad: Deviation = 0.0
