@@ -8,21 +8,10 @@ from typing import Annotated
 import msgspec
 import typer
 
+from aos_deploy import planning_options
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
-from aos_deploy.planning_options import (
-    Bundle,
-    Horizon,
-    Never,
-    PlannerName,
-    PolicyFile,
-    Seed,
-    Simulations,
-    Threads,
-    Time,
-    with_engine,
-)
 from aos_deploy.printing import show
 from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text
@@ -58,15 +47,15 @@ class Decision(msgspec.Struct):
 
 @command("Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")
 def plan(
-    bundle: Bundle,
-    simulations: Simulations = 100_000,
-    time_s: Time = None,
-    horizon: Horizon = None,
-    seed: Seed = 1,
-    planner: PlannerName = "auto",
-    threads: Threads = 1,
-    policy: PolicyFile = None,
-    never: Never = None,
+    bundle: planning_options.Bundle,
+    simulations: planning_options.Simulations = 100_000,
+    time_s: planning_options.Time = None,
+    horizon: planning_options.Horizon = None,
+    seed: planning_options.Seed = 1,
+    planner: planning_options.PlannerName = "auto",
+    threads: planning_options.Threads = 1,
+    policy: planning_options.PolicyFile = None,
+    never: planning_options.Never = None,
     set_values: SetValues = None,
     belief: Annotated[
         list[str] | None,
@@ -103,7 +92,7 @@ def plan(
                 return _decision((await engine.exact_values(horizon)).values, 0)
             return await _searched_decision(engine, search)
 
-    decision = with_engine(bundle, seed, decide, never=never, set_values=set_values)
+    decision = planning_options.with_engine(bundle, seed, decide, never=never, set_values=set_values)
     title = "exact" if exact else "0 simulations" if policy is None else "by the policy"
     show(decision, as_json, lambda made: _print_decision(made, title))
 
@@ -169,9 +158,9 @@ class Rate(msgspec.Struct):
 
 @command("Example: aos rate deploy/bundles/armadillo-finer")
 def rate(
-    bundle: Bundle,
+    bundle: planning_options.Bundle,
     seconds: Annotated[float, typer.Option(min=0.01, help="Length of one repetition")] = 1.0,
-    seed: Seed = 1,
+    seed: planning_options.Seed = 1,
     set_values: SetValues = None,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
@@ -186,7 +175,7 @@ def rate(
         counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]
         return [count.samples / count.seconds for count in counts]
 
-    rates = with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
+    rates = planning_options.with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
     told = f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)"
     show(result, as_json, lambda _: typer.echo(told))

@@ -7,17 +7,8 @@ from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
 from aos_deploy.views.observations import by_worth, observation_text, value_text
+from aos_protocol import messages
 from aos_protocol.diagnostics import render
-from aos_protocol.messages import (
-    ActionValue,
-    BeliefSummary,
-    BundleReport,
-    ConstraintRisk,
-    DecisionRecord,
-    MissionState,
-    ModelAdopted,
-    SkillProgress,
-)
 
 _TELLING_AGAIN_S = 5.0
 _SHOWN_MOVES = 8
@@ -49,9 +40,9 @@ class PlainView(_Lines):
         self._last_told_s = 0.0
 
     def __call__(self, event: Event) -> None:
-        if isinstance(event, SkillProgress):
+        if isinstance(event, messages.SkillProgress):
             return
-        if isinstance(event, MissionState):
+        if isinstance(event, messages.MissionState):
             # What acts is in the decision's own line.
             if not event.remark or event.remark == self._last_remark or event.phase == "acting":
                 return
@@ -77,7 +68,10 @@ class JsonView(_Lines):
 
 def lines_of(event: Event) -> list[str]:
     """An event as text for people."""
-    return [line if isinstance(event, Told | BundleReport) else on_one_line(line) for line in _lines(event)]
+    return [
+        line if isinstance(event, Told | messages.BundleReport) else on_one_line(line)
+        for line in _lines(event)
+    ]
 
 
 def on_one_line(text: str) -> str:
@@ -100,18 +94,18 @@ def _lines(event: Event) -> list[str]:
             return [f"{event.after_s:7.2f} s  {event.service} {event.state}{detail}"]
         case Told():
             return [event.text]
-        case DecisionRecord():
+        case messages.DecisionRecord():
             return [*([] if event.adopted is None else [adopted_line(event.adopted)]), decision_line(event)]
-        case MissionState():
+        case messages.MissionState():
             remark = shortened(event.remark)
             return [f"mission {event.phase}: {remark}" if remark else f"mission {event.phase}"]
-        case BundleReport():
+        case messages.BundleReport():
             return _report_lines(event)
-        case SkillProgress():
+        case messages.SkillProgress():
             return [f"{event.path} {event.state} {event.progress:.0%} {event.text}".rstrip()]
 
 
-def adopted_line(adopted: ModelAdopted) -> str:
+def adopted_line(adopted: messages.ModelAdopted) -> str:
     """Says which model has taken over, how it came to its belief, and which variables that has moved."""
     by: str = adopted.by
     if adopted.by == "replay":
@@ -125,7 +119,7 @@ def adopted_line(adopted: ModelAdopted) -> str:
     return f"revision {adopted.revision} takes over from {adopted.before}, its belief by {by}{why}{what}"
 
 
-def decision_line(record: DecisionRecord) -> str:
+def decision_line(record: messages.DecisionRecord) -> str:
     """A decision with what the best actions are worth, or what came of it."""
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
@@ -152,13 +146,13 @@ def decision_line(record: DecisionRecord) -> str:
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
 
 
-def _value(action: ActionValue) -> str:
+def _value(action: messages.ActionValue) -> str:
     """`pick +2.71 ± 0.04`; an error that rounds to nothing is left out."""
     error = f" ± {action.stderr:.2f}" if action.stderr >= 0.005 else ""
     return f"{action.action} {value_text(action.q, 2)}{error}"
 
 
-def effort_text(record: DecisionRecord) -> str:
+def effort_text(record: messages.DecisionRecord) -> str:
     """Says who decided, and with how much work; short."""
     if record.chosen_by in ("operator", "script"):
         return record.why
@@ -170,14 +164,14 @@ def effort_text(record: DecisionRecord) -> str:
     return f"{by}{record.simulations} simulations in {record.planning_s:.2f} s{threads}"
 
 
-def risk_text(constraint: ConstraintRisk) -> str:
+def risk_text(constraint: messages.ConstraintRisk) -> str:
     """Says what a decision risks, and what it may."""
     sign = "about " if constraint.is_sampled else ""
     bound = f"{constraint.left:.3g} left of {constraint.probability:g}"
     return f"risks {sign}{constraint.risk:.3g}, {bound}: never {constraint.never}"
 
 
-def endings_text(belief: BeliefSummary) -> str:
+def endings_text(belief: messages.BeliefSummary) -> str:
     """Says how probable the goal is, and each other ending that is likelier than one in two thousand.
 
     In brackets stands how probable the goal is if nothing ran that was not observed, where that differs.
@@ -188,7 +182,7 @@ def endings_text(belief: BeliefSummary) -> str:
     return "  ".join([f"goal {belief.goal_probability:.3f}{cautious}", *shown])
 
 
-def _report_lines(report: BundleReport) -> list[str]:
+def _report_lines(report: messages.BundleReport) -> list[str]:
     lines = [render(diagnostic) for diagnostic in report.diagnostics]
     if not report.is_accepted:
         waits = "; it is tried again when the project changes" if report.is_waiting else ""
@@ -199,7 +193,7 @@ def _report_lines(report: BundleReport) -> list[str]:
     return [*lines, f"{subject}{revision}, {changes_text(report)}"]
 
 
-def changes_text(report: BundleReport) -> str:
+def changes_text(report: messages.BundleReport) -> str:
     """Says which skills a bundle has brought, changed or taken away."""
     changes = {"added": report.added, "changed": report.changed, "removed": report.removed}
     new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]

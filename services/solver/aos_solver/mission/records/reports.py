@@ -4,15 +4,7 @@ from typing import Any
 
 import msgspec
 
-from aos_protocol.messages import (
-    BeliefSummary,
-    ConstraintRisk,
-    DecisionRecord,
-    MissionState,
-    ModelAdopted,
-    ModelDrift,
-    Outcome,
-)
+from aos_protocol import messages
 from aos_protocol.mission_rows import DECISION, STATE
 from aos_solver.child.answers.beliefs import BeliefUpdate
 from aos_solver.mission.control.steering import Steering
@@ -27,7 +19,7 @@ from aos_solver.mission.rules.endings import Ending
 class Reports:
     """Numbers and dates what a mission tells. `state` is the mission's newest."""
 
-    def __init__(self, state: MissionState, ports: Ports, memory: MissionMemory) -> None:
+    def __init__(self, state: messages.MissionState, ports: Ports, memory: MissionMemory) -> None:
         """The records go on where those in `memory` end."""
         self.state = state
         self._ports = ports
@@ -39,15 +31,15 @@ class Reports:
         self,
         choice: Choice,
         model: RunningModel,
-        belief: BeliefSummary,
+        belief: messages.BeliefSummary,
         seed: int,
-        constraints: tuple[ConstraintRisk, ...],
-        adopted: ModelAdopted | None,
-    ) -> DecisionRecord:
+        constraints: tuple[messages.ConstraintRisk, ...],
+        adopted: messages.ModelAdopted | None,
+    ) -> messages.DecisionRecord:
         """Reports the decision for the next step, with the belief it was taken for; the record of it."""
         plan = choice.plan
         chosen = model.engine.description.actions[plan.index]
-        record = DecisionRecord(
+        record = messages.DecisionRecord(
             sequence=self._sequence,
             stamp_ns=self._ports.clock.now_ns(),
             mission=self.state.mission,
@@ -83,13 +75,13 @@ class Reports:
 
     def observed(
         self,
-        decision: DecisionRecord,
-        outcome: Outcome,
+        decision: messages.DecisionRecord,
+        outcome: messages.Outcome,
         update: BeliefUpdate,
         update_s: float,
         remark: str,
-        drift: tuple[ModelDrift, ...],
-    ) -> DecisionRecord:
+        drift: tuple[messages.ModelDrift, ...],
+    ) -> messages.DecisionRecord:
         """Reports the outcome of a decision, and the belief after it; the `remark` is for people."""
         alarms = [text_of(alarm) for alarm in drift if alarm.is_new]
         remarks = (update.remark, remark, *_faults_of_monitors(outcome), *alarms)
@@ -123,7 +115,9 @@ class Reports:
         """Takes up a mission at this step, which was reported before."""
         self.state = msgspec.structs.replace(self.state, step=step)
 
-    def move_to(self, phase: str, step: int, model: RunningModel, belief: BeliefSummary, remark: str) -> None:
+    def move_to(
+        self, phase: str, step: int, model: RunningModel, belief: messages.BeliefSummary, remark: str
+    ) -> None:
         """Reports another phase of the mission."""
         self._change_state(
             phase=phase,
@@ -139,7 +133,7 @@ class Reports:
             phase="ended", ending=ending.value, remark=remark, goal_probability=self._goal_probability
         )
 
-    def _publish(self, record: DecisionRecord) -> None:
+    def _publish(self, record: messages.DecisionRecord) -> None:
         self._ports.journal(DECISION, record)
         self._sequence = record.sequence + 1
         self._goal_probability = record.belief.goal_probability
@@ -167,6 +161,6 @@ def overrun(update: BeliefUpdate, update_s: float, budget_s: float | None) -> st
     return f"{over}: {update.effort}" if update.effort else over
 
 
-def _faults_of_monitors(outcome: Outcome) -> list[str]:
+def _faults_of_monitors(outcome: messages.Outcome) -> list[str]:
     """Tells people of monitors that gave nothing."""
     return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]
