@@ -41,7 +41,8 @@ class _Without(msgspec.Struct, frozen=True):
 _IDLE_DECISIONS = 5  # in a row: one or two may be bad luck of a search
 _RETURN_S = 5.0
 """An adapter whose start nobody tells, such as one that somebody else starts, may come within this time."""
-_LOOKS = 10
+_LOOK_S = 0.5
+_LEAST_LOOK_S = 0.001  # Without a robot nothing is waited for, and the time stands still.
 _GIVES_UP = (Ending.SKILLS_FAILED, Ending.NOTHING_WORTHWHILE)
 
 
@@ -214,12 +215,13 @@ class Chooser:
 
         While an adapter of theirs is expected back the time stands still, for as long as a mission may hold.
         """
-        looks = _LOOKS if away else 0
-        ends_at_s = self._around.clock.monotonic_s() + self._terms.hold_s
-        while looks and away <= self._around.unavailable.keys():
-            await self._around.until_changed(_RETURN_S / _LOOKS)
-            if not away & set(self._around.returning) or self._around.clock.monotonic_s() > ends_at_s:
-                looks -= 1
+        now_s = self._around.clock.monotonic_s
+        left_s, ends_at_s = _RETURN_S if away else 0.0, now_s() + self._terms.hold_s
+        while left_s > 0 and away <= self._around.unavailable.keys():
+            began_s = now_s()
+            await self._around.until_changed(_LOOK_S)
+            if not away & set(self._around.returning) or now_s() > ends_at_s:
+                left_s -= min(max(now_s() - began_s, _LEAST_LOOK_S), _LOOK_S)  # A pause is no waiting.
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
