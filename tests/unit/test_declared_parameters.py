@@ -14,7 +14,7 @@ from aos_language.mission_parameters import mission_value_of_option, parameter_l
 from aos_language.outline import outline
 from aos_protocol.documents import StateVariable
 from aos_protocol.errors import DeployError, DocumentError, PlanningError
-from aos_solver.child.lines.parameter_arguments import parameter_arguments
+from aos_solver.child.questions.asking import parameter_arguments
 from aos_solver.offline.alpha_vectors import AlphaVectors
 from aos_solver.offline.policy import Policy, PolicyHeader
 

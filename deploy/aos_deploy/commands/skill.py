@@ -12,19 +12,10 @@ from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_json
 from aos_deploy.running_system import System, on_system
+from aos_protocol import messages
 from aos_protocol.documents import LocalSource, Project
 from aos_protocol.errors import AosError, DeployError, SkillError
 from aos_protocol.keys import Serving
-from aos_protocol.messages import (
-    ActivationId,
-    Cancel,
-    Cancelled,
-    MappingState,
-    MissionState,
-    SkillCall,
-    SkillProgress,
-    SkillResult,
-)
 from aos_protocol.spelling import did_you_mean, quoted
 from aos_runtime.bus.subscription import Subscription
 from aos_runtime.client import AosClient
@@ -111,12 +102,14 @@ def call(
             hint = "Let it hold or end first, or use --anyway"
             raise DeployError("the mission moves the robot", code="AOS502", hint=hint)
         path = await _served_path(aos, name)
-        request = SkillCall(ActivationId("by-hand", time.time_ns()), path, _values(fields or []), deadline)
-        async with aos.bus.listen(aos.keys.progress(path), SkillProgress) as progress:
+        request = messages.SkillCall(
+            messages.ActivationId("by-hand", time.time_ns()), path, _values(fields or []), deadline
+        )
+        async with aos.bus.listen(aos.keys.progress(path), messages.SkillProgress) as progress:
             telling = asyncio.create_task(_tell(progress, request.id, as_json))
             try:
                 result = await aos.bus.ask(
-                    aos.keys.call(path), request, SkillResult, timeout_s=deadline + _ASK_S
+                    aos.keys.call(path), request, messages.SkillResult, timeout_s=deadline + _ASK_S
                 )
                 await asyncio.wait([telling], timeout=_LAST_S)
             except asyncio.CancelledError:
@@ -144,7 +137,7 @@ def cancel(
         everything = {server.path for server in await served(aos.bus, aos.keys)}
         paths = [await _served_path(aos, name)] if name else sorted(everything)
         answers = await asyncio.gather(*(_stop(aos, path) for path in paths), return_exceptions=True)
-        stopped = {id for answer in answers if isinstance(answer, Cancelled) for id in answer.ids}
+        stopped = {id for answer in answers if isinstance(answer, messages.Cancelled) for id in answer.ids}
         told = f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving"
         typer.echo(json.dumps({"stopped": sorted(stopped)}) if as_json else told)
         for answered in answers:
@@ -173,7 +166,7 @@ def resume(system: System) -> None:
 # --- what they share ---
 
 
-async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:
+async def _known(aos: AosClient) -> tuple[Project, messages.MappingState, list[Serving]]:
     revision, state = await aos.project(), await aos.mapping_state()
     return revision.project, state, await served(aos.bus, aos.keys)
 
@@ -193,20 +186,22 @@ async def _served_path(aos: AosClient, name: str) -> str:
     return path
 
 
-async def _mission_state(aos: AosClient) -> MissionState | None:
+async def _mission_state(aos: AosClient) -> messages.MissionState | None:
     try:
         return await aos.mission_state()
     except AosError:
         return None
 
 
-async def _stop(aos: AosClient, path: str, id: ActivationId | None = None) -> Cancelled:
+async def _stop(aos: AosClient, path: str, id: messages.ActivationId | None = None) -> messages.Cancelled:
     return await aos.bus.ask(
-        aos.keys.cancel(path), Cancel("stopped by hand", id), Cancelled, timeout_s=_ASK_S
+        aos.keys.cancel(path), messages.Cancel("stopped by hand", id), messages.Cancelled, timeout_s=_ASK_S
     )
 
 
-async def _tell(progress: Subscription[tuple[str, SkillProgress]], id: ActivationId, as_json: bool) -> None:
+async def _tell(
+    progress: Subscription[tuple[str, messages.SkillProgress]], id: messages.ActivationId, as_json: bool
+) -> None:
     """Prints progress until that of the call's end."""
     async for _, report in progress:
         if as_json:
@@ -217,7 +212,7 @@ async def _tell(progress: Subscription[tuple[str, SkillProgress]], id: Activatio
             return
 
 
-def _row(skill: str, path: str, state: MappingState, servers: list[Serving]) -> dict[str, Any]:
+def _row(skill: str, path: str, state: messages.MappingState, servers: list[Serving]) -> dict[str, Any]:
     path = "/" + path.strip("/")
     return {
         "skill": skill,

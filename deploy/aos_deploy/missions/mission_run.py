@@ -25,15 +25,8 @@ from aos_deploy.runs.record import record_of
 from aos_deploy.runs.summary import Summary
 from aos_deploy.runs.verdict import Account, Verdict
 from aos_deploy.spans.rest import send_rest
+from aos_protocol import messages
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
-from aos_protocol.messages import (
-    BundleReport,
-    DecisionRecord,
-    MissionState,
-    PushBundle,
-    SkillProgress,
-    StartMission,
-)
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.disk.mission_folders import JOURNAL
@@ -198,7 +191,7 @@ class MissionRun:
         await self._ask_to_start(supervisor)
 
     async def _ask_to_start(self, supervisor: Supervisor) -> None:
-        await start_mission(supervisor.bus, supervisor.keys, StartMission())
+        await start_mission(supervisor.bus, supervisor.keys, messages.StartMission())
 
     async def _push_bundles(self, supervisor: Supervisor) -> None:
         if self._taken_up is not None and self._taken_up.has_begun:
@@ -214,8 +207,8 @@ class MissionRun:
         report = await ask_until_answered(
             supervisor.bus,
             supervisor.keys.push_bundle,
-            PushBundle(together.files, named),
-            BundleReport,
+            messages.PushBundle(together.files, named),
+            messages.BundleReport,
             server=supervisor.keys.live("registry"),
             timeout_s=_BUILD_TIMEOUT_S,
         )
@@ -234,7 +227,7 @@ class MissionRun:
                 each.cancel()
 
     async def _follow_progress(self, supervisor: Supervisor) -> None:
-        async with supervisor.bus.listen(supervisor.keys.all_progress, SkillProgress) as reports:
+        async with supervisor.bus.listen(supervisor.keys.all_progress, messages.SkillProgress) as reports:
             async for _, progress in reports:
                 self._report(progress)
 
@@ -243,11 +236,11 @@ class MissionRun:
         # It goes on after any word of an end: whether that is one, the journal says.
         async with aclosing(client.follow(away_s=None, stays=True)) as events:
             async for event in events:
-                if isinstance(event, BundleReport) and event.source in self._own_pushes:
+                if isinstance(event, messages.BundleReport) and event.source in self._own_pushes:
                     # Told already, with the way to the files; another push of the same is news.
                     self._own_pushes.remove(event.source)
                     continue
-                end = event if isinstance(event, MissionState) and event.phase == "ended" else None
+                end = event if isinstance(event, messages.MissionState) and event.phase == "ended" else None
                 if end is not None and not await asyncio.to_thread(self._has_journaled, end):
                     what = f"{end.mission} has ended, {end.ending}"
                     self._report(Told(f"not believed: {what}; its journal says that it goes on"))
@@ -259,7 +252,7 @@ class MissionRun:
                     if not self.stays:
                         return
 
-    def _has_journaled(self, state: MissionState) -> bool:
+    def _has_journaled(self, state: messages.MissionState) -> bool:
         """Says whether the journal has the end that somebody tells. One that is gone, or cannot be read, says
         nothing."""
         if not (self._run.path / JOURNAL).exists():
@@ -270,13 +263,13 @@ class MissionRun:
             return True
         return account.has_ended
 
-    def _take_end(self, state: MissionState) -> None:
+    def _take_end(self, state: messages.MissionState) -> None:
         """Does nothing: the run ends with its mission, and is settled when all processes are gone."""
 
     def _take(self, event: Event) -> None:
-        if isinstance(event, DecisionRecord | MissionState):
+        if isinstance(event, messages.DecisionRecord | messages.MissionState):
             self._heard.take(event)
-        if isinstance(event, DecisionRecord) and self._first_decision_s is None:
+        if isinstance(event, messages.DecisionRecord) and self._first_decision_s is None:
             self._first_decision_s = self._elapsed_s()
 
     def _write_record(self, run: RunDirectory, endpoint: str, supervisor: Supervisor) -> None:

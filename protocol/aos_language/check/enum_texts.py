@@ -6,14 +6,7 @@ from collections.abc import Iterator
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.python_syntax import tree_of
-from aos_protocol.documents import (
-    AbstractionMapping,
-    EnumType,
-    LocalSource,
-    LocalVariable,
-    SkillModel,
-    Snippet,
-)
+from aos_protocol import documents
 from aos_protocol.spelling import nearest, quoted
 
 _OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
@@ -21,9 +14,9 @@ _ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 
 def check_enum_texts(
-    mapping: AbstractionMapping,
-    snippets: Iterator[Snippet],
-    model: SkillModel,
+    mapping: documents.AbstractionMapping,
+    snippets: Iterator[documents.Snippet],
+    model: documents.SkillModel,
     scope: Scope,
     findings: Findings,
 ) -> None:
@@ -52,7 +45,7 @@ def check_enum_texts(
                 findings.warning("AOS149", message, span, hint)
 
 
-def _tree(snippet: Snippet) -> tuple[ast.AST, int]:
+def _tree(snippet: documents.Snippet) -> tuple[ast.AST, int]:
     """The syntax tree of an expression or of statements, and how many lines it has above the code.
 
     What is neither is told by `mapping_code`.
@@ -65,9 +58,9 @@ def _tree(snippet: Snippet) -> tuple[ast.AST, int]:
     return ast.Pass(), 0
 
 
-def _type_of(variable: LocalVariable, model: SkillModel, scope: Scope) -> str:
+def _type_of(variable: documents.LocalVariable, model: documents.SkillModel, scope: Scope) -> str:
     """The type of the skill's parameter, or of a part of it, that a local variable takes."""
-    if variable.source is not LocalSource.PARAMETER:
+    if variable.source is not documents.LocalSource.PARAMETER:
         return ""
     name, *fields = variable.parameter_path.split(".")
     kind = next((parameter.type for parameter in model.parameters if parameter.name == name), "")
@@ -79,7 +72,7 @@ def _type_of(variable: LocalVariable, model: SkillModel, scope: Scope) -> str:
 
 
 def _mistakes(
-    node: ast.AST, enums: dict[str, EnumType], takes_all: bool
+    node: ast.AST, enums: dict[str, documents.EnumType], takes_all: bool
 ) -> Iterator[tuple[ast.expr, str, str]]:
     """The name, the message and the hint of each mistake in one node of the syntax tree."""
 
@@ -110,7 +103,7 @@ def _mistakes(
 
 
 def _looked_up(
-    name: ast.Name, table: ast.Dict, enum: EnumType, takes_all: bool
+    name: ast.Name, table: ast.Dict, enum: documents.EnumType, takes_all: bool
 ) -> Iterator[tuple[ast.expr, str, str]]:
     """The keys of a dict that are no value of the enum; the values without a key, where all are written."""
     keys = [key.value for key in table.keys if isinstance(key, ast.Constant)]
@@ -126,7 +119,9 @@ def _looked_up(
         yield name, message, "Add it, or write `.get(...)` with a value for what is missing"
 
 
-def _compared(name: ast.Name, other: ast.AST, enum: EnumType) -> Iterator[tuple[ast.expr, str, str]]:
+def _compared(
+    name: ast.Name, other: ast.AST, enum: documents.EnumType
+) -> Iterator[tuple[ast.expr, str, str]]:
     value = other.value if isinstance(other, ast.Constant) else None
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         yield name, *_no_number(name.id, enum, value)
@@ -136,7 +131,7 @@ def _compared(name: ast.Name, other: ast.AST, enum: EnumType) -> Iterator[tuple[
         yield name, f"no value of {enum.name} is called {value!r}", hint
 
 
-def _no_number(name: str, enum: EnumType, number: float = 0) -> tuple[str, str]:
+def _no_number(name: str, enum: documents.EnumType, number: float = 0) -> tuple[str, str]:
     index = int(number) if 0 <= number < len(enum.values) else 0
     message = f"`{name}` is the text of a value of {enum.name}, and no number"
     return message, f"Compare it with the name, as in `{name} == '{enum.values[index]}'`"

@@ -5,15 +5,9 @@ import keyword
 import re
 from collections.abc import Iterable, Iterator
 
+from aos_language.check import python_names
 from aos_language.check.enum_texts import check_enum_texts
 from aos_language.check.input_fields import check_input_fields
-from aos_language.check.python_names import (
-    PythonNames,
-    check_fields_set,
-    check_names,
-    column_of,
-    top_level_names,
-)
 from aos_language.check.python_parsed import parsed
 from aos_language.check.result_order import check_result_order
 from aos_language.check.rule_gaps import check_rule_gaps
@@ -47,7 +41,7 @@ def check_mapping(
     if not mapping.monitor:
         _check_path(mapping.activation.path, mapping.activation.span, findings)
     _check_local_names(mapping, findings)
-    names = PythonNames.of(mapping, model, scope)
+    names = python_names.PythonNames.of(mapping, model, scope)
     severity = Severity.ERROR if is_whole else Severity.WARNING
     _check_rules(mapping, model, names, scope, findings, severity)
     _check_order(mapping.rules, findings)
@@ -80,12 +74,12 @@ def check_low_level(
     document: LowLevelDocument, mappings: Iterable[AbstractionMapping], scope: Scope, findings: Findings
 ) -> None:
     """The code that makes low-level constants."""
-    names = PythonNames.of_constants(mappings, scope)
+    names = python_names.PythonNames.of_constants(mappings, scope)
     for constant in document.constants:
         tree = parsed(constant.code, "exec", findings)
         if tree is not None:
-            check_names(constant.code, tree, names, findings)
-            check_fields_set(constant, tree, document.types, findings)
+            python_names.check_names(constant.code, tree, names, findings)
+            python_names.check_fields_set(constant, tree, document.types, findings)
 
 
 def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
@@ -123,7 +117,7 @@ def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
 def _check_rules(
     mapping: AbstractionMapping,
     model: SkillModel | None,
-    names: PythonNames,
+    names: python_names.PythonNames,
     scope: Scope,
     findings: Findings,
     severity: Severity,
@@ -143,17 +137,17 @@ def _check_rules(
 
 
 def _check_expression(
-    snippet: Snippet, names: PythonNames, findings: Findings, severity: Severity = Severity.ERROR
+    snippet: Snippet, names: python_names.PythonNames, findings: Findings, severity: Severity = Severity.ERROR
 ) -> ast.AST | None:
     """Parses an expression and looks at its names."""
     tree = parsed(snippet, "eval", findings)
     if tree is not None:
-        check_names(snippet, tree, names, findings, severity)
+        python_names.check_names(snippet, tree, names, findings, severity)
     return tree
 
 
 def _check_variable(
-    variable: LocalVariable, names: PythonNames, findings: Findings, severity: Severity
+    variable: LocalVariable, names: python_names.PythonNames, findings: Findings, severity: Severity
 ) -> None:
     if variable.type and local_type(variable.type) is None and nearest(variable.type, ELEMENTS):
         message = f"unknown type `{variable.type}` of the local variable {variable.name}"
@@ -167,19 +161,19 @@ def _check_variable(
     tree = parsed(variable.code, "exec", findings)
     if tree is None:
         return
-    check_names(variable.code, tree, names.of_code(), findings, severity)
+    python_names.check_names(variable.code, tree, names.of_code(), findings, severity)
     check_input_fields(variable.code, tree, findings)
     _check_ends(variable, variable.code, tree, findings)
 
 
 def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings: Findings) -> None:
     """Looks at what leaves a variable's code: what it assigns, and what it returns."""
-    assigned = top_level_names(tree)
+    assigned = python_names.top_level_names(tree)
     returns = [node for node in own_scope(tree) if isinstance(node, ast.Return)]
     for node in returns:
         if node.value is None:
             message = f"`return` without a value makes {variable.name} `None`"
-            span = code.locate(node.lineno, column_of(code, node.lineno, node.col_offset))
+            span = code.locate(node.lineno, python_names.column_of(code, node.lineno, node.col_offset))
             hint = f"Write `return {variable.name}`, or `return None` where that is meant"
             findings.warning("AOS121", message, span, hint)
     if variable.name in assigned:

@@ -1,11 +1,10 @@
 """Names in the C++ of environment and skills: is each one there, and may it be read or written there?"""
 
 import re
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Iterator, Set
 
 from aos_language.check.blocks import Block, titles_with
 from aos_language.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
-from aos_language.check.subscripts import subscripts_of
 from aos_language.cpp.absent import without_null
 from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
@@ -14,6 +13,7 @@ from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Severity, Span
 from aos_protocol.spelling import nearest, quoted
 
+_LONE_NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
 _TRUTHS = frozenset({"__isFailureState", "__isGoalState", "__meetPrecondition", "__stopEvaluatingState"})
@@ -251,3 +251,23 @@ def listing(what: str, names: Iterable[str]) -> str:
     """The hint that gives all names there are; empty where there are none."""
     listed = quoted(names)
     return f"{what} {listed}" if listed else ""
+
+
+def subscripts_of(mention: Mention, code: str) -> Iterator[Extent | None]:
+    """Yields for each `[...]` of the path, in order, the place of its one name; None where it is no lone
+    name."""
+    depth = 0
+    start = mention.extent.start
+    for at in range(mention.extent.start, mention.extent.end):
+        if code[at] == "[":
+            depth += 1
+            start = at + 1 if depth == 1 else start
+        elif code[at] == "]":
+            depth -= 1
+            if depth == 0:
+                match = _LONE_NAME.fullmatch(code, start, at)
+                yield _extent(code, *match.span(1)) if match is not None else None
+
+
+def _extent(code: str, start: int, end: int) -> Extent:
+    return Extent(start, end, code.count("\n", 0, start) + 1, start - code.rfind("\n", 0, start))

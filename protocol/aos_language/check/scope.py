@@ -11,14 +11,7 @@ from aos_language.assembly import Assembly
 from aos_language.cpp.shared import NO_SHARED_CODE, SharedCode
 from aos_language.document_code import shared_code_of
 from aos_language.reading.document import array_type
-from aos_protocol.documents import (
-    CompoundType,
-    EnumType,
-    LowLevelDocument,
-    SkillModel,
-    Snippet,
-    StateVariable,
-)
+from aos_protocol import documents
 
 NUMBERS = frozenset({"bool", "double", "float", "int"})
 PRIMITIVES = NUMBERS | {"anyValue", "string"}
@@ -51,19 +44,19 @@ class ValueType(msgspec.Struct, frozen=True):
 class Scope(msgspec.Struct, frozen=True):
     """The environment's names, those of its shared code, and the skills' parameters."""
 
-    enums: Mapping[str, EnumType]
-    compounds: Mapping[str, CompoundType]
-    variables: Mapping[str, StateVariable]
+    enums: Mapping[str, documents.EnumType]
+    compounds: Mapping[str, documents.CompoundType]
+    variables: Mapping[str, documents.StateVariable]
     enum_values: Mapping[str, str]
-    skills: Mapping[str, SkillModel]
+    skills: Mapping[str, documents.SkillModel]
     low_level_names: frozenset[str]
     low_level_types: frozenset[str]
-    low_level: LowLevelDocument | None
+    low_level: documents.LowLevelDocument | None
     has_environment: bool
     is_one_state_model: bool
     has_unread_files: bool = False
     shared: SharedCode = NO_SHARED_CODE
-    shared_mapping_code: Snippet | None = None
+    shared_mapping_code: documents.Snippet | None = None
 
     @classmethod
     def of(cls, assembly: Assembly) -> Scope:

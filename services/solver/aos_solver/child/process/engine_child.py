@@ -12,16 +12,9 @@ from typing import Literal, Self, TypeVar
 
 import msgspec
 
+from aos_protocol import errors
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.diagnostics import Diagnostic, Severity
-from aos_protocol.errors import (
-    AosError,
-    CodeFaultError,
-    EndlessCodeError,
-    EngineDefectError,
-    ModelError,
-    error_from_code,
-)
 from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import EngineDescription, EngineFault, Progress
@@ -94,11 +87,11 @@ class EngineStart(msgspec.Struct, frozen=True):
     niceness: int = 0
 
 
-class KilledError(ModelError):
+class KilledError(errors.ModelError):
     """The child was killed or frozen from outside, not by model code, so asking another one is right."""
 
 
-class OverdueError(EndlessCodeError):
+class OverdueError(errors.EndlessCodeError):
     """No answer within the processor time that was allowed: what ran may come to an end later."""
 
 
@@ -188,13 +181,13 @@ class EngineChild:
             line = await self._child.in_time(self._answer(command, on_progress), deadline_s)
         except TimeoutError:
             text = f"the model did not finish within {deadline_s:.0f} s"
-            raise await self._lost(EndlessCodeError, text) from None
+            raise await self._lost(errors.EndlessCodeError, text) from None
         except (ConnectionError, ValueError):
             line = b""
         finally:
             self._looking.cancel()
         if not line.endswith(b"\n"):
-            raise await self._lost(CodeFaultError, "model code ended the engine")
+            raise await self._lost(errors.CodeFaultError, "model code ended the engine")
         return self._decoded(line, kind)
 
     async def _answer(self, command: str | None, on_progress: Callable[[Progress], None] | None) -> bytes:
@@ -230,17 +223,17 @@ class EngineChild:
             self._blame.close()
             self._blame = None
 
-    def fault(self, code: str, message: str, piece: int) -> AosError:
+    def fault(self, code: str, message: str, piece: int) -> errors.AosError:
         """The error of model code, at the document place of that number if it is one."""
         spans = self._built.emitted.snippets
         if not 0 < piece <= len(spans):
-            error = error_from_code(code, message)
-            error.hint = _REPORT_HINT if isinstance(error, EngineDefectError) else error.hint
+            error = errors.error_from_code(code, message)
+            error.hint = _REPORT_HINT if isinstance(error, errors.EngineDefectError) else error.hint
             return error
         span = spans[piece - 1]
         hint = "Look at this piece of the document"
         diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
-        return error_from_code(code, f"{span}: {message}", hint=hint, diagnostics=(diagnostic,))
+        return errors.error_from_code(code, f"{span}: {message}", hint=hint, diagnostics=(diagnostic,))
 
     def _decoded(self, line: bytes, kind: type[A]) -> A:
         try:
@@ -248,13 +241,13 @@ class EngineChild:
             if fault is None:
                 return msgspec.json.decode(line, type=kind)
         except UNREADABLE as error:
-            raise ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
+            raise errors.ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
         raise self.fault(fault.code, fault.text, fault.piece)
 
-    async def _lost(self, kind: type[CodeFaultError], message: str) -> AosError:
+    async def _lost(self, kind: type[errors.CodeFaultError], message: str) -> errors.AosError:
         """The error for a child that is gone or has to go; the blame page tells what ran last."""
         piece = self.running_piece
-        status = None if kind is EndlessCodeError else await self._status()
+        status = None if kind is errors.EndlessCodeError else await self._status()
         await self.close()
         if status == -signal.SIGKILL:
             how = "frozen by a signal, and was killed" if self._was_frozen else "killed"
@@ -263,18 +256,18 @@ class EngineChild:
             return self.fault(kind.code, message, piece)
         if status == -signal.SIGXFSZ:
             message = "the engine's memory is larger than a file may be"
-            return ModelError(message, code="AOS213", hint="Raise `ulimit -f`")
+            return errors.ModelError(message, code="AOS213", hint="Raise `ulimit -f`")
         if status == -signal.SIGVTALRM:
             fault = self.fault(OverdueError.code, "this code takes long", piece)
             return OverdueError(fault.message, diagnostics=fault.diagnostics)
         if status == HANG_STATUS and piece:
-            return self.fault(EndlessCodeError.code, "this code does not come to an end", piece)
+            return self.fault(errors.EndlessCodeError.code, "this code does not come to an end", piece)
         if status in (REACHING_STATUS, -signal.SIGSYS) and piece:
             return self.fault(kind.code, _REACHING, piece)
         how = _status_text(status)
         if not piece:
             message = f"the engine ended outside of the documents' code ({how})"
-            return ModelError(message, code="AOS213", hint=_MEMORY_HINT)
+            return errors.ModelError(message, code="AOS213", hint=_MEMORY_HINT)
         if status == -signal.SIGSEGV:
             how += ", as for an index out of range or a pointer that leads nowhere"
         return self.fault(kind.code, f"{message} ({how})", piece)

@@ -22,7 +22,7 @@ from aos_solver.child.answers.models import EngineDescription, EngineFault, Prog
 from aos_solver.child.blame.replay import at_its_statement
 from aos_solver.child.lines.belief_draws import BeliefDraws
 from aos_solver.child.lines.command_line import command_line, with_change
-from aos_solver.child.lines.parameter_arguments import parameter_arguments
+from aos_solver.child.lines.local_values import numbers_of
 from aos_solver.child.process.engine_child import (
     EngineChild,
     EngineStart,
@@ -288,3 +288,22 @@ class Asking(Closing):
         child, self._child = self._child, None
         if child is not None:
             await child.close()
+
+
+def parameter_arguments(leaves: Mapping[str, ParameterLeaf], values: Mapping[str, str]) -> tuple[str, ...]:
+    """The values, each that of a leaf in its canonical spelling, as a child's start takes them: `name=value`
+    with the value as `StateReader` in state_text.hpp reads it."""
+    return tuple(
+        f"{name}={' '.join(map(str, numbers_of(_value(leaves[name], text))))}"
+        for name, text in values.items()
+    )
+
+
+def _value(leaf: ParameterLeaf, text: str) -> int | float | str:
+    if leaf.values:
+        return leaf.values.index(text)
+    if leaf.type == "bool":
+        return text == "true"
+    if leaf.type == "string":
+        return text
+    return float(text) if leaf.type in ("float", "double") else int(text)
