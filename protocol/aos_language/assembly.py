@@ -3,7 +3,7 @@
 A skill without a written mapping gets a derived one. A parameter that is an enum gets all of its values.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 
 import msgspec
 
@@ -63,12 +63,29 @@ def assemble(
                 assembly.monitors[document.name] = mapping
             case AbstractionMapping() as mapping if document.name:
                 assembly.mappings[document.name] = mapping
+    if assembly.environment is not None:
+        types = {kind.name for kind in (*assembly.environment.enums, *assembly.environment.compounds)}
+        assembly.models = {
+            name: _with_types_first(model, types, findings) for name, model in assembly.models.items()
+        }
     written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
     for name in assembly.models.keys() - written:
         assembly.mappings[name] = derived_mapping(assembly.models[name], assembly.environment)
     if not has_unread_files:
         _check_complete(unique, findings, Span(bundle))
     return assembly
+
+
+def _with_types_first(model: SkillModel, types: Set[str], findings: Findings) -> SkillModel:
+    """The skill with each parameter whose name stands before its type told, and read as meant."""
+    parameters = list(model.parameters)
+    for index, parameter in enumerate(parameters):
+        name, kind = parameter.type, parameter.name
+        if kind in types and name.isidentifier() and name not in types:
+            span = parameter.type_span or parameter.span
+            findings.error("AOS104", f"the type comes first: `{kind} {name}`", span)
+            parameters[index] = msgspec.structs.replace(parameter, name=name, type=kind)
+    return msgspec.structs.replace(model, parameters=tuple(parameters))
 
 
 def _without_duplicates(

@@ -71,7 +71,10 @@ def lint(
     if compiles and loaded.project is not None:
         # A picture.py that cannot be read is not drawn as well: it would be told twice.
         tried = {n: text for n, text in files.items() if not any(f.span.file == n == PICTURE for f in found)}
-        found = (*found, *_model_findings(tried, path, loaded.project))
+        more = _model_findings(tried, path, loaded.project)
+        if any("no state variable is a" in finding.message for finding in found):
+            more = tuple(finding for finding in more if finding.code != "AOS211")  # They look for an object.
+        found = (*found, *more)
     elif compiles and loaded.draft is not None:
         told = {(finding.span.file, finding.span.line) for finding in found if finding.is_error}
         more = _compiler_errors(files, loaded.draft)

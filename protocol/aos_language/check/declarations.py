@@ -43,6 +43,8 @@ def check_skill_declarations(model: SkillModel, scope: Scope, findings: Findings
     _check_unique([(model.name, model.span)], "a skill", findings)
     for parameter in model.parameters:
         type_span = parameter.type_span or parameter.span
+        if parameter.type_span == parameter.span:
+            continue  # It has no type, as is told already.
         if not _check_type(parameter.type, type_span, scope, findings) or model.possible_parameters:
             continue
         values = [v for v in scope.variables.values() if v.is_parameter_value and v.type == parameter.type]

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Set
 from aos_language.check.blocks import Block, titles_with
 from aos_language.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_language.cpp.absent import without_null
+from aos_language.cpp.bound import bound_paths, changes_bound
 from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, Extent, Mention
 from aos_language.document_code import absent_skills
@@ -35,6 +36,7 @@ class MentionCheck:
         self._absent = self._absent_skills()
         self._always_run = without_null(cpp.code, self._absent)
         self._reported_absent: set[str] = set()
+        self._bound = bound_paths(cpp)
 
     def _absent_skills(self) -> frozenset[str]:
         """Skills that extrinsic code looks for, and that may have been left out."""
@@ -48,6 +50,8 @@ class MentionCheck:
         root = mention.path[0]
         if root in self._scope.shared.drawing and mention.access is not Access.CALL:
             self._check_drawing_function(mention, root)
+        if root in self._bound and changes_bound(self._cpp, mention):
+            self._check_bound(mention, self._bound[root])
         is_parameter = self._block.is_declarations and root in STATE_COPIES and root in self._locals
         if mention.access is Access.CALL or (root in self._locals and not is_parameter):
             return
@@ -138,6 +142,15 @@ class MentionCheck:
                 hint += ". To compare, write `==`"
             self._findings.error("AOS123", f"`{mention.text}` is written in {role.title}", span, hint)
 
+    def _check_bound(self, mention: Mention, path: tuple[str, ...]) -> None:
+        """A reference or a pointer changes what it stands for, which may be a copy that is only read."""
+        role, root = self._block.role, mention.path[0]
+        if path[0] in role.writes or path[0] not in role.reads or self._scope.is_one_state_model:
+            return
+        message = f"`{root}` is a part of `{path[0]}`, which may only be read in {role.title}"
+        hint = f"Only {quoted(role.writes)} may change there" if role.writes else ""
+        self._findings.error("AOS123", message, self._span(mention.root), hint)
+
     def _check_state_path(self, mention: Mention) -> None:
         if len(mention.path) == 1 or not self._scope.has_environment:
             return
@@ -149,6 +162,9 @@ class MentionCheck:
             span = self._part_span(mention.extent, name)
             self._findings.unknown(name, known, f"unknown state variable `{name}`", span, otherwise)
             return
+        if self._scope.lacks_objects(name.removesuffix("Objects")):
+            span = self._part_span(mention.extent, name)
+            check_objects(name.removesuffix("Objects"), f"`{name}` is empty", span, self._findings)
         self._check_fields(mention, found, start=2)
         variable = self._scope.variables.get(name)
         is_write = mention.access in (Access.WRITE, Access.UPDATE)
@@ -245,6 +261,14 @@ class MentionCheck:
         line = extent.line + before.count("\n")
         column = match.start() - before.rfind("\n") if "\n" in before else extent.column + match.start()
         return self._block.snippet.locate(line, column)
+
+
+def check_objects(compound: str, what: str, span: Span, findings: Findings) -> None:
+    """Tells once of a list or a loop over a type that has no objects."""
+    message = f"{what}: no state variable is a {compound}"
+    if all(message != told.message for told in findings.diagnostics):
+        hint = "Action parameters and elements of arrays are not among them"
+        findings.warning("AOS133", message, span, hint)
 
 
 def listing(what: str, names: Iterable[str]) -> str:

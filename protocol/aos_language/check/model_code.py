@@ -6,7 +6,7 @@ import msgspec
 
 from aos_language.check.blocks import DEFAULT, STATES, Block, environment_blocks, read_block, skill_blocks
 from aos_language.check.built_ins import BUILT_INS, check_built_in
-from aos_language.check.mentions import LITERAL_NAMES, MentionCheck, listing
+from aos_language.check.mentions import LITERAL_NAMES, MentionCheck, check_objects, listing
 from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
 from aos_language.check.weights import check_weights
@@ -95,6 +95,8 @@ def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings
                 message = f"unknown compound type `{loop.type}`"
                 otherwise = "A loop runs over a compound type"
                 findings.unknown(loop.type, scope.compounds, message, loop.span, otherwise)
+            elif scope.lacks_objects(loop.type):
+                check_objects(loop.type, "this loop has no rounds", loop.span, findings)
 
 
 class _Around(msgspec.Struct, frozen=True):

@@ -67,7 +67,8 @@ class Scope(msgspec.Struct, frozen=True):
         return cls(
             enums={enum.name: enum for enum in enums},
             compounds={compound.name: compound for compound in compounds},
-            variables={variable.name: variable for variable in reversed(variables)},  # The first of a name.
+            # The first of a name; `state.my-count` begins with `state.my`, and its name is told already.
+            variables={re.split(r"\W", variable.name)[0]: variable for variable in reversed(variables)},
             enum_values={value: enum.name for enum in enums for value in enum.values},
             skills=assembly.models,
             low_level_names=frozenset(c.name for c in low_level.constants) if low_level else frozenset(),
@@ -104,6 +105,13 @@ class Scope(msgspec.Struct, frozen=True):
             if owner != name and (owner in self.compounds or owner in self.enums):
                 return ValueType(owner, is_container=True)
         return None
+
+    def lacks_objects(self, name: str) -> bool:
+        """Returns whether a compound type has no variable for lists of objects and for loops."""
+        own = (v for v in self.variables.values() if v.type == name)
+        return name in self.compounds and not any(
+            not (v.is_array or v.is_constant or v.key_types) for v in own
+        )
 
     def state_member_names(self) -> tuple[str, ...]:
         return (*self.variables, *(f"{name}Objects" for name in (*self.compounds, *self.enums)))

@@ -1,6 +1,7 @@
 """The one-line forms of SDL: `<type> <name> ...`, numbers, and values."""
 
 import re
+from collections.abc import Collection
 
 import msgspec
 
@@ -8,12 +9,14 @@ from aos_language.findings import Findings
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.sdl_text import Part
 from aos_language.reading.source import Text
+from aos_protocol.diagnostics import Mend
 
 _DECLARATION = re.compile(
     r"((?:(?:unsigned|signed|long|short)(?:\s+(?:unsigned|signed|long|short|int|char|double)\b)*(?=\s)"
     r"|[A-Za-z_][\w:]*)(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[=]+)(\s*)"
 )
 _BASIC = ("int", "float", "double", "bool", "string")
+_NAME = re.compile(r"[A-Za-z_]\w*")
 _TRUTHS = {"true": True, "false": False}
 
 
@@ -26,19 +29,32 @@ class Declaration(msgspec.Struct, frozen=True):
     rest: Text
 
 
-def read_declaration(part: Part, what: str, findings: Findings) -> Declaration | None:
-    """The declaration in a part's value; None, with an error, where it is none."""
+def read_declaration(
+    part: Part, what: str, findings: Findings, types: Collection[str] = ()
+) -> Declaration | None:
+    """The declaration in a part's value; None, with an error, where it is none.
+
+    Where the name stands before one of these types, or a basic one, this is told, and read as meant. A name
+    alone has the type `auto`: its uses are no mistakes of their own.
+    """
+    known = {*_BASIC, *types}
     match = _DECLARATION.match(part.value.text)
     if match is None:
         message = f"`{part.word}:` needs a type and a name"
-        findings.error("AOS104", message, part.value.span if part.value.text else part.span)
-        return None
+        text = part.value
+        is_name = _NAME.fullmatch(text.text) is not None and text.text not in known
+        hint = f"Write `int {text.text}`, or another type before the name" if is_name else ""
+        findings.error("AOS104", message, text.span if text.text else part.span, hint)
+        return Declaration("auto", text, text, text.after(len(text.text))) if is_name else None
     type_text = Text(match.group(1), part.value.after(0).span)
     name = Text(match.group(3), part.value.after(match.start(3)).span)
-    if name.text in _BASIC and type_text.text not in _BASIC:
-        message = f"the type comes first: `{name.text} {type_text.text}`"
-        findings.error("AOS104", message, type_text.span)
-        return None
+    if name.text in known and type_text.text not in known and (bare := _NAME.match(type_text.text)):
+        meant = f"{name.text} {bare[0]}{type_text.text[bare.end() :].lstrip()}"
+        mend = Mend(type_text.span, match.end(3), meant)
+        findings.error("AOS104", f"the type comes first: `{meant}`", type_text.span, mend=mend)
+        array_mark = type_text.after(bare.end()).strip()
+        rest = array_mark if array_mark.text else part.value.after(match.end()).strip()
+        return Declaration(name.text, name, Text(bare[0], type_text.span), rest)
     check_name(name, what, findings)
     kind = normal_type(type_text, findings)
     return Declaration(kind, type_text, name, part.value.after(match.end()).strip())

@@ -1,7 +1,7 @@
 """The environment file (`.ef`)."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from aos_language.findings import Findings
 from aos_language.reading.code import expression
@@ -25,9 +25,10 @@ def read_environment(
     sections: Sections, project: str, span: Span, findings: Findings
 ) -> documents.Environment:
     """The environment; what cannot be read of it is reported and left out."""
-    types = [_type(section, findings) for section in sections.all("define_type")]
+    names = [section.value.text for section in sections.all("define_type")]
+    types = [_type(section, names, findings) for section in sections.all("define_type")]
     variables = [
-        _variable(section, findings)
+        _variable(section, names, findings)
         for section in sections.of("state_variable", "action_parameter", "mission_parameter")
     ]
     return documents.Environment(
@@ -122,14 +123,16 @@ def _form_a(section: Section, findings: Findings) -> documents.SpecialState | No
     return documents.SpecialState(section.span, holds, number, is_goal, is_one_time, is_failure)
 
 
-def _type(section: Section, findings: Findings) -> documents.EnumType | documents.CompoundType | None:
+def _type(
+    section: Section, names: Sequence[str], findings: Findings
+) -> documents.EnumType | documents.CompoundType | None:
     name = section.value
     if not name.text:
         findings.error("AOS105", "`define_type:` needs a name", section.span)
         return None
     check_name(name, "a type", findings)
     members = section.last("enum_members", findings)
-    fields = [_field(part, findings) for part in section.all("variable")]
+    fields = [_field(part, names, findings) for part in section.all("variable")]
     if members is not None and fields:
         message = f"the type {name.text} is an enum or has variables, not both"
         findings.error("AOS106", message, members.span)
@@ -141,8 +144,8 @@ def _type(section: Section, findings: Findings) -> documents.EnumType | document
     return documents.CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
 
 
-def _field(part: Part, findings: Findings) -> documents.Field | None:
-    declaration = read_declaration(part, "a field", findings)
+def _field(part: Part, names: Sequence[str], findings: Findings) -> documents.Field | None:
+    declaration = read_declaration(part, "a field", findings, names)
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)
@@ -177,8 +180,10 @@ def _without_learning_scale(rest: Text) -> Text:
     return Text(match.group(1), rest.span) if match else rest
 
 
-def _variable(section: Section, findings: Findings) -> documents.StateVariable | None:
-    declaration = read_declaration(section, "a variable", findings)
+def _variable(
+    section: Section, names: Sequence[str], findings: Findings
+) -> documents.StateVariable | None:
+    declaration = read_declaration(section, "a variable", findings, names)
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)

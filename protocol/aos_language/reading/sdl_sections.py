@@ -150,8 +150,9 @@ class Sections:
         return self.of(word)
 
     def last(self, word: str) -> Section | None:
-        """The last section of that word; a warning for each before it, which does not count."""
-        return last_of(self.all(word), self._findings)
+        """The last section of that word, as `last_of` has it; a second `project:` begins a document."""
+        projects = [section.span.line for section in self.of("project")]
+        return last_of(self.all(word), self._findings, projects)
 
     def block(self, word: str) -> tuple[Assignment, ...]:
         """The model code of a section."""

@@ -8,7 +8,7 @@ which open a part of the one that is open, is the grammar of the file's kind. A 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from enum import Enum
 from typing import TypeVar
 
@@ -103,12 +103,26 @@ class Section(Part):
         return last_of(list(self.all(word)), findings)
 
 
-def last_of(parts: list[P], findings: Findings) -> P | None:
-    """The last of several parts of one name, with a warning for each that it replaces."""
+def last_of(parts: list[P], findings: Findings, ends: Collection[int] = ()) -> P | None:
+    """The last of several parts of one name, with an error for each whose text would be lost.
+
+    Where it says the same, or a whole document ends between them, on one of these lines, it is a warning.
+    """
     for part in parts[:-1]:
-        hint = f"The one on line {parts[-1].span.line} counts"
-        findings.warning("AOS125", f"`{part.word}:` is given more than once", part.span, hint)
+        last, message = parts[-1], f"`{part.word}:` is given more than once"
+        if _said(part) == _said(last) or any(part.span.line < line < last.span.line for line in ends):
+            findings.warning("AOS125", message, part.span, f"The one on line {last.span.line} counts")
+        else:
+            rest = "Leave one of them out" if part.body is Body.NONE else "Write all of it below one"
+            hint = f"Only that on line {last.span.line} would count. {rest}"
+            findings.error("AOS103", message, part.span, hint)
     return parts[-1] if parts else None
+
+
+def _said(part: Part) -> list[str]:
+    inner = part.parts if isinstance(part, Section) else ()
+    own = [text for line in (part.value, *part.lines) if (text := line.text.strip())]
+    return own + [text for each in inner for text in (each.word, *_said(each))]
 
 
 def listed_values(part: Part, findings: Findings) -> list[Text]:

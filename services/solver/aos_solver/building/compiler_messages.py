@@ -35,6 +35,8 @@ _OF_STREAMS = re.compile(r".*`std::(\w+)` from `std::ios_base&.*")
 _SUFFIX = re.compile(
     r"unable to find numeric literal operator `operator\"\"\s*(\w+)`.*|invalid suffix [`\"](\w+)[`\"] on .*"
 )
+_BOUND = re.compile(r"binding reference of type `(.+?)&?` to (?:value of type )?`const .*")
+_OF_CONST = re.compile(r"read-only|discards qualifiers|const-qualified|no match.* call to .*\(const [^()]*&")
 _CONSEQUENCES = ("<expression error>", "cannot be set to a list in braces", "and these are others")
 """Said too where a name within was not declared."""
 _FAULTS = ("error", "fatal error", "Error")
@@ -115,13 +117,21 @@ def _without_consequences(diagnostics: list[Diagnostic], emitted: EmittedModel) 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Each complaint once for a line: a template is complained about for every use of it."""
     first: dict[tuple[str, int, str], Diagnostic] = {}
+    bound = {
+        (found.span.file, found.span.line)
+        for found in diagnostics
+        if "may change what it is given" in found.message
+    }
     named = {found.span for found in diagnostics if _NOT_DECLARED.fullmatch(found.message)}
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
             continue  # Said of the same name.
         if named and any(word in diagnostic.message for word in _CONSEQUENCES):
             continue  # It follows from another.
-        first.setdefault((diagnostic.span.file, diagnostic.span.line, diagnostic.message), diagnostic)
+        line = (diagnostic.span.file, diagnostic.span.line)
+        if diagnostic.message.startswith("no match for call") and line in bound:
+            continue  # The argument is told.
+        first.setdefault((*line, diagnostic.message), diagnostic)
     return list(first.values())
 
 
@@ -155,6 +165,7 @@ def _plain(text: str) -> tuple[str, str]:
     text = re.sub(r"\.<lambda\([^)]*\)>(?=\()", "", _WITHIN.sub("", text))
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
+    text = re.sub(r"`\(lambda at [^)]*\)`", "a lambda", text)
     text = text.replace("was not declared in this scope", "was not declared").replace(
         "aos::AnySource::", "AOS."
     )
@@ -177,6 +188,13 @@ def _plain(text: str) -> tuple[str, str]:
         return f"`{name[1]}` was not declared", ""
     if _A_TEXT.search(text):
         return text, "Numbers, values of enums and responses are written without quotes"
+    if (bound := _BOUND.fullmatch(text)) is not None:
+        return (
+            f"`{bound[1]}&` may change what it is given, and this is only read",
+            f"Write `const {bound[1]}&`, or give a copy of the state that may change here",
+        )
+    if _OF_CONST.search(text):
+        return text, "What is `const`, or of a copy of the state that is only read here, does not change"
     message, separator, suggestion = text.partition("; ")
     if separator and suggestion.startswith("did you mean"):
         return message, suggestion[0].upper() + suggestion[1:]

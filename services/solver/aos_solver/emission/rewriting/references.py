@@ -7,11 +7,10 @@ A reference that changes a const state does not compile all the same.
 import re
 from collections.abc import Iterator
 
-from aos_language.cpp.flow import STATES
-from aos_language.cpp.snippets import Cpp, Declaration, DeclarationKind
+from aos_language.cpp.bound import path_bound
+from aos_language.cpp.snippets import Cpp, DeclarationKind
 
 _TYPE = re.compile(r"(?:^|[;{}(])\s*([A-Za-z_][\w:]*(?:\s+[A-Za-z_][\w:]*)*)\s*[&*]\s*$")
-_LOOP_COLON = re.compile(r"\s*:\s*")
 _NO_TYPE = re.compile(r"\b(?:auto|const|return|static)\b")
 
 
@@ -25,7 +24,7 @@ def reference_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
     for declaration in cpp.declarations:
         if declaration.kind is not DeclarationKind.VARIABLE or declaration.type[-1:] not in ("&", "*"):
             continue
-        path = _path_bound(cpp, declaration)
+        path = path_bound(cpp, declaration)
         if not path:
             continue
         before = cpp.code[: declaration.extent.start].rstrip()
@@ -33,14 +32,3 @@ def reference_edits(cpp: Cpp) -> Iterator[tuple[int, int, str]]:
             yield len(before), len(before), "&"
         elif (found := _TYPE.search(before)) is not None and not _NO_TYPE.search(found[1]):
             yield found.start(1), found.end(1), "auto"
-
-
-def _path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
-    """The path of the state that a reference or pointer, or that of a loop, is bound to; empty for others."""
-    initial = declaration.initial
-    loop = _LOOP_COLON.match(cpp.code, declaration.extent.end) if initial is None else None
-    start = initial.start if initial is not None else loop.end() if loop is not None else None
-    if start is not None and initial is not None and declaration.type.endswith("*"):
-        start = start + 1 if cpp.code.startswith("&", start) else None
-    paths = (m.path for m in cpp.mentions if m.extent.start == start and m.path[0] in STATES and not m.method)
-    return next(paths, ())
