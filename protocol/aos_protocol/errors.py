@@ -30,7 +30,7 @@ from aos_protocol.spelling import shortened
 CODES: dict[str, str] = {
     "AOS101": "the file cannot be read",
     "AOS102": "unknown key or section",
-    "AOS103": "the same key twice",
+    "AOS103": "the same key or section twice",
     "AOS104": "the file is not well-formed",
     "AOS105": "a required key or section is missing",
     "AOS106": "a value has the wrong type",
@@ -59,7 +59,7 @@ CODES: dict[str, str] = {
     "AOS130": "the other dialect cannot say this exactly",
     "AOS131": "a precondition that is never met",
     "AOS132": "a goal that nothing leads to",
-    "AOS133": "a variable that nothing uses",
+    "AOS133": "a variable that nothing uses, or a list without objects",
     "AOS134": "a local variable that tells the state",
     "AOS136": "a reported number that the abstraction mapping does not give",
     "AOS137": "an ending that its reward decides",

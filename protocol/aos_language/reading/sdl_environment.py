@@ -153,7 +153,9 @@ def _field(part: Part, names: Sequence[str], findings: Findings) -> documents.Fi
     if (mark := _ARRAY_MARK.match(rest.text)) is not None:
         kind, rest = f"{kind}[{mark[1]}]", rest.after(mark.end())
     if rest.text.startswith("["):
-        hint = f"Write `variable: vector<{kind}> {declaration.name.text}`"
+        size = re.match(r"\[\s*(\d+)\s*\]", rest.text)
+        container = f"array<{kind}, {size[1]}>" if size else f"vector<{kind}>"
+        hint = f"Write `variable: {container} {declaration.name.text}`"
         findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
         return None
     if rest.text.startswith("="):

@@ -1,6 +1,7 @@
 // Which states the actions can reach: every outcome of every action, breadth first, whatever its probability.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <vector>
@@ -20,15 +21,21 @@ class Reachability {
   // `seconds` are of processor time.
   Reachability(const Belief<Model>& belief, double seconds)
       : unmet_(static_cast<std::size_t>(Model::action_count())), is_met_(unmet_, false) {
-    const auto latest = processor_time() + std::chrono::duration<double>{seconds};
+    const auto start = processor_time();
+    double work = 0;
     try {
       if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
       space_.reach_within(belief, 0);
       while (look(), !space_.is_closed()) {
-        if (is_done()) space_.limit(later_limits);
-        if (processor_time() > latest) throw NotEnumerable{"it takes longer than allowed"};
+        const double spent = std::chrono::duration<double>{processor_time() - start}.count();
+        if (spent > seconds) throw NotEnumerable{"it takes longer than allowed"};
+        // One more action may take far longer than all before: it may do as much work as there is time for.
+        ListLimits now = is_done() ? later_limits : limits;
+        now.work = std::min(now.work, least_work + static_cast<std::size_t>(work / spent * (seconds - spent)));
+        space_.limit(now);
         const std::size_t known = space_.size();
         space_.reach_within(belief, 1);
+        work += static_cast<double>(space_.work());
         if (space_.size() > known) ++depth_;
       }
     } catch (const NotEnumerable& limit) {
@@ -69,7 +76,10 @@ class Reachability {
     --unmet_;
   }
 
-  StateSpace<Model> space_{{.states = 100'000, .bytes = std::size_t{256} << 20}};
+  static constexpr ListLimits limits{.states = 100'000, .bytes = std::size_t{256} << 20};
+  static constexpr std::size_t least_work = 100'000;  // a tenth of a second at most
+
+  StateSpace<Model> space_{limits};
   std::size_t unmet_;
   std::vector<bool> is_met_;
   std::uint32_t looked_at_ = 0;
