@@ -64,7 +64,8 @@ def assemble(
             case AbstractionMapping() as mapping if document.name:
                 assembly.mappings[document.name] = mapping
     if assembly.environment is not None:
-        types = {kind.name for kind in (*assembly.environment.enums, *assembly.environment.compounds)}
+        enums, compounds = assembly.environment.enums, assembly.environment.compounds
+        types = {enum.name for enum in enums} | {compound.name for compound in compounds}
         assembly.models = {
             name: _with_types_first(model, types, findings) for name, model in assembly.models.items()
         }

@@ -230,6 +230,11 @@ async def test_a_mistake_with_a_map_names_its_keys(
             "`std::pair<int, std::string >` cannot be set to a list in braces",
             NO_VALUE,
         ),
+        (
+            "auto set = [](int& x) { x = 1; }; set(state.row[0]);",
+            "`int&` may change what it is given, and this is only read",
+            "no matching function for call to object of type a lambda",
+        ),
     ],
 )
 async def test_types_are_told_by_their_names_in_documents(
@@ -242,6 +247,8 @@ async def test_types_are_told_by_their_names_in_documents(
     hint = "An element of it has square brackets: `[i]`" if "an array" in by_gcc else ""
     if "a number" in by_gcc:
         hint = "Write `(Side)` before it; a draw is `AOS.SampleDiscrete(Side, {...})`"
+    if only.message.endswith("only read"):
+        hint = "Write `const int&`, or give a copy of the state that may change here"
     assert (only.message, only.hint) == (await said(by_gcc, by_clang), hint)
 
 

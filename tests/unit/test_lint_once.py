@@ -217,5 +217,5 @@ def test_a_list_and_a_loop_without_objects_are_told_once():
     skill = SKILL.replace("state__.second.x =", f"{loop}\nint next =")
     assert finding_texts(environment=environment, skill=skill) == [
         "9 AOS133 `CellObjects` is empty: no state variable is a Cell. Action parameters and elements of "
-        "arrays are not among them",
+        "arrays are not among them"
     ]

@@ -21,7 +21,7 @@ def path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
 
 
 def bound_paths(cpp: Cpp) -> dict[str, tuple[str, ...]]:
-    """Returns what each name stands for that is declared once, as a reference or a pointer that is not const."""
+    """Returns what each name stands for that is declared once, as a reference or pointer, and not const."""
     names = Counter(declaration.name for declaration in cpp.declarations)
     places = [
         declaration
@@ -33,7 +33,7 @@ def bound_paths(cpp: Cpp) -> dict[str, tuple[str, ...]]:
 
 
 def changes_bound(cpp: Cpp, mention: Mention) -> bool:
-    """Returns whether a mention of such a name changes what it stands for: a pointer itself is none of that."""
+    """Returns whether a mention of such a name changes what it stands for, and not only a pointer."""
     if mention.access not in (Access.WRITE, Access.UPDATE):
         return False
     own = next(each for each in cpp.declarations if each.name == mention.path[0])

@@ -182,9 +182,7 @@ def _without_learning_scale(rest: Text) -> Text:
     return Text(match.group(1), rest.span) if match else rest
 
 
-def _variable(
-    section: Section, names: Sequence[str], findings: Findings
-) -> documents.StateVariable | None:
+def _variable(section: Section, names: Sequence[str], findings: Findings) -> documents.StateVariable | None:
     declaration = read_declaration(section, "a variable", findings, names)
     if declaration is None:
         return None
