@@ -79,13 +79,12 @@ def assemble(
 
 def _with_types_first(model: SkillModel, types: Set[str], findings: Findings) -> SkillModel:
     """The skill with each parameter whose name stands before its type told, and read as meant."""
-    parameters = list(model.parameters)
-    for index, parameter in enumerate(parameters):
-        name, kind = parameter.type, parameter.name
-        if kind in types and name.isidentifier() and name not in types:
-            span = parameter.type_span or parameter.span
-            findings.error("AOS104", f"the type comes first: `{kind} {name}`", span)
-            parameters[index] = msgspec.structs.replace(parameter, name=name, type=kind)
+    parameters = []
+    for each in model.parameters:
+        if each.name in types and each.type.isidentifier() and each.type not in types:
+            findings.error("AOS104", f"the type comes first: `{each.name} {each.type}`", each.span)
+            each = msgspec.structs.replace(each, name=each.type, type=each.name)
+        parameters.append(each)
     return msgspec.structs.replace(model, parameters=tuple(parameters))
 
 

@@ -67,7 +67,7 @@ class Scope(msgspec.Struct, frozen=True):
         return cls(
             enums={enum.name: enum for enum in enums},
             compounds={compound.name: compound for compound in compounds},
-            # The first of a name; `state.my-count` begins with `state.my`, and its name is told already.
+            # The first of a name. The name `my-count` is told already, and not its uses `state.my`.
             variables={re.split(r"\W", variable.name)[0]: variable for variable in reversed(variables)},
             enum_values={value: enum.name for enum in enums for value in enum.values},
             skills=assembly.models,

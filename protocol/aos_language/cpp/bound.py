@@ -3,14 +3,14 @@
 import re
 from collections import Counter
 
-from aos_language.cpp.facts import Access, Cpp, Declaration, DeclarationKind, Mention
+from aos_language.cpp.facts import Access, Cpp, Declaration, Mention
 from aos_language.cpp.flow import STATES
 
 _LOOP_COLON = re.compile(r"\s*:\s*")
 
 
 def path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
-    """Returns the path of the state that a reference or pointer, or that of a loop, is bound to; empty for others."""
+    """Returns the path of the state that a reference or pointer is bound to, also in a loop; else nothing."""
     initial = declaration.initial
     loop = _LOOP_COLON.match(cpp.code, declaration.extent.end) if initial is None else None
     start = initial.start if initial is not None else loop.end() if loop is not None else None
@@ -21,15 +21,14 @@ def path_bound(cpp: Cpp, declaration: Declaration) -> tuple[str, ...]:
 
 
 def bound_paths(cpp: Cpp) -> dict[str, tuple[str, ...]]:
-    """Returns what each name stands for that is declared once, as a reference or pointer, and not const."""
+    """Returns what each reference or pointer stands for that is declared once and is not const."""
     names = Counter(declaration.name for declaration in cpp.declarations)
-    places = [
-        declaration
-        for declaration in cpp.declarations
-        if declaration.kind is DeclarationKind.VARIABLE and names[declaration.name] == 1
-        if declaration.type[-1:] in ("&", "*") and not declaration.type.startswith("const")
-    ]
-    return {place.name: path for place in places if (path := path_bound(cpp, place))}
+    return {
+        place.name: path
+        for place in cpp.declarations
+        if names[place.name] == 1 and re.fullmatch(r"(?!const).*[&*]", place.type)
+        if (path := path_bound(cpp, place))
+    }
 
 
 def changes_bound(cpp: Cpp, mention: Mention) -> bool:

@@ -34,8 +34,8 @@ def read_declaration(
 ) -> Declaration | None:
     """The declaration in a part's value; None, with an error, where it is none.
 
-    Where the name stands before one of these types, or a basic one, this is told, and read as meant. A name
-    alone has the type `auto`: its uses are no mistakes of their own.
+    Where the name stands before one of these types, or a basic one, it is read as meant. A name alone is of
+    type `auto`.
     """
     known = {*_BASIC, *types}
     match = _DECLARATION.match(part.value.text)

@@ -106,7 +106,7 @@ class Section(Part):
 def last_of(parts: list[P], findings: Findings, ends: Collection[int] = ()) -> P | None:
     """The last of several parts of one name, with an error for each whose text would be lost.
 
-    Where it says the same, or a whole document ends between them, on one of these lines, it is a warning.
+    It is a warning where it says the same, or a document ends between them, on one of these lines.
     """
     for part in parts[:-1]:
         last, message = parts[-1], f"`{part.word}:` is given more than once"

@@ -36,7 +36,6 @@ _SUFFIX = re.compile(
     r"unable to find numeric literal operator `operator\"\"\s*(\w+)`.*|invalid suffix [`\"](\w+)[`\"] on .*"
 )
 _BOUND = re.compile(r"binding reference of type `(.+?)&?` to (?:value of type )?`const .*")
-_OF_CONST = re.compile(r"read-only|discards qualifiers|const-qualified|no match.* call to .*\(const [^()]*&")
 _CONSEQUENCES = ("<expression error>", "cannot be set to a list in braces", "and these are others")
 """Said too where a name within was not declared."""
 _FAULTS = ("error", "fatal error", "Error")
@@ -117,11 +116,7 @@ def _without_consequences(diagnostics: list[Diagnostic], emitted: EmittedModel) 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Each complaint once for a line: a template is complained about for every use of it."""
     first: dict[tuple[str, int, str], Diagnostic] = {}
-    bound = {
-        (found.span.file, found.span.line)
-        for found in diagnostics
-        if "may change what it is given" in found.message
-    }
+    bound = {(f.span.file, f.span.line) for f in diagnostics if f.message.endswith("this is only read")}
     named = {found.span for found in diagnostics if _NOT_DECLARED.fullmatch(found.message)}
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
@@ -193,8 +188,6 @@ def _plain(text: str) -> tuple[str, str]:
             f"`{bound[1]}&` may change what it is given, and this is only read",
             f"Write `const {bound[1]}&`, or give a copy of the state that may change here",
         )
-    if _OF_CONST.search(text):
-        return text, "What is `const`, or of a copy of the state that is only read here, does not change"
     message, separator, suggestion = text.partition("; ")
     if separator and suggestion.startswith("did you mean"):
         return message, suggestion[0].upper() + suggestion[1:]

@@ -29,9 +29,9 @@ class Reachability {
       while (look(), !space_.is_closed()) {
         const double spent = std::chrono::duration<double>{processor_time() - start}.count();
         if (spent > seconds) throw NotEnumerable{"it takes longer than allowed"};
-        // One more action may take far longer than all before: it may do as much work as there is time for.
+        // The next action may take far longer than all before.
         ListLimits now = is_done() ? later_limits : limits;
-        now.work = std::min(now.work, least_work + static_cast<std::size_t>(work / spent * (seconds - spent)));
+        now.work = std::min(now.work, static_cast<std::size_t>(1e5 + work / spent * (seconds - spent)));
         space_.limit(now);
         const std::size_t known = space_.size();
         space_.reach_within(belief, 1);
@@ -77,7 +77,6 @@ class Reachability {
   }
 
   static constexpr ListLimits limits{.states = 100'000, .bytes = std::size_t{256} << 20};
-  static constexpr std::size_t least_work = 100'000;  // a tenth of a second at most
 
   StateSpace<Model> space_{limits};
   std::size_t unmet_;
