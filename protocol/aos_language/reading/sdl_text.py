@@ -113,8 +113,7 @@ def last_of(parts: list[P], findings: Findings, ends: Collection[int] = ()) -> P
         if _said(part) == _said(last) or any(part.span.line < line < last.span.line for line in ends):
             findings.warning("AOS125", message, part.span, f"The one on line {last.span.line} counts")
         else:
-            rest = "Leave one of them out" if part.body is Body.NONE else "Write all of it below one"
-            hint = f"Only that on line {last.span.line} would count. {rest}"
+            hint = f"Only that on line {last.span.line} would count. Make one of them"
             findings.error("AOS103", message, part.span, hint)
     return parts[-1] if parts else None
 
