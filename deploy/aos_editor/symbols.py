@@ -21,6 +21,7 @@ from aos_language.check.blocks import (
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, OUR_NAMES, SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Extent, FaultKind, Mention
+from aos_language.cpp.tokens import line_and_column
 from aos_language.document_code import shared_code_of
 from aos_language.findings import Findings
 from aos_language.local_types import reported_variables
@@ -267,9 +268,8 @@ class _BlockNames:
         places = [word for word in re.finditer(r"\w+", text) if word.group() == symbol.name]
         if before < len(places):
             start = mention.extent.start + places[before].start()
-            line = self._cpp.code.count("\n", 0, start) + 1
-            column = start - self._cpp.code.rfind("\n", 0, start)
-            yield Occurrence(symbol, self._block.snippet.locate(line, column))
+            span = self._block.snippet.locate(*line_and_column(self._cpp.code, start))
+            yield Occurrence(symbol, span)
 
     def _at(self, symbol: Symbol, extent: Extent) -> Occurrence:
         return Occurrence(symbol, self._block.snippet.locate(extent.line, extent.column))

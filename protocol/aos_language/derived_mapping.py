@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterator
 
 from aos_language.cpp.keywords import SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Extent, Mention
+from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.values import value_names
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.local_types import RESERVED_LOCAL_NAMES
@@ -181,8 +182,7 @@ def _within(extent: Extent, cpp: Cpp) -> Iterator[Mention]:
 
 
 def _place(snippet: Snippet, cpp: Cpp, offset: int) -> Span:
-    line = cpp.code.count("\n", 0, offset) + 1
-    return snippet.locate(line, offset - cpp.code.rfind("\n", 0, offset))
+    return snippet.locate(*line_and_column(cpp.code, offset))
 
 
 def _has_text_response(model: SkillModel) -> bool:

@@ -212,7 +212,7 @@ def _weights(cpp: Cpp, call: Call) -> list[_Weight] | None:
 
 def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
     """A number, or a constant of the same code that is one."""
-    use = _extent(cpp.code, start + len(text) - len(text.lstrip()), text.strip())
+    use = Extent.of(cpp.code, start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
     if _NUMBER.fullmatch(text.strip()):
         return _Weight(use, use)
     for declaration in cpp.declarations:
@@ -224,11 +224,6 @@ def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
             value = cpp.code[declaration.initial.start : declaration.initial.end]
             return _Weight(use, declaration.initial) if _NUMBER.fullmatch(value) else None
     return None
-
-
-def _extent(code: str, start: int, text: str) -> Extent:
-    line = code.count("\n", 0, start) + 1
-    return Extent(start, start + len(text), line, start - code.rfind("\n", 0, start))
 
 
 def _is_repeated(code: str, offset: int) -> bool:

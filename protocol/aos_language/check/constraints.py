@@ -10,6 +10,7 @@ from aos_language.check.blocks import Block, Role
 from aos_language.check.model_code import check_block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.snippets import Access, Cpp, read_cpp_expression, strip_comments
+from aos_language.cpp.tokens import line_and_column
 from aos_language.findings import Findings
 from aos_protocol.documents import Constraint, Project, Snippet
 
@@ -68,8 +69,7 @@ def _check_expression(snippet: Snippet, role: Role, findings: Findings) -> None:
     for offset, character in enumerate(code):
         depth += (character in "([{") - (character in ")]}")
         if character == ";" and depth == 0:
-            line = code.count("\n", 0, offset) + 1
-            span = snippet.locate(line, offset - code.rfind("\n", 0, offset))
+            span = snippet.locate(*line_and_column(code, offset))
             findings.error("AOS108", f"{role.title} is one expression", span, "Join conditions by && and ||")
             return
 

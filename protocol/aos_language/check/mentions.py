@@ -290,8 +290,4 @@ def subscripts_of(mention: Mention, code: str) -> Iterator[Extent | None]:
             depth -= 1
             if depth == 0:
                 match = _LONE_NAME.fullmatch(code, start, at)
-                yield _extent(code, *match.span(1)) if match is not None else None
-
-
-def _extent(code: str, start: int, end: int) -> Extent:
-    return Extent(start, end, code.count("\n", 0, start) + 1, start - code.rfind("\n", 0, start))
+                yield Extent.of(code, *match.span(1)) if match is not None else None

@@ -11,6 +11,7 @@ from aos_language.check.scope import Scope
 from aos_language.check.shared_calls import check_shared_call
 from aos_language.check.weights import check_weights
 from aos_language.cpp.snippets import Call, Cpp, DeclarationKind, Extent, FaultKind, read_cpp
+from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.unset import unset_reads
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Mend, Span
@@ -182,9 +183,7 @@ class _BlockCheck:
 
     def _check_semicolons(self) -> None:
         for offset in self._cpp.missing_semicolons:
-            line = self._cpp.code.count("\n", 0, offset) + 1
-            column = offset - (self._cpp.code.rfind("\n", 0, offset) + 1) + 1
-            span = self._block.snippet.locate(line, column)
+            span = self._block.snippet.locate(*line_and_column(self._cpp.code, offset))
             mend = Mend(span, 0, ";")
             self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in", mend)
 

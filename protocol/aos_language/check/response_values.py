@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from aos_language.check.blocks import Block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.snippets import Cpp
+from aos_language.cpp.tokens import line_and_column
 from aos_language.cpp.values import values
 from aos_language.findings import Findings
 from aos_protocol.spelling import quoted
@@ -30,9 +31,7 @@ def check_response_values(
                 continue
             assigned = mention.assigned
             for kind, value, offset in values(cpp.code[assigned.start : assigned.end]):
-                at = assigned.start + offset
-                column = at - cpp.code.rfind("\n", 0, at)
-                span = block.snippet.locate(cpp.code.count("\n", 0, at) + 1, column)
+                span = block.snippet.locate(*line_and_column(cpp.code, assigned.start + offset))
                 is_number = kind == "number_literal"
                 if is_text and (type_name := "number" if is_number else _type_of(value, block, cpp, scope)):
                     message = f"__moduleResponseStr takes a text, and `{value}` is of the type {type_name}"

@@ -9,7 +9,7 @@ import unicodedata
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import msgspec
 
@@ -52,6 +52,16 @@ class Extent(NamedTuple):
     end: int
     line: int
     column: int
+
+    @classmethod
+    def of(cls, code: str, start: int, end: int) -> Self:
+        """The extent of `code[start:end]`."""
+        return cls(start, end, *line_and_column(code, start))
+
+
+def line_and_column(code: str, offset: int) -> tuple[int, int]:
+    """The place of a character of a text, counted from 1."""
+    return code.count("\n", 0, offset) + 1, offset - code.rfind("\n", 0, offset)
 
 
 _IN_PLACE_OF = {

@@ -19,6 +19,7 @@ from aos_language.cpp.snippets import (
     read_cpp_expression,
     strip_comments,
 )
+from aos_language.cpp.tokens import line_and_column
 from aos_language.document_code import snippets_of
 from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
@@ -151,8 +152,7 @@ class Pieces:
         for name in unrepeatable_names(frozenset(named - own), code):
             at = re.search(rf"\b{re.escape(name)}\b", code)
             start = at.start() if at is not None else 0
-            line = code.count("\n", 0, start) + 1
-            span = snippet.locate(line, start - code.rfind("\n", 0, start))
+            span = snippet.locate(*line_and_column(code, start))
             hint = "Draw with AOS.Bernoulli and its like; keep what changes in the state"
             self._findings.error(
                 "AOS124", f"`{name}` makes a step that cannot be repeated exactly", span, hint
