@@ -162,6 +162,8 @@ def test_shared_code_that_is_no_cpp_is_an_error_that_no_compiler_follows():
         ("int x 0", "x int 0", "the type comes first: `int x`"),
         ("state_variable: Cell first", "state_variable: first Cell", "the type comes first: `Cell first`"),
         ("int x 0", "x", "`variable:` needs a type and a name"),
+        ("int x 0", "int x [2]", "unexpected '[2]'"),
+        ("horizon: 4", "horizon: 4\na hall\nof cells", "text after `horizon:` that belongs to no section"),
     ],
 )
 def test_uses_of_a_variable_that_is_declared_wrongly_are_no_mistakes(before, wrong, told):

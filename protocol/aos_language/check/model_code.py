@@ -97,7 +97,7 @@ def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings
                 otherwise = "A loop runs over a compound type"
                 findings.unknown(loop.type, scope.compounds, message, loop.span, otherwise)
             elif scope.lacks_objects(loop.type):
-                check_objects(loop.type, "no rounds", loop.span, findings)
+                check_objects(loop.type, "this loop has no rounds", loop.span, findings)
 
 
 class _Around(msgspec.Struct, frozen=True):

@@ -112,15 +112,15 @@ def _types(record: Record) -> tuple[tuple[documents.EnumType, ...], tuple[docume
             hint = f"It is read as {kind.text.lower()}"
             record.findings.warning("AOS127", f"the kind {kind.text}", kind.span, hint)
             kind = msgspec.structs.replace(kind, text=kind.text.lower())
-        if kind.text == "enum":
+        if kind.text not in _KINDS:
+            message = f"a type is an enum or a compound, not {kind.text!r}"
+            record.findings.error("AOS106", message, kind.span)
+        if kind.text == "enum" or (values and kind.text not in _KINDS):
             if not values:
                 record.findings.error("AOS105", f"the enum {name.text} has no values", name.span)
             enums.append(enum_type(name, values, record.findings))
-        elif kind.text == "compound":
-            compounds.append(documents.CompoundType(name.text, tuple(f for f in fields if f), name.span))
         else:
-            message = f"a type is an enum or a compound, not {kind.text!r}"
-            record.findings.error("AOS106", message, kind.span)
+            compounds.append(documents.CompoundType(name.text, tuple(f for f in fields if f), name.span))
     return tuple(enums), tuple(compounds)
 
 

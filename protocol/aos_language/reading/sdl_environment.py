@@ -157,7 +157,7 @@ def _field(part: Part, names: Sequence[str], findings: Findings) -> documents.Fi
         container = f"array<{kind}, {size[1]}>" if size else f"vector<{kind}>"
         hint = f"Write `variable: {container} {declaration.name.text}`"
         findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
-        return None
+        kind, rest = container, rest.after(len(rest.text))
     if rest.text.startswith("="):
         findings.warning("AOS127", "an equals sign before a default", rest.span, "It is skipped")
         rest = rest.after(1).strip()

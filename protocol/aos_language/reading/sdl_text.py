@@ -169,6 +169,7 @@ class _Scanner:
         self._sections: list[Section] = []
         self._current: Part | None = None
         self._comment: Span | None = None
+        self._stray_line = -1
         self._has_cpp = any(entry.body is Body.CPP for entry in grammar.values())
 
     def sections(self) -> list[Section]:
@@ -314,7 +315,11 @@ class _Scanner:
                 self._current.lines.append(_without_comment(line))
         elif line.text.strip() and not is_comment:
             where = f"after `{self._current.word}:`" if self._current else "before the first section"
-            self._findings.error("AOS104", f"text {where} that belongs to no section", line.strip().span)
+            if line.span.line != self._stray_line + 1:
+                message, word = f"text {where} that belongs to no section", "_".join(line.text.split())
+                hint = f"Did you mean `{word}`?" if word[:-1] in self._grammar else ""
+                self._findings.error("AOS104", message, line.strip().span, hint)
+            self._stray_line = line.span.line
 
 
 def _without_comment(value: Text) -> Text:
