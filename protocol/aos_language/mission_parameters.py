@@ -156,8 +156,7 @@ def _report_unknown(value: MissionValue, leaves: Mapping[str, ParameterLeaf], fi
     parts = [leaf for name, leaf in leaves.items() if _path(name).startswith(f"{_path(value.name)}.")]
     if parts:
         message = f"{value.name} has parts, which are set one by one"
-        names = quoted(leaf.name for leaf in parts)
-        findings.error("AOS146", message, value.span, f"They are {names}")
+        findings.error("AOS146", message, value.span, f"They are {quoted(leaf.name for leaf in parts)}")
         return
     message = f"unknown mission parameter `{value.name}`"
     known = f"The mission parameters are {quoted(leaves)}" if leaves else "The documents declare none"

@@ -213,8 +213,7 @@ def _check_skills(file: DeployFile, bundles: Sequence[Path], node: YamlMap, find
     skills = {skill for bundle in bundles for skill in skills_of_files(read_bundle_files(bundle)[0]).values()}
     for skill, where in said:
         if skill not in skills:
-            message = f"no bundle has a skill {skill}"
-            findings.unknown(skill, skills, message, where, known_names(skills))
+            findings.unknown(skill, skills, f"no bundle has a skill {skill}", where, known_names(skills))
 
 
 def _is_bundle(path: Path) -> bool:

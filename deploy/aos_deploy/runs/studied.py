@@ -65,8 +65,7 @@ class StudiedRun:
                 f"the settings of the solver in {run} cannot be read: {error}", code="AOS702"
             ) from error
         mission = recorded(rows_of(run / file))
-        settings = msgspec.structs.replace(settings, cache_dir=str(cache_dir()))
-        return cls(run, mission, settings)
+        return cls(run, mission, msgspec.structs.replace(settings, cache_dir=str(cache_dir())))
 
     async def study(self, ask: Callable[[Study], Awaitable[T]]) -> T:
         """The answer to one question about the mission."""

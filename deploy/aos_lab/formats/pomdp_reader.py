@@ -218,8 +218,7 @@ class _Reader:
         rest = [self._all("states"), observations][len(chosen) - 2 :]
         wanted = int(np.prod([len(part) for part in rest], dtype=int))
         if len(numbers) != wanted:
-            message = f"{len(numbers)} numbers where {wanted} are needed"
-            self._error("AOS106", message, statement.keyword)
+            self._error("AOS106", f"{len(numbers)} numbers where {wanted} are needed", statement.keyword)
             return
         if not all(chosen):
             return  # a name that is unknown has been told
@@ -276,8 +275,7 @@ class _Reader:
 
     def _single(self, statement: Statement) -> Word:
         if len(statement.words) != 1:
-            message = f"{len(statement.words)} numbers where one is needed"
-            self._error("AOS106", message, statement.keyword)
+            self._error("AOS106", f"{len(statement.words)} numbers where one is needed", statement.keyword)
         return statement.words[0] if statement.words else Word("0", statement.keyword.line, 0)
 
     def _distribution(self, kind: str, words: Sequence[Word], statement: Statement) -> Distribution:

@@ -87,8 +87,7 @@ class _Reader:
     def _state(self, element: Element) -> StateVariable:
         names = [element.attributes.get(key, "") for key in ("vnamePrev", "vnameCurr")]
         if not all(names):
-            message = "StateVar needs vnamePrev and vnameCurr"
-            self._findings.error("AOS105", message, element)
+            self._findings.error("AOS105", "StateVar needs vnamePrev and vnameCurr", element)
         values = self._values(element, "s")
         is_seen = element.attributes.get("fullyObs", "false").strip().lower() == "true"
         before = Variable(names[0], values, element.line)
@@ -147,8 +146,7 @@ class _Reader:
                     self._findings.error("AOS103", message, conditional)
                 tables[table.own] = table
         for name in wanted.keys() - tables.keys() if not has_broken else ():
-            message = f"{section} says nothing about {name}"
-            self._findings.error("AOS105", message, element)
+            self._findings.error("AOS105", f"{section} says nothing about {name}", element)
         return tuple(tables.values())
 
     def _rewards(self, names: Iterable[str], known: Mapping[str, Variable]) -> tuple[Table, ...]:

@@ -85,8 +85,7 @@ def _cells(element: Element, sizes: list[int], table: Table, findings: ProblemFi
         return None
     wanted = int(np.prod(sizes, dtype=int))
     if len(numbers) != wanted:
-        message = f"{len(numbers)} numbers where the Instance asks for {wanted}"
-        findings.error("AOS106", message, element)
+        findings.error("AOS106", f"{len(numbers)} numbers where the Instance asks for {wanted}", element)
         return None
     if table.is_distribution and (numbers.min(initial=0) < 0 or numbers.max(initial=0) > 1 + 1e-9):
         wrong = next(word for word in words if not 0 <= float(word.text) <= 1 + 1e-9)
@@ -114,8 +113,7 @@ class _Diagram:
     def read(self) -> None:
         dag = self._parameter.first("DAG")
         if dag is None:
-            where = self._parameter
-            self._findings.error("AOS105", "a Parameter of type DD needs a DAG", where)
+            self._findings.error("AOS105", "a Parameter of type DD needs a DAG", self._parameter)
             return
         for chosen, number in self._ways(dag, {}, 0):
             pattern = tuple(chosen.get(place, ANY) for place in range(len(self._table.variables)))
@@ -176,8 +174,7 @@ class _Diagram:
                 v for v in parents if v.values == values
             ]
             if len(before) != 1:
-                message = "persistent needs one parent with the same values"
-                self._findings.error("AOS106", message, element)
+                self._findings.error("AOS106", "persistent needs one parent with the same values", element)
                 return
             place = self._places[before[0].name]
             known = chosen.get(place, ANY)

@@ -131,8 +131,7 @@ async def _start(bundle: Path, mission_values: ValuesToSet) -> Engine:
         mission_values = values_of_mapping(mission_values, Span("mission_values"))
     values = (*planned.values, *(mission_values or ()))
     project = with_values(project, values, planned.sources)
-    built = await build_project(project, cache_dir())
-    return await Engine.start(built, seed=1)
+    return await Engine.start(await build_project(project, cache_dir()), seed=1)
 
 
 def as_bytes(texts: Sequence[str]) -> NDArray[np.uint8]:

@@ -184,8 +184,7 @@ def _counts(count: Count, trial: Trial) -> bool:
 
 
 def _starts(patterns: Sequence[str], trial: Trial) -> bool:
-    is_long = len(trial.steps) >= len(patterns)
-    return is_long and all(map(matches, patterns, trial.steps))
+    return len(trial.steps) >= len(patterns) and all(map(matches, patterns, trial.steps))
 
 
 def _never_holds(pattern: str, trial: Trial) -> bool:

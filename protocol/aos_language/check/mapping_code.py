@@ -284,8 +284,7 @@ def _field_type(kind: str, fields: list[str], span: Span, scope: Scope, findings
             return ""
         types = {inner.name: inner.type for inner in compound.fields}
         if field not in types:
-            message = f"the type {kind} has no field `{field}`"
-            findings.unknown(field, types, message, span, _listing(types))
+            findings.unknown(field, types, f"the type {kind} has no field `{field}`", span, _listing(types))
             return ""
         kind = types[field]
     return kind

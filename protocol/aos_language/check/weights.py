@@ -44,8 +44,7 @@ def _check_distribution(
     name: str, first: float | None, second: float, span: Span, findings: Findings
 ) -> None:
     if name == "SampleNormal" and second < 0.0:
-        hint = "It is not negative"
-        findings.error("AOS122", f"{second:g} is no standard deviation", span, hint)
+        findings.error("AOS122", f"{second:g} is no standard deviation", span, "It is not negative")
     elif name == "SampleUniform" and first is not None and second < first:
         findings.warning("AOS122", f"the upper bound {second:g} lies below the lower one", span)
 

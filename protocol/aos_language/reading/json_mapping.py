@@ -124,8 +124,7 @@ def _fields(record: Record) -> tuple[documents.ActivationField, ...]:
         item.ignore("Comment")
         item.finish()
         if value is None:
-            message = 'a service parameter lacks "AssignServiceFieldCode"'
-            record.findings.error("AOS105", message, item.span)
+            record.findings.error("AOS105", 'a service parameter lacks "AssignServiceFieldCode"', item.span)
         elif name and check_name(name, "a service field", record.findings):
             fields.append(documents.ActivationField(name.text, value))
     return tuple(fields)

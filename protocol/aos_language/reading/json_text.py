@@ -202,8 +202,7 @@ class _Reader:
                 span = self._source.span(comma)
                 self._findings.warning("AOS127", f'a comma before "{bracket}"', span, "It is skipped")
         elif character in ('"', "{", "[") or _NUMBER.match(self._text, self._at):
-            span = self._source.span(end)
-            self._findings.error("AOS104", "a comma is missing here", span)
+            self._findings.error("AOS104", "a comma is missing here", self._source.span(end))
         elif character and character != bracket:
             is_other = character in "}]" or character + bracket == ":]"
             hint = self._opened(start) if is_other else ""
@@ -254,8 +253,7 @@ class _Reader:
     def _escape(self) -> str:
         match = _ESCAPE.match(self._text, self._at)
         if match is None:
-            hint = "Write \\\\ for a backslash"
-            raise _Unreadable("no such escape in JSON", self._at, hint)
+            raise _Unreadable("no such escape in JSON", self._at, "Write \\\\ for a backslash")
         self._at = match.end()
         if match.group(2):
             return _CONTROL.get(match.group(2), match.group(2))

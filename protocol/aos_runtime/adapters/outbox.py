@@ -61,8 +61,7 @@ class Outbox:
             self._unsent.clear()
         for topic, fields in waiting:
             self._sent[topic] += 1
-            message = TopicMessage(self._sent[topic], fields)
-            self._bus.tell(self._keys.topic(topic), message)
+            self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
         if self._lost:
             _log.warning("%d topic messages came too fast to be sent", self._lost)
             self._lost = 0

@@ -42,5 +42,4 @@ def _result_of(
         message = f"{call.path} answered {answer!r}, which is no mapping of field names to values"
         raise SkillError(message, code="AOS510", hint=f"Mend the adapter {adapter}") from error
     fields = translated(binding.result, given, f"the result of {call.path}")
-    fields = sendable(fields, f"the result of {call.path}")
-    return SkillResult(call.id, fields, published)
+    return SkillResult(call.id, sendable(fields, f"the result of {call.path}"), published)

@@ -66,8 +66,7 @@ class Intake:
         before = self.revisions.get(project)
         added, changed = changed_skills(before.project if before else None, loaded.project)
         number = self._stored(project, loaded, merged.files)
-        report = BundleReport(project, True, number, diagnostics, added, changed, source)
-        return report, True
+        return BundleReport(project, True, number, diagnostics, added, changed, source), True
 
     async def remove(self, project: str, skill: str) -> tuple[BundleReport, bool]:
         """Gives up a skill, or with none named the project; returns what became of it, and whether there is a

@@ -164,8 +164,7 @@ def _made(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        text = f"the watched folder {folder} cannot be made: {error.strerror}"
-        raise StorageError(text) from error
+        raise StorageError(f"the watched folder {folder} cannot be made: {error.strerror}") from error
     return folder.resolve()
 
 

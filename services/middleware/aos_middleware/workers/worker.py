@@ -97,8 +97,7 @@ class LoadedMapping:
         return plain
 
     def _take(self, topic: str, fields: dict[str, Any]) -> None:
-        functions = self._namespace.get("TOPICS", {}).get(topic, {})
-        self._update(functions, message_from(fields))
+        self._update(self._namespace.get("TOPICS", {}).get(topic, {}), message_from(fields))
 
     def _stops(self) -> bool:
         """Returns whether what runs is to be stopped: for a skill the first time that the condition holds,

@@ -125,8 +125,7 @@ class Reasons:
             return ()
         until_s = begun_s + (self._flips_s if valuing.is_exact else math.inf)
         belief = await self._engine.summary()
-        actions = (decision.action, other)
-        return await flips_of(self._engine, valuing, belief, actions, margin, until_s)
+        return await flips_of(self._engine, valuing, belief, (decision.action, other), margin, until_s)
 
     async def _consequences(self) -> tuple[Consequence, ...]:
         """The likeliest responses, and the one that came, with what would be done after each."""

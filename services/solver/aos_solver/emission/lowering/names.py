@@ -78,8 +78,7 @@ def _member_names(project: Project) -> Iterator[tuple[str, Span]]:
 
 def _check(name: str, span: Span, findings: Findings, ours: frozenset[str]) -> None:
     if not (name.isascii() and name.isidentifier()):
-        hint = "Use letters, digits and underscores"
-        findings.error("AOS126", f"`{name}` is no name in C++", span, hint)
+        findings.error("AOS126", f"`{name}` is no name in C++", span, "Use letters, digits and underscores")
     elif name in CPP_KEYWORDS or name in _OF_THE_LANGUAGE:
         findings.error("AOS126", f"`{name}` means something else in model code", span, "Choose another name")
     elif name in ours or name.startswith("aos_"):

@@ -48,8 +48,7 @@ def _worth(board: str, mark: str, rules: Rules) -> int:
     """Returns what perfect play brings to who has the turn: 1, 0 or -1."""
     if is_over(board, rules):
         return {mark: 1, _other(mark): -1, None: 0}[winner(board, rules)]
-    cells = empty_cells(board)
-    return max(-_worth(marked(board, cell, mark), _other(mark), rules) for cell in cells)
+    return max(-_worth(marked(board, cell, mark), _other(mark), rules) for cell in empty_cells(board))
 
 
 def _points(board: str, mark: str) -> int:
