@@ -1,9 +1,7 @@
-// Certainty-equivalent plans. Such a plan assumes one state and does what has the highest fully observable
-// value in it. It then assumes the state that is likeliest after the observation.
-//
-// The values of these plans, for every pair of an assumed and a true state, are initial alpha vectors. Where
-// a belief is nearly certain, they are far above the vectors that repeat one action. So a search need not
-// look beyond the point where the robot knows enough. They serve missions without end only.
+// Certainty-equivalent plans: such a plan does what has the highest fully observable value in the state that it assumes, and then
+// assumes the state that is likeliest after the observation. Their values, for every pair of an assumed and a true state, are
+// initial alpha vectors. Where a belief is nearly certain, they are far above those that repeat one action, so that a search need
+// not look beyond the point where the robot knows enough. They serve missions without end only.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // The horizon and the discount of a search, and how far they move values from those of the model.
 //
-// Without a discount the time of a reward makes no difference, and a free exit could be put off for ever. The search
-// then gets a discount slightly below 1, so that earlier rewards are worth more. If the discount leaves next to nothing
-// of what comes after a long horizon, the search has no horizon. Its results then serve every belief, however many
+// Without a discount a search gets one slightly below 1, since a free exit could else be put off for ever. If the discount leaves
+// next to nothing of what comes after a long horizon, it has no horizon, so that its results serve every belief, however many
 // decisions are left, and bounds are widened by what may come after the horizon.
 #pragma once
 

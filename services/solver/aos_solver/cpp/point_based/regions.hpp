@@ -1,10 +1,9 @@
-// The states in regions, by what the robot always knows.
+// The states in regions, by what the robot always knows: every belief lies within one region.
 //
-// Every belief lies within one region, so a robot always knows its region. Regions are found and not declared: states
-// that one belief can hold together are united, from the start on over every action and observation. If a robot sees
-// its own position, there is a region for each position. Beliefs and alpha vectors then have the length of a region and
-// not of the whole (the idea of mixed observability: Ong, Png, Hsu and Lee, 2010). States that are worth nothing under
-// every policy (the mission has ended) are in no region: beliefs need not sum to 1.
+// Regions are found and not declared: states that one belief can hold together are united, from the start on over every action
+// and observation. If a robot sees its own position, there is a region for each position. Beliefs and alpha vectors then have the
+// length of a region (the idea of mixed observability: Ong, Png, Hsu and Lee, 2010). States that are worth nothing under every
+// policy (the mission has ended) are in no region: beliefs need not sum to 1.
 #pragma once
 
 #include <algorithm>

@@ -1,11 +1,10 @@
 // Point-based value iteration near the beliefs that a good policy reaches (SARSOP: Kurniawati, Hsu and Lee, 2008).
 //
-// A trial follows the action with the highest upper bound and the observation that matters most for the gap
-// at the root. It ends when nothing more can be learnt for the root, and both bounds are backed up along its
-// path. Upper bounds that are far too high say little about what is worth improving, and the policy follows
-// the lower bound. So one trial of three opens all actions and follows the highest lower bound. Before these, the first trials from a belief repeat one action each:
-// bounds hardly find what lies behind a long detour. Actions whose upper bound is below the belief's lower
-// bound are dropped, and so are alpha vectors that are best at no remaining belief.
+// A trial follows the action with the highest upper bound and the observation that matters most for the gap at the root. It ends
+// when nothing more can be learnt for the root, and both bounds are backed up along its path. One trial of three opens all
+// actions and follows the highest lower bound, since upper bounds that are far too high say little about what is worth improving.
+// The first trials from a belief repeat one action each: bounds hardly find what lies behind a long detour. Actions whose upper
+// bound is below the belief's lower bound are dropped, and so are alpha vectors that are best at no remaining belief.
 #pragma once
 
 #include <algorithm>

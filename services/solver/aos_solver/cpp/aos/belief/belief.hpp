@@ -108,12 +108,8 @@ class Belief {
   // The initial belief as particles.
   static Belief drawn(Sampler& random) { return Belief{ParticleFilter<Model>{random}.initial()}; }
 
-  // The belief after an action that ran with probability `ran_probability`, before any observation.
-  Belief predicted(int action, Sampler& random, double ran_probability = 1) const {
-    if (is_drawn()) return stepped({.action = action, .ran_probability = ran_probability}, ignored_numbers, random).first;
-    Belief ran = enumerated_or_drawn({.action = action}, ignored_numbers, random).first;
-    return ran_probability < 1 ? mixed_with(ran, ran_probability) : ran;
-  }
+  // The belief after an action, before any observation.
+  Belief predicted(int action, Sampler& random) const { return updated({.action = action}, ignored_numbers, random).first; }
 
   // The probability of each response after an action, whatever numbers come with it; the likeliest first.
   ObservationOdds observations(int action, Sampler& random) const {
@@ -144,8 +140,7 @@ class Belief {
     }
     while (true) {
       step.log_scale = numbers.log_scale();
-      auto [belief, probability] =
-          is_drawn() ? stepped(step, numbers, random) : enumerated_or_drawn(step, numbers, random);
+      auto [belief, probability] = updated(step, numbers, random);
       if (!numbers.rescale()) return {std::move(belief), std::log(probability) + numbers.log_scale()};
     }
   }
@@ -309,7 +304,8 @@ class Belief {
   // has at least p - e under their common part. So the posteriors agree but for e / p. Thinning out adds what
   // it drops, and so do paths that are left out. A density may be any number under the share e: if numbers
   // weigh, the bound is 1 unless the belief is exact.
-  std::pair<Belief, double> enumerated_or_drawn(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
+  std::pair<Belief, double> updated(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
+    if (is_drawn()) return stepped(step, numbers, random);
     try {
       Gathering<Model> gathering;
       const std::size_t limit = max_states(source_);

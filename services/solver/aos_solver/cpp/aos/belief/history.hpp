@@ -70,7 +70,6 @@ struct HistoryStep {
   bool is_observed = false;
   bool is_guided = false;
   std::uint32_t by_chance = 0;  // how many draws a guided step leaves to chance
-  double ran_probability = 1;   // below 1 if nobody knows whether the action ran
   // The numbers that were observed; null if the step's numbers are ignored. Densities are relative to `log_scale`.
   std::shared_ptr<const ObservedNumbers> numbers = nullptr;
   double log_scale = 0;
@@ -163,12 +162,6 @@ class History {
     const auto& cumulative = origins_->cumulative;
     const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), draws.uniform() * cumulative.back());
     state = origins_->states[std::min<std::size_t>(found - cumulative.begin(), cumulative.size() - 1)];
-  }
-
-  // Runs one step with the given draws.
-  static Step run(State& state, const HistoryStep& step, Replay& draws) {
-    if (step.ran_probability < 1 && draws.uniform() >= step.ran_probability) return {};
-    return Model::step(state, step.action, draws);
   }
 
  private:

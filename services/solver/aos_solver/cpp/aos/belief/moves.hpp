@@ -279,7 +279,7 @@ class Moves {
     const NumbersOf numbers{step, replay_};
     weights_drawn_from_.start();
     replay_.start(values, later, record, watcher);
-    return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
+    return step.agrees(Model::step(state, step.action, replay_)) ? replay_.weight() : 0;
   }
 
   // Proposes a block with some draws changed from `first` on. Returns the factor of the acceptance ratio, which is 0 if the

@@ -317,7 +317,7 @@ class ParticleFilter {
       State next = parent.state;
       Block block = free_block();
       ++update_effort.steps;
-      const bool agrees = step.agrees(History<Model>::run(next, step, replay_));
+      const bool agrees = step.agrees(Model::step(next, step.action, replay_));
       block.draws = static_cast<std::uint32_t>(replay_.draws());
       block.likelihood = agrees ? replay_.weight() : 0;
       const bool is_certain = block.draws == 0;

@@ -61,7 +61,6 @@ inline void add_step(Words& words, const HistoryStep& step) {
   words.push_back(static_cast<std::uint64_t>(step.observation));
   words.push_back((step.is_observed ? 1 : 0) | (step.is_guided ? 2 : 0));
   words.push_back(step.by_chance);
-  words.push_back(std::bit_cast<std::uint64_t>(step.ran_probability));
   add_text(words, observation_text(step.observation));
   words.push_back(std::bit_cast<std::uint64_t>(step.log_scale));
   words.push_back(step.numbers == nullptr ? 0 : step.numbers->size() + 1);
@@ -80,7 +79,6 @@ inline std::pair<HistoryStep, std::string> next_step(WordReader& reader) {
   step.is_observed = (flags & 1) != 0;
   step.is_guided = (flags & 2) != 0;
   step.by_chance = static_cast<std::uint32_t>(reader.next());
-  step.ran_probability = reader.real();
   std::string text = reader.text();
   step.log_scale = reader.real();
   if (const std::size_t count = reader.next(); count > 0) {
@@ -149,7 +147,7 @@ Cloud<Model> with_history(std::vector<Particle<Model>> particles, const Words& w
         cloud.history.originate(state, replay);
       } else {
         const HistoryStep& step = cloud.history.steps()[place - 1];
-        if (!step.agrees(History<Model>::run(state, step, replay))) return alone;
+        if (!step.agrees(Model::step(state, step.action, replay))) return alone;
       }
       lineage.trace = place == 0 ? begun_trace(std::move(block)) : longer(std::move(lineage.trace), std::move(block));
     }

@@ -37,9 +37,7 @@ class SplitFilter {
     for (std::size_t i = 0; i < before.particles.size(); ++i) {
       const auto& [state, weight] = before.particles[i];
       const double squares = before.lineages[i].squares / weight / weight;
-      const double may_stay = weight * (1 - step.ran_probability);
-      if (may_stay > 0) add(gathered, state, may_stay, squares);
-      draws_.start(weight * step.ran_probability, threshold);
+      draws_.start(weight, threshold);
       do {
         State next = state;
         ++update_effort.steps;

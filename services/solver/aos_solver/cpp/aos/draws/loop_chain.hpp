@@ -1,9 +1,8 @@
 // The heads of drawing loops as an absorbing Markov chain.
 //
-// A head is a place in the code before a round of a loop, together with all that the loop may change. Two paths that
-// come to equal heads go on with the same probabilities. So what follows a head is walked once. The chain then tells
-// how often a run comes to each head on average: the sum of the probabilities of all paths that lead there, however
-// often they go round.
+// A head is a place in the code before a round of a loop, together with all that the loop may change. Two paths that come to
+// equal heads go on with the same probabilities, so what follows a head is walked once. The chain then tells how often a run
+// comes to each head on average: the sum of the probabilities of all paths there, however often they go round.
 #pragma once
 
 #include <algorithm>

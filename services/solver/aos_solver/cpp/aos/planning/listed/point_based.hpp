@@ -1,7 +1,6 @@
-// Point-based search from the belief of each decision (SARSOP: Kurniawati, Hsu and Lee, 2008), for models whose states
-// can be listed. The search itself is in point_based/. This file gives it the model and decides when it may be used.
-//
-// Alpha vectors are lower bounds at every belief, so the results of one decision serve all later ones.
+// Point-based search from the belief of each decision (SARSOP: Kurniawati, Hsu and Lee, 2008), for models whose states can be
+// listed: what gives the search in point_based/ its model, and decides when it may be used. Alpha vectors are lower bounds at
+// every belief, so the results of one decision serve all later ones.
 #pragma once
 
 #include <algorithm>

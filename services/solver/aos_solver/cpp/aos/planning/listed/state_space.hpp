@@ -1,7 +1,5 @@
-// The model as numbers: the states that can be reached, and all outcomes of each action in each of them.
-//
-// The planner owns one space and lends it. The documents' code enumerates each pair of a state and an action
-// once (state_lister.hpp).
+// The model as numbers: the states that can be reached, and all outcomes of each action in each of them. The planner owns one
+// space and lends it. The documents' code enumerates each pair of a state and an action once (state_lister.hpp).
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,7 @@
-// The steps of a small model as a table. A step is one random number and one look-up, whatever the documents'
-// code takes.
+// The steps of a small model as a table: a step is one random number and one look-up, whatever the documents' code takes.
 //
-// Draws from the table have the distribution of the code. The reward of a step is its expectation in its
-// state, which leaves the mean of returns as it is and makes their spread smaller.
+// Draws have the distribution of the code. The reward of a step is its expectation in its state, which leaves the mean of returns
+// as it is and makes their spread smaller.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,5 @@
-// POMCP (Silver and Veness, 2010): Monte-Carlo tree search over histories, from an exact root belief.
-//
-// This file prepares a decision and puts its result together. The algorithm is in tree_search.hpp.
-// docs/planning.md lists what departs from the paper, with the file of each departure.
+// POMCP (Silver and Veness, 2010): Monte-Carlo tree search over histories, from an exact root belief. This file prepares a
+// decision and puts its result together; the algorithm is in tree_search.hpp. docs/planning.md lists what departs from the paper.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,8 @@
 // The memory of a search tree: histories, and the actions that were tried after each of them.
 //
-// Nodes lie in two lists, and their indices name them. The children of an action are a linked list while they are few;
-// longer lists are indexed by one hash table for the whole tree. A history gets its actions at its second visit, since
-// most histories are visited once. When the memory is used up, the tree stops growing and goes on learning.
-//
-// Letters: n visits, q value of an action, v value of a history.
+// Nodes lie in two lists, and their indices name them. The children of an action are a linked list while they are few; longer
+// lists are indexed by one hash table. A history gets its actions at its second visit, since most are visited once. When the
+// memory is used up, the tree stops growing and goes on learning. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,8 @@
 // POMCP's simulations (Silver and Veness, 2010) in the tree of one thread. Read this file from `simulate` down.
 //
-// A simulation goes down from the root by upper confidence bounds (`choose`). The first new history is valued by a
-// rollout or by values of states (`SimulatedState::leaf`). The return is backed up along the path (`back_up`). The
-// files that are called give the reasons for departures from the paper; docs/planning.md lists them.
-//
-// Letters: n visits, q value of an action, v value of a history.
+// A simulation goes down from the root by upper confidence bounds (`choose`). The first new history is valued by a rollout or by
+// values of states (`SimulatedState::leaf`), and the return is backed up along the path (`back_up`). Files that are called give
+// the reasons for departures from the paper. Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
 #include <algorithm>
