@@ -59,7 +59,9 @@ std::vector<aos::Option> ways(const units::Problem& problem, double& steps) {
   aos::LeafCells<Model> cells;
   cells.prepare(belief, random);
   const aos::DecisionClock clock;
-  aos::OptionSearch<Model> search{cells, clock, Model::has_goal_conditions};
+  aos::RunningDown<Model> running_down;
+  running_down.find(belief, random);
+  aos::OptionSearch<Model> search{cells, clock, &running_down, Model::has_goal_conditions};
   return search.from(belief.particles().front().state, steps, random);
 }
 
@@ -104,7 +106,7 @@ TEST("Before an end that can be had at once comes what makes it earn more") {
   aos::Sampler random{1};
   const auto belief = aos::Belief<SilentLock>::initial(random);
   const aos::DecisionClock clock;
-  const aos::BestEnd<SilentLock> search{clock};
+  const aos::BestEnd<SilentLock> search{clock, nullptr};
   double steps = 1'000;
   EXPECT((search.way_from(belief.particles().front().state, steps, random) == aos::Option{0, 0, 0, 1}));
   for (std::uint32_t place = 0; place < 4; ++place) units::row(problem, place, 1).front().next = place;

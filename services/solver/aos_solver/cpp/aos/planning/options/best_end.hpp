@@ -22,7 +22,7 @@ class BestEnd {
  public:
   using State = typename Model::State;
 
-  explicit BestEnd(const DecisionClock& clock) : clock_(clock) {}
+  BestEnd(const DecisionClock& clock, const RunningDown<Model>* retries) : clock_(clock), retries_(retries) {}
 
   // The way from a state to the end of the mission; empty if no action ends the mission at once without a failure, or if nothing is
   // earned in all. `steps` of the model are counted down.
@@ -42,7 +42,7 @@ class BestEnd {
     double earned = 0;
     for (int i = 0; i < tries; ++i, steps -= static_cast<double>(way.size())) {
       State next = start;
-      earned += taken_option<Model>(way, next, random).earned;
+      earned += taken_option<Model>(way, next, random, retries_).earned;
     }
     return earned > 0 ? way : Option{};
   }
@@ -105,6 +105,7 @@ class BestEnd {
   }
 
   const DecisionClock& clock_;
+  const RunningDown<Model>* retries_;
 };
 
 }  // namespace aos

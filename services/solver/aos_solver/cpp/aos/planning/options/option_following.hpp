@@ -91,7 +91,7 @@ class OptionFollowing {
   }
 
   Followed best_searched(const State& state, std::size_t horizon, double& left, Sampler& random) const {
-    OptionSearch<Model> search{library_.searched_cells(), library_.clock(), library_.counts()};
+    OptionSearch<Model> search{library_.searched_cells(), library_.clock(), library_.retries(), library_.counts()};
     const std::vector<Option> ways = search.from(state, left, random);
     if (ways.empty() || ways.front().size() > horizon) return {};
     if (found_.size() < most_found) found_.push_back(ways.front());

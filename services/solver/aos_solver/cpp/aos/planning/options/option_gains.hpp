@@ -187,7 +187,7 @@ class OptionGains {
 
   const std::vector<Option>* options_ = nullptr;
   std::size_t states_ = 0;
-  bool retries_ = false;  // of actions that change nothing
+  const RunningDown<Model>* retries_ = nullptr;  // actions that change nothing else are taken again
   std::vector<double> earned_;   // [option * states + state]
   std::vector<double> goes_on_;  // [option * states + state]
   std::vector<double> discounts_;

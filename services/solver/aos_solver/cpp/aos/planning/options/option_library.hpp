@@ -32,8 +32,9 @@ class OptionLibrary {
   const LeafCells<Model>& searched_cells() const { return searched_cells_; }
   // Whether ways are found only by how many conditions of rewards and goals hold.
   bool counts() const { return counts_; }
-  // Whether an action of a way is taken again where it changes nothing: such ways have many actions.
-  bool retries() const { return switches::retries && counts_; }
+  const RunningDown<Model>& running_down() const { return running_down_; }
+  // The same, where an action of a way is taken again that changes nothing else.
+  const RunningDown<Model>* retries() const { return switches::retries ? &running_down_ : nullptr; }
   // Counts conditions from now on, where rewards and goals have some. Returns whether that is new.
   bool count() { return !std::exchange(counts_, switches::goal_conditions && Model::has_goal_conditions) && counts_; }
   const DecisionClock& clock() const { return clock_; }
@@ -47,6 +48,7 @@ class OptionLibrary {
     options_.clear();
     cells_.prepare(belief, random);
     searched_cells_ = cells_.with_resting();
+    running_down_.find(belief, random);
   }
 
   // Adds options for states from which the known ones lead to nothing, or not to the end. Returns the weight of the states
@@ -66,7 +68,7 @@ class OptionLibrary {
     const std::size_t stride = std::max<std::size_t>(rests.size() / searched_rests, 1);
     for (std::size_t i = 0; i < rests.size(); i += stride) {
       State& rest = rests[i];
-      while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{searched_cells_, clock_, false}.narrow(rest, steps, random), max_options)) {
+      while (is_left(steps) && Model::ending(rest) == Ending::running && add(OptionSearch<Model>{searched_cells_, clock_, retries(), false}.narrow(rest, steps, random), max_options)) {
         if (!follow(rest, steps, random)) break;
       }
     }
@@ -100,12 +102,12 @@ class OptionLibrary {
 
   // The same for those from a state. Of ways that were searched for by conditions no rests are added.
   bool add_from(const State& state, double& steps, Sampler& random) {
-    return add(OptionSearch<Model>{searched_cells_, clock_, counts_}.from(state, steps, random), counts_ ? 1 : max_options);
+    return add(OptionSearch<Model>{searched_cells_, clock_, retries(), counts_}.from(state, steps, random), counts_ ? 1 : max_options);
   }
 
   // Adds the way that earns most before an end that can be had at once. Returns whether there is one.
   bool add_best_end(const State& state, double& steps, Sampler& random) {
-    const Option way = BestEnd<Model>{clock_}.way_from(state, steps, random);
+    const Option way = BestEnd<Model>{clock_, retries()}.way_from(state, steps, random);
     return !way.empty() && add({way}, 1);
   }
 
@@ -129,7 +131,7 @@ class OptionLibrary {
       double most = 0;
       for (const Option& option : options_) {
         State next = state;
-        const double earned = income<Model>(taken_option<Model>(option, next, random).earned, option.size());
+        const double earned = income<Model>(taken_option<Model>(option, next, random, retries()).earned, option.size());
         steps -= static_cast<double>(option.size());
         if (earned <= most) continue;
         most = earned;
@@ -137,7 +139,7 @@ class OptionLibrary {
       }
       if (best == nullptr) break;
       has_found = true;
-      taken_option<Model>(*best, state, random);
+      taken_option<Model>(*best, state, random, retries());
     }
     return has_found;
   }
@@ -145,6 +147,7 @@ class OptionLibrary {
   const DecisionClock& clock_;
   LeafCells<Model> cells_;
   LeafCells<Model> searched_cells_;
+  RunningDown<Model> running_down_;
   std::vector<Option> options_;
   bool counts_ = false;
 };

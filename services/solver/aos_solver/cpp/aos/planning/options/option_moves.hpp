@@ -83,7 +83,7 @@ class OptionMoves {
     StateWeights start = belief_.weights();
     double share = 0;
     for (std::size_t k = 0; k < now.size(); ++k) {
-      start[k] *= taken_option<Model>(option, now[k], random).goes_on;
+      start[k] *= taken_option<Model>(option, now[k], random, nullptr).goes_on;
       share += start[k];
     }
     steps -= static_cast<double>(option.size() * now.size());

@@ -103,7 +103,7 @@ class OptionPairs {
     std::vector<StepReports> reports(belief_.size());
     for (std::size_t k = 0; k < belief_.size(); ++k) {
       State state = belief_.states()[k];
-      taken_option<Model>(way, state, random);
+      taken_option<Model>(way, state, random, nullptr);
       step_.take(state, test, reports[k], steps, random);
     }
     steps -= static_cast<double>(way.size() * belief_.size());

@@ -58,7 +58,7 @@ class OptionPolicy {
     if (!is_prepared_) library_.prepare(belief, random);
     affordable_ = affordable;
     const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, library_.counts() ? 32 : 64);
-    belief_.draw(belief, static_cast<std::size_t>(states), random);
+    belief_.draw_alike(belief, static_cast<std::size_t>(states), [&](const State& state) { return library_.running_down().all_else_of(state); }, random);
     library_.drop_unused(gains_, taken_way_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
@@ -133,7 +133,7 @@ class OptionPolicy {
     is_prepared_ = false;
     obstacle_.clear();
     taken_way_.clear();
-    was_idle_ = false;
+    was_idle_ = true;
     gains_ = {};
     library_.start_over();
     tests_.start_over();
@@ -272,10 +272,10 @@ class OptionPolicy {
     note_way(likely, found.size());
   }
 
-  // Whether the best candidate observes, spares no regret by that, and costs more than is earned after it: a lost step.
+  // Whether the best candidate earns nothing in all, and spares no regret: a lost step.
   bool is_idle() const {
     const auto best = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
-    return best != candidates_.end() && !best->way.empty() && best->value < 0 && best->spared <= matters * std::abs(regret_.value_seen());
+    return best != candidates_.end() && best->value <= 0 && best->spared <= matters * std::abs(regret_.value_seen());
   }
 
   // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
@@ -315,7 +315,7 @@ class OptionPolicy {
   OptionValues<Model> values_{library_, clock_};
   OptionMoves<Model> moves_{belief_, regret_, tests_, values_};
   OptionDetours<Model> detours_{belief_, gains_, clock_};
-  bool was_idle_ = false;  // at the last decision; steps are kept for detours then
+  bool was_idle_ = true;  // at the last decision; steps are kept for detours then
   OptionPairs<Model> pairs_{belief_, regret_, tests_, clock_};
   Option taken_way_;
   std::vector<int> tried_moves_;

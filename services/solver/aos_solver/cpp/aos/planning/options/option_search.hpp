@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <queue>
@@ -27,6 +26,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/options/decision_clock.hpp"
 #include "aos/planning/values/leaf_cells.hpp"
+#include "aos/planning/values/running_down.hpp"
 #include "aos/planning/values/seen_cells.hpp"
 
 namespace aos {
@@ -43,33 +43,37 @@ struct OptionOutcome {
 // How often an action of an option is taken that changes nothing, as a grip that slips, where a way has many of them.
 inline constexpr int most_attempts = 4;
 
-// Takes an action, and where nothing has changed takes it again, if it changes something then. Returns what was earned. `discount`
-// is that of the next step.
+// Takes an action, and where nothing has changed but what runs down takes it again, if it changes something then. Returns what was
+// earned. `discount` is that of the next step.
 template <class Model>
-double attempted(int action, typename Model::State& state, double& discount, Sampler& random) {
-  const auto is_same = [&](const typename Model::State& other) { return std::memcmp(Model::bytes_of(state), Model::bytes_of(other), Model::state_bytes()) == 0; };
-  double earned = 0;
-  double first = 0;
-  double now = discount;
+double attempted(int action, typename Model::State& state, double& discount, Sampler& random, const RunningDown<Model>& running_down) {
+  const typename Model::State before = state;
+  const double first = discount * Model::step(state, action, random).reward;
+  discount *= Model::discount;
+  const auto has_changed = [&](const typename Model::State& next) { return Model::ending(next) != Ending::running || running_down.differ(before, next); };
+  if (has_changed(state)) return first;
   typename Model::State next = state;
-  for (int attempt = 0; attempt < most_attempts && is_same(next); ++attempt, now *= Model::discount) {
+  double earned = first;
+  double now = discount;
+  for (int attempt = 1; attempt < most_attempts; ++attempt) {
     earned += now * Model::step(next, action, random).reward;
-    if (attempt == 0) first = earned;
+    now *= Model::discount;
+    if (!has_changed(next)) continue;
+    discount = now;
+    state = std::move(next);
+    return earned;
   }
-  const bool has_changed = !is_same(next);
-  discount = has_changed ? now : discount * Model::discount;
-  state = std::move(next);
-  return has_changed ? earned : first;
+  return first;
 }
 
 // Takes an option from a state, which becomes the one after it. With `retries` an action that changes nothing is taken again.
 template <class Model>
-OptionOutcome taken_option(const Option& option, typename Model::State& state, Sampler& random, bool retries = false) {
+OptionOutcome taken_option(const Option& option, typename Model::State& state, Sampler& random, const RunningDown<Model>* retries) {
   OptionOutcome outcome;
   double discount = 1;
   for (const int action : option) {
-    if (retries) {
-      outcome.earned += attempted<Model>(action, state, discount, random);
+    if (retries != nullptr) {
+      outcome.earned += attempted<Model>(action, state, discount, random, *retries);
     } else {
       outcome.earned += discount * Model::step(state, action, random).reward;
       discount *= Model::discount;
@@ -111,7 +115,8 @@ class OptionSearch {
   using State = typename Model::State;
 
   // `counts`: the conditions of rewards and goals that hold, before pairs of values are tried.
-  OptionSearch(const LeafCells<Model>& cells, const DecisionClock& clock, bool counts) : cells_(cells), clock_(clock), counts_(counts) {}
+  OptionSearch(const LeafCells<Model>& cells, const DecisionClock& clock, const RunningDown<Model>* retries, bool counts)
+      : cells_(cells), clock_(clock), retries_(retries), counts_(counts) {}
 
   // The ways from a state, the best first. `steps` is counted down.
   std::vector<Option> from(const State& state, double& steps, Sampler& random) {
@@ -267,7 +272,7 @@ class OptionSearch {
       Way way{way_through(nodes_, last.node, last.action), 0, last.earned, 0};
       for (int i = 0; i < tries; ++i) {
         State state = start;
-        way.earned += taken_option<Model>(way.option, state, random, switches::retries && counts_).earned / tries;
+        way.earned += taken_option<Model>(way.option, state, random, retries_).earned / tries;
       }
       way.income = income<Model>(way.earned, way.option.size());
       steps -= tries * static_cast<double>(way.option.size());
@@ -304,6 +309,7 @@ class OptionSearch {
 
   const LeafCells<Model>& cells_;
   const DecisionClock& clock_;
+  const RunningDown<Model>* retries_;
   bool counts_;
   std::vector<WayNode<State>> nodes_;
   std::vector<Found> found_;

@@ -17,7 +17,7 @@
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
 #include "aos/planning/options/step_reports.hpp"
-#include "aos/planning/seek/running_down.hpp"
+#include "aos/planning/values/running_down.hpp"
 
 namespace aos {
 

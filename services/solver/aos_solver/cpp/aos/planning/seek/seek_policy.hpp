@@ -21,7 +21,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
-#include "aos/planning/seek/running_down.hpp"
+#include "aos/planning/values/running_down.hpp"
 #include "aos/planning/seek/seek_places.hpp"
 
 namespace aos {
