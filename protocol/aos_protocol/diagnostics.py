@@ -72,7 +72,7 @@ def render(diagnostic: Diagnostic) -> str:
     """The text form: `file:line:col: error[AOS123]: what. hint`, then the source line and a caret."""
     head = f"{diagnostic.span}: {diagnostic.severity}[{diagnostic.code}]: {diagnostic.message}"
     if diagnostic.hint:
-        head = f"{head.rstrip('.')}. {diagnostic.hint}"
+        head = f"{head}{'' if head.endswith('.') else '.'} {diagnostic.hint}"
     head = printable(head)
     if not diagnostic.excerpt:
         return head

@@ -9,7 +9,7 @@ from test_reading_rules import JSON
 from texts import encoded
 
 from aos_language.load import load_files
-from aos_protocol.diagnostics import Severity
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 
 
 @pytest.mark.parametrize(
@@ -206,3 +206,8 @@ def test_a_list_and_a_loop_without_objects_are_told_once():
         "9 AOS133 `CellObjects` is empty: no state variable is a Cell. Action parameters and elements of "
         "arrays are not among them"
     ]
+
+
+def test_a_message_that_is_cut_off_keeps_its_points():
+    found = Diagnostic(Severity.ERROR, "AOS211", "a state with x=1, ...", Span("a.sd"), "Look")
+    assert render(found) == "a.sd: error[AOS211]: a state with x=1, ... Look"
