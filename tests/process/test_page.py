@@ -45,9 +45,9 @@ def closed_pages(browser: Browser) -> Iterator[None]:
         context.close()
 
 
-def opened(browser: Browser, served: Gateway, width: int = 1440, theme: str = "light") -> Page:
+def opened(browser: Browser, served: Gateway, width: int = 1440) -> Page:
     """A page that has the token. An error in its scripts fails the test."""
-    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=theme)
+    page = browser.new_page(viewport={"width": width, "height": 900})
     page.set_default_timeout(HANG_S * 1000)
     expect.set_options(timeout=HANG_S * 1000)
     page.on("pageerror", lambda error: pytest.fail(f"a script failed: {error}"))
@@ -60,6 +60,14 @@ def kept(page: Page, name: str) -> None:
     """Keeps a picture of the page for people, where AOS_PAGE_PICTURES names a folder for them."""
     if folder := os.environ.get("AOS_PAGE_PICTURES"):
         page.screenshot(path=Path(folder) / f"{name}.png", full_page=True)
+
+
+def screens(page: Page) -> Iterator[str]:
+    """Has the page on a narrow dark screen and then on a wide light one; gives each as a part of a name."""
+    for width, theme in ((390, "dark"), (1440, "light")):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.emulate_media(color_scheme=theme)
+        yield f"{width}-{theme}"
 
 
 def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
@@ -194,18 +202,17 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
     rows = served.ask(f"/v1/missions/{name}/trace").json["steps"]
     first = next(row for row in rows if "drift" in row)
     alarm = first["drift"][0]
-    for width, theme in ((390, "dark"), (1440, "light")):
-        page = opened(browser, served, width, theme)
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step={first['step']}")
-        page.get_by_role("link", name="The model of press does not hold").click()
-        cells = page.locator(".alarms tbody tr").first.locator("td")
-        told = [f"{alarm['modelled']:.2f}", f"{alarm['seen']:.2f}", str(alarm["uses"]), str(first["step"])]
-        expect(cells).to_have_text(["press", alarm["response"], *told])
-        kept(page, f"alarm-{width}-{theme}")
+    page = opened(browser, served, 390)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step={first['step']}")
+    page.get_by_role("link", name="The model of press does not hold").click()
+    cells = page.locator(".alarms tbody tr").first.locator("td")
+    told = [f"{alarm['modelled']:.2f}", f"{alarm['seen']:.2f}", str(alarm["uses"]), str(first["step"])]
+    expect(cells).to_have_text(["press", alarm["response"], *told])
+    for screen in screens(page):
+        kept(page, f"alarm-{screen}")
         assert violations(page, cache_dir) == []
-        page.keyboard.press("ArrowLeft")
-        expect(page.locator(".alarm")).to_have_count(0)
-        page.close()
+    page.keyboard.press("ArrowLeft")
+    expect(page.locator(".alarm")).to_have_count(0)
 
 
 def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_shown(
@@ -240,18 +247,15 @@ def test_the_next_mission_is_begun_where_one_has_ended(
     browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
 ):
     served, name = worn
-    page = opened(browser, served, 390, "dark")
+    page = opened(browser, served, 390)
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
     page.get_by_text("Next mission").click()
     page.get_by_label("What is known").fill("state.is_lit")
     page.get_by_role("button", name="Begin it").click()
     expect(page.locator(".next .problem")).to_contain_text("AOS516")
-    assert violations(page, cache_dir) == []
-    kept(page, "next-390-dark")
-    page.set_viewport_size({"width": 1440, "height": 900})
-    page.emulate_media(color_scheme="light")
-    kept(page, "next-1440-light")
-    assert violations(page, cache_dir) == []
+    for screen in screens(page):
+        kept(page, f"next-{screen}")
+        assert violations(page, cache_dir) == []
     page.get_by_label("What is known").fill("!state.is_lit")
     page.get_by_label("Belief at the start").select_option("keep")
     page.get_by_role("textbox", name="room").fill("lab")
@@ -260,23 +264,22 @@ def test_the_next_mission_is_begun_where_one_has_ended(
     expect(page.locator(".decision .action")).to_have_text("press(room=lab)")
 
 
-@pytest.mark.parametrize(("width", "theme"), [(390, "dark"), (1440, "light")])
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
-    browser: Browser, past: tuple[Gateway, str], width: int, theme: str, cache_dir: Path
+    browser: Browser, past: tuple[Gateway, str], cache_dir: Path
 ):
     served, name = past
     action = served.ask(f"/v1/missions/{name}/trace").json["steps"][1]["action"]
-    page = opened(browser, served, width, theme)
+    page = opened(browser, served, 390)
     for view in ("list", *VIEWS):
         if view != "list":
             page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=2")
             expect(page.locator(".decision .action")).to_have_text(action)
             expect(page.locator(".stepper-place")).to_have_text(re.compile(r"^2 of \d+$"))
-        expect(page.locator("main .card").last).to_be_visible()
-        expect(page.locator("[aria-busy=true]")).to_have_count(0)
-        kept(page, f"{width}-{theme}{view.replace('/', '-')}")
-        assert violations(page, cache_dir) == [], view
-    page.close()
+        for screen in screens(page):
+            expect(page.locator("main .card").last).to_be_visible()
+            expect(page.locator("[aria-busy=true]")).to_have_count(0)
+            kept(page, f"{screen}{view.replace('/', '-')}")
+            assert violations(page, cache_dir) == [], (view, screen)
 
 
 def test_a_number_of_many_values_is_shown_by_its_median_and_range(
@@ -285,17 +288,16 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
     served, _ = past
     depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
     name = write_long_run(served.folder / "runs", 5, depth)
-    for width in (390, 1440):
-        page = opened(browser, served, width)
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+    page = opened(browser, served, 390)
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
+    told = ["wait is left out by ana", "put cannot be chosen now: the arm is off"]
+    for screen in screens(page):
         expect(
             page.get_by_role("img", name=re.compile(r"depth: median 1\.51, 5.95 % .0\.51 … 2\.51$"))
         ).to_be_visible()
-        kept(page, f"numbers-{width}")
-        told = ["wait is left out by ana", "put cannot be chosen now: the arm is off"]
+        kept(page, f"numbers-{screen}")
         expect(page.locator(".values .aside")).to_have_text(told)
         assert violations(page, cache_dir) == []
-        page.close()
 
 
 def test_long_names_are_told_whole_and_widen_no_screen(
@@ -309,19 +311,18 @@ def test_long_names_are_told_whole_and_widen_no_screen(
     monkeypatch.setattr(long_run, "SKILLS", actions)
     certain = (Marginal(f"{long}_{number}", {f"value_of_{long}": 1.0}) for number in range(30))
     name = write_long_run(served.folder / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
-    for width in (390, 1440):
-        page = opened(browser, served, width)
-        for view in ("", "/why", "/steps", "/model"):
-            page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
-            expect(page.locator(".stepper-place")).to_have_text("110 of 120")
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
-            kept(page, f"long-{width}{view.replace('/', '-')}")
-        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}?step=110")
+    page = opened(browser, served, 390)
+    for view in ("/why", "/steps", "/model", ""):
+        page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
+        expect(page.locator(".stepper-place")).to_have_text("110 of 120")
+        for screen in screens(page):
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (view, screen)
+            kept(page, f"long-{screen}{view.replace('/', '-')}")
+    is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
+    for _ in screens(page):
         expect(page.locator(".value-name")).to_have_count(9)
-        is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
         assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
         assert page.locator(".row-step").first.evaluate("each => each.offsetHeight") < 30
-        page.close()
 
 
 def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[Gateway, str]):
