@@ -82,7 +82,7 @@ class BundleRoute(NamedTuple):
 
 _WITHOUT_OPTIONS = ("learned_values", "prior", "prior_draw", "asked_leaves")
 
-_SAVINGS = ("savings", "saving_lookahead")
+_SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 
 BUNDLES = (
     BundleRoute("survey", 1000, 60, ("plain_plans",)),

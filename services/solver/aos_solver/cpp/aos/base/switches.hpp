@@ -14,7 +14,7 @@
 #define AOS_MECHANISMS(of)                                                                                     \
   of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek) \
   of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) \
-  of(saving_lookahead) \
+  of(saving_lookahead) of(saving_rollouts) \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies) \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information) \
   of(step_table) of(expected_rewards) \

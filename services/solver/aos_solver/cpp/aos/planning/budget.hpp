@@ -29,6 +29,10 @@ struct Budget {
   double seconds = 0;             // 0: no limit
   int threads = 1;                // 1 to `max_search_threads`
 
+  Budget part(double share) const {
+    const double part = std::ceil(share * static_cast<double>(simulations));
+    return {static_cast<std::uint64_t>(part), share * seconds, threads};
+  }
   Operations operations(int horizon) const { return simulations * operations_of_simulation(horizon); }
   static Operations operations_of_simulation(int horizon) {
     return operations_of_step * static_cast<Operations>(horizon > 0 ? horizon : 1);

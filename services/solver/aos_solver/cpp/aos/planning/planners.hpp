@@ -63,6 +63,7 @@ class Planners {
     choosing.why = is_by_name ? "it was asked for" : question.is_listed ? space_.listed_text() : space_.obstacle();
     const auto& order = order_[static_cast<std::size_t>(kind)];
     used_ = *std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); });
+    if (used_ == &savings_ && savings_.yields()) used_ = &rollouts_;
     const auto prepared = thread_time();
     const Question<Model> left{belief, left_of(budget, choosing.spent), horizon, barred_, is_by_name, question.is_listed};
     const std::uint64_t simulations = used_->search(left, random, choosing.why);
@@ -133,14 +134,15 @@ class Planners {
   MdpValues<Model> values_{space_};
   GroupMissions<Model> missions_;
   Pomcp<Model> pomcp_{space_, values_, missions_};
+  Pomcp<Model> rollouts_{space_, values_, missions_, false};  // without values of states
   ExactSearch<Model> exact_{space_};
   SarsopPlanner<Model> sarsop_{space_};
   BeliefTree<Model> belief_tree_{space_, values_, missions_};
   OptionsPlanner<Model> options_{space_, pomcp_};
-  SavingsPlanner<Model> savings_{space_, options_, missions_};
+  SavingsPlanner<Model> savings_{space_, options_, rollouts_, missions_};
   SeekPlanner<Model> seek_{space_, pomcp_};
   Despot<Model> despot_{space_, values_, missions_};
-  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_, &despot_};
+  const List all_{&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &rollouts_, &seek_, &pomcp_, &despot_};
   // Which planners are tried in turn, by what was asked for. The last ones can always decide.
   const List order_[std::size(planner_names)] = {
       {&exact_, &sarsop_, &belief_tree_, &options_, &savings_, &seek_, &pomcp_}, {&pomcp_}, {&despot_}, {&sarsop_, &pomcp_}, {&options_, &pomcp_}, {&savings_, &pomcp_}};

@@ -43,8 +43,9 @@ class Pomcp final : public TreePlanner<Model> {
   using typename Planner<Model>::Estimates;
   using typename Planner<Model>::IsOver;
 
-  Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
-      : TreePlanner<Model>(space, values, missions), space_(space), values_(values) {}
+  // `values_states`: whether it may find out what states are worth. Else the tree ends in rollouts.
+  Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions, bool values_states = true)
+      : TreePlanner<Model>(space, values, missions), space_(space), values_(values), values_states_(values_states) {}
 
   const char* name() const override { return "pomcp"; }
 
@@ -208,6 +209,7 @@ class Pomcp final : public TreePlanner<Model> {
   // What states are worth, as well as it can be known; null if nothing is known of it.
   const StateValues<Model>* known_values(const Belief<Model>& belief, int horizon, Sampler& random) {
     source_ = ValueSource::none;
+    if (!values_states_) return nullptr;
     if (switches::listed_values && values_.prepare(belief, horizon)) {
       source_ = ValueSource::listed;
       return &values_;
@@ -253,6 +255,7 @@ class Pomcp final : public TreePlanner<Model> {
   SearchThreads<Model> threads_;
   const StateSpace<Model>& space_;
   MdpValues<Model>& values_;
+  bool values_states_;
   StepTable<Model> steps_;
   Operations step_cost_ = 0;  // 0: not known yet
   WideValues<Model> wide_values_;

@@ -1,6 +1,7 @@
 // What a state is worth to a robot that does not plan: one that rests, or one that acts at random. To rest is to take the one
 // action for ever that returns most so. The values are tables over few variables (cell_tables.hpp), fitted to simulated
-// returns. They are returns of a policy, so that fitting them is regression, and no best successor makes them too high.
+// returns, first of whole missions, then of an eighth of their steps and what the first tables tell of the state after it:
+// less of that is luck, which hides what an action does. No best successor makes returns of a policy too high.
 #pragma once
 
 #include <algorithm>
@@ -53,21 +54,27 @@ class RestValues {
     for (const State& example : examples) {
       if (targets.size() % examples_between_looks == 0) progress::tell("learning what states are worth", targets.size(), examples.size());
       cells_.add_row(example, rows);
-      targets.push_back(base == BasePolicy::rest ? returned(action_, example, StepLuck{random}) : returned_at_random(example, random));
+      targets.push_back(returned_by(base, static_cast<std::size_t>(horizon_), example, random));
     }
-    tables_ = CellTables{cells_.variables()};
-    for (int i = 0; i < sweeps; ++i) tables_.fit(rows, targets);
-    used_ = tables_.used_variables();
+    fit(rows, targets);
+    if (used_.empty()) return false;
+    for (std::size_t i = 0; i < examples.size(); ++i) {
+      targets[i] = 0;
+      for (int j = 0; j < nearer; ++j) targets[i] += returned_by(base, settling(), examples[i], random) / nearer;
+    }
+    fit(rows, targets);
     return !used_.empty();
   }
 
   // What an action returns that is taken for ever.
   double returned(int action, const State& start, const StepLuck& luck) const {
-    return returned_by(start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
+    return returned_in(static_cast<std::size_t>(horizon_), start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
       Sampler random = luck.of(step);
       return Model::step(state, taken, random);
     });
   }
+  // How many rests follow a way before its states are valued: what an action does later counts then, where no table tells it.
+  std::size_t settling() const { return static_cast<std::size_t>(std::max(horizon_ / nearer, 1)); }
   // The action of the rest.
   int action() const { return action_; }
   // What a state is worth; 0 where the mission is over.
@@ -81,6 +88,7 @@ class RestValues {
   static constexpr std::size_t most_examples = 20'000;
   static constexpr std::size_t examples_between_looks = 64;
   static constexpr int sweeps = 30;
+  static constexpr int nearer = 8;  // returns of each example at last, of so many times fewer steps
   static constexpr int first_tries = 4;  // of each action, with other states; four times as many of each better quarter
   static constexpr std::size_t kept_share = 4;
 
@@ -102,20 +110,28 @@ class RestValues {
     action_ = actions.front();
   }
 
-  // What a policy returns from a state, given its actions and the draws of its steps.
+  void fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets) {
+    CellTables tables{cells_.variables()};
+    for (int i = 0; i < sweeps; ++i) tables.fit(rows, targets);
+    tables_ = std::move(tables);
+    used_ = tables_.used_variables();
+  }
+
+  // What a policy returns in so many steps, given its actions and the draws of its steps, and in fewer than the mission has
+  // with what the state after them is worth.
   template <class Choice, class Luck>
-  double returned_by(State state, Choice&& choice, Luck&& luck) const {
+  double returned_in(std::size_t steps, State state, Choice&& choice, Luck&& luck) const {
     double sum = 0;
     double discount = 1;
-    for (int i = 0; i < horizon_ && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
+    for (std::size_t i = 0; i < steps && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {
       const int action = choice(state);
-      sum += discount * luck(state, action, static_cast<std::size_t>(i)).reward;
+      sum += discount * luck(state, action, i).reward;
     }
-    return sum;
+    return steps < static_cast<std::size_t>(horizon_) ? sum + discount * value(state) : sum;
   }
-  double returned_at_random(const State& start, Sampler& random) {
+  double returned_by(BasePolicy base, std::size_t steps, const State& start, Sampler& random) {
     walk_.start();
-    return returned_by(start, [&](const State& state) { return walk_.next(state, random); },
+    return returned_in(steps, start, [&](const State& state) { return base == BasePolicy::rest ? action_ : walk_.next(state, random); },
                        [&](State& state, int taken, std::size_t) { return Model::step(state, taken, random); });
   }
 

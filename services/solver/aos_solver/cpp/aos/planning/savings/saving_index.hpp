@@ -72,10 +72,10 @@ class SavingIndex final : public StateValues<Model> {
     for (std::size_t k = 0; k < states.size(); ++k) {
       const StepLuck luck{random};
       const Rest<Model> rest{values_, states[k], SavingSearch<Model>::longest, luck};
-      steps -= steps_of_rest(SavingSearch<Model>::longest);
+      steps -= steps_of_rest(SavingSearch<Model>::longest + values_.settling());
       for (std::size_t i = 0; i < ways_.size(); ++i) {
         incomes_[i] += weights[k] * income<Model>(saved(values_, rest, ways_[i], states[k], luck), ways_[i].size());
-        steps -= steps_of_way(ways_[i].size());
+        steps -= steps_of_way(ways_[i].size() + values_.settling());
       }
     }
   }

@@ -27,11 +27,11 @@ class SavingLookahead {
 
   SavingLookahead(const RestValues<Model>& values, const std::vector<Option>& ways) : values_(values), ways_(ways) {}
 
-  // How many steps of the model an action takes.
-  static double steps_of(const std::vector<Option>& ways, std::size_t states) {
-    double sum = steps_of_way(1);
-    for (const Option& way : ways) sum += steps_of_way(way.size());
-    return sum * static_cast<double>(states);
+  // How many steps of the model an action takes, once begun.
+  double steps_of_action() const {
+    double sum = steps_of_way(1 + values_.settling());
+    for (const Option& way : ways_) sum += steps_of_way(way.size() + values_.settling());
+    return sum * static_cast<double>(belief_->size());
   }
 
   // Draws the luck of the states, under which all actions are compared.
@@ -79,7 +79,7 @@ class SavingLookahead {
     for (std::size_t i = 0; i <= ways_.size(); ++i) {
       const Option& way = i < ways_.size() ? ways_[i] : nothing_;
       const double returned = returned_along(values_, way, next, lucks_[k], step.reward, 1);
-      incomes[i] = income<Model>(returned - rests_[k].returned(way.size() + 1), way.size() + 1);
+      incomes[i] = income<Model>(returned - rests_[k].returned(way.size() + 1 + values_.settling()), way.size() + 1);
     }
   }
 

@@ -125,7 +125,7 @@ class SavingPolicy {
     }
     SavingLookahead<Model> lookahead{index_->values(), index_->ways()};
     lookahead.begin(belief_, random);
-    const double of_action = SavingLookahead<Model>::steps_of(index_->ways(), belief_.size());
+    const double of_action = lookahead.steps_of_action();
     for (const int action : ordered_actions(steps, random)) {
       if (barred.contains(static_cast<std::size_t>(action))) continue;
       if (steps <= 0 && found_.size() >= fewest_tried) break;

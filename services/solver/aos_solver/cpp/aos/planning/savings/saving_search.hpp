@@ -23,7 +23,7 @@
 
 namespace aos {
 
-// What a state returns while the robot rests, and what it is worth after so many steps of that.
+// What a state returns while the robot rests, and what it is worth after so many steps, and as many more as settle a way.
 template <class Model>
 class Rest {
  public:
@@ -34,7 +34,7 @@ class Rest {
     double discount = 1;
     for (std::size_t step = 0;; ++step, discount *= Model::discount) {
       returned_.push_back(earned + discount * values.value(state));
-      if (step == steps) break;
+      if (step == steps + values.settling()) break;
       Sampler random = luck.of(step);
       if (Model::ending(state) == Ending::running) earned += discount * Model::step(state, values.action(), random).reward;
     }
@@ -45,13 +45,13 @@ class Rest {
   std::vector<double> returned_;  // by how many steps are taken before states are valued
 };
 
-// What is returned by a way, and what the state after it is worth. So much was earned in `taken` steps before.
+// What is returned by a way and by the rests after it, and what the state is worth then. So much was earned in `taken` steps before.
 template <class Model>
 double returned_along(const RestValues<Model>& values, const Option& way, typename Model::State state, const StepLuck& luck, double earned = 0, std::size_t taken = 0) {
   double discount = std::pow(Model::discount, taken);
-  for (std::size_t step = 0; step < way.size() && Model::ending(state) == Ending::running; ++step, discount *= Model::discount) {
+  for (std::size_t step = 0; step < way.size() + values.settling() && Model::ending(state) == Ending::running; ++step, discount *= Model::discount) {
     Sampler random = luck.of(taken + step);
-    earned += discount * Model::step(state, way[step], random).reward;
+    earned += discount * Model::step(state, step < way.size() ? way[step] : values.action(), random).reward;
   }
   return earned + discount * values.value(state);
 }
@@ -59,7 +59,7 @@ double returned_along(const RestValues<Model>& values, const Option& way, typena
 // What a way saves against the rest.
 template <class Model>
 double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Option& way, const typename Model::State& state, const StepLuck& luck) {
-  return returned_along(values, way, state, luck) - rest.returned(way.size());
+  return returned_along(values, way, state, luck) - rest.returned(way.size() + values.settling());
 }
 
 // How many steps of the model take as long as a rest, or a way, whose states are valued: a value takes about as long as a step.
@@ -150,7 +150,7 @@ class SavingSearch {
         const StepLuck luck{random};
         sum += saved(values_, Rest<Model>{values_, start, way.size(), luck}, way, start, luck);
       }
-      steps -= tries * (steps_of_way(way.size()) + steps_of_rest(way.size()));
+      steps -= tries * (steps_of_way(way.size() + values_.settling()) + steps_of_rest(way.size() + values_.settling()));
       if (sum > 0) ways.push_back(std::move(way));
     }
     return ways;

@@ -1,4 +1,5 @@
-// Savings as a planner: where states cannot be listed, and no way to a reward tells what to do (saving_policy.hpp).
+// Savings as a planner: where states cannot be listed, and no way to a reward tells what to do (saving_policy.hpp). At the
+// first decision of a mission POMCP that ends in rollouts is asked, too, and decides from then on where it tells more.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/options_planner.hpp"
 #include "aos/planning/planner.hpp"
+#include "aos/planning/pomcp/pomcp.hpp"
 #include "aos/planning/savings/saving_policy.hpp"
 #include "aos/planning/step_cost.hpp"
 #include "aos/planning/values/group_missions.hpp"
@@ -24,8 +26,8 @@ class SavingsPlanner final : public Planner<Model> {
  public:
   using typename Planner<Model>::Estimates;
 
-  SavingsPlanner(const StateSpace<Model>& space, const OptionsPlanner<Model>& options, GroupMissions<Model>& missions)
-      : Planner<Model>(space), options_(options), missions_(missions) {}
+  SavingsPlanner(const StateSpace<Model>& space, const OptionsPlanner<Model>& options, Pomcp<Model>& rollouts, GroupMissions<Model>& missions)
+      : Planner<Model>(space), options_(options), rollouts_(rollouts), missions_(missions) {}
 
   const char* name() const override { return "savings"; }
 
@@ -33,26 +35,25 @@ class SavingsPlanner final : public Planner<Model> {
     const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
     const bool is_asked = is_by_name || (switches::savings && !is_listed && options_.finds_nothing());
     if (!is_asked || belief.probability_of(Ending::running) <= 0) return false;
-    const ForgottenTexts forgotten;
     Sampler own{Sampler{random}.bits()};
-    if (!policy_.learn(belief, horizon, own)) return false;
-    const SearchTime time{choosing};
-    const auto start = PlanningClock::now();
-    // A look for options has taken its share of the budget.
-    const double share = options_.has_looked() ? 1 - OptionPolicy<Model>::of_options : 1;
-    policy_.prepare(belief, share * affordable_steps_.of(budget, horizon), barred, own);
-    affordable_steps_.note(policy_.taken(), PlanningClock::now() - start);
-    return true;
+    if (!yields_) {
+      if (!learn(belief, horizon, own)) return false;
+      const bool asks = switches::saving_rollouts && !has_asked_ && !is_by_name;
+      find_ways(question, asks ? 1 - of_rollouts : 1, own, choosing);
+      if (asks) yields_ = do_rollouts_tell_more(question, own, choosing);
+      has_asked_ = true;
+    }
+    if (!yields_) return true;
+    choosing.why += "; to act tells more by rollouts than what it saves";
+    return rollouts_.prepare(question, random, choosing);
   }
+  // Whether POMCP that ends in rollouts decides in its place.
+  bool yields() const { return yields_; }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
-    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
     why += "; what saves most against a rest decides";
-    const std::uint64_t simulations = policy_.search(belief, horizon);
-    // Played once in a mission: the values know what a later belief is worth less.
-    if (!missions_.is_known() && missions_.is_due(budget, horizon)) {
-      missions_.play(belief, policy_.worths(), nullptr, horizon, this->choice(policy_.estimates(), horizon, barred), Sampler{Sampler{random}.bits()});
-    }
+    const std::uint64_t simulations = policy_.search(question.belief, question.horizon);
+    play_once(question, Sampler{random});
     return simulations;
   }
 
@@ -70,13 +71,63 @@ class SavingsPlanner final : public Planner<Model> {
     }
     return estimates;
   }
-  void start_over() override { policy_.start_over(); }
+  void start_over() override {
+    policy_.start_over();
+    has_asked_ = false;
+    yields_ = false;
+  }
 
  private:
+  static constexpr double of_rollouts = 0.5;  // of the budget of a decision that asks it
+
+  bool learn(const Belief<Model>& belief, int horizon, Sampler& random) {
+    const ForgottenTexts forgotten;
+    return policy_.learn(belief, horizon, random);
+  }
+
+  void find_ways(const Question<Model>& question, double share, Sampler& random, Choosing& choosing) {
+    const SearchTime time{choosing};
+    const ForgottenTexts forgotten;
+    const auto start = PlanningClock::now();
+    // A look for options has taken its share of the budget.
+    if (options_.has_looked()) share *= 1 - OptionPolicy<Model>::of_options;
+    policy_.prepare(question.belief, share * affordable_steps_.of(question.budget, question.horizon), question.barred, random);
+    affordable_steps_.note(policy_.taken(), PlanningClock::now() - start);
+  }
+
+  // Plays missions once in a mission: the values know what a later belief is worth less.
+  void play_once(const Question<Model>& question, Sampler random) {
+    const auto& [belief, budget, horizon, barred, is_by_name, is_listed] = question;
+    if (missions_.is_known() || !missions_.is_due(budget, horizon)) return;
+    missions_.play(belief, policy_.worths(), nullptr, horizon, this->choice(policy_.estimates(), horizon, barred), Sampler{random.bits()});
+  }
+
+  // Whether POMCP that ends in rollouts tells, beyond a standard error, more of its choice than savings do of theirs. A tree
+  // that ends in values of states is not asked: it promises what no robot returns that does not see the state.
+  bool do_rollouts_tell_more(const Question<Model>& question, Sampler& random, Choosing& choosing) {
+    const SearchTime time{choosing};
+    policy_.search(question.belief, question.horizon);
+    play_once(question, Sampler{random});
+    const Question<Model> half{question.belief, question.budget.part(of_rollouts), question.horizon, question.barred};
+    std::string why;
+    rollouts_.prepare(half, random, choosing);
+    choosing.simulations += rollouts_.search(half, random, why);
+    const ActionEstimate searched = told(rollouts_, question);
+    return searched.q - searched.standard_error > told(*this, question).q;
+  }
+  static ActionEstimate told(const Planner<Model>& planner, const Question<Model>& question) {
+    const Estimates estimates = planner.estimates(question.belief);
+    const int choice = planner.choice(estimates, question.horizon, question.barred);
+    return planner.values(question.belief, estimates, choice)[static_cast<std::size_t>(choice)];
+  }
+
   const OptionsPlanner<Model>& options_;
+  Pomcp<Model>& rollouts_;
   GroupMissions<Model>& missions_;
   SavingPolicy<Model> policy_;
   AffordableSteps<Model> affordable_steps_;
+  bool has_asked_ = false;  // rollouts, in this mission
+  bool yields_ = false;     // to rollouts, in this mission
 };
 
 }  // namespace aos
