@@ -29,6 +29,7 @@ struct Budget {
   double seconds = 0;             // 0: no limit
   int threads = 1;                // 1 to `max_search_threads`
 
+  // So large a share of it.
   Budget part(double share) const {
     const double part = std::ceil(share * static_cast<double>(simulations));
     return {static_cast<std::uint64_t>(part), share * seconds, threads};
