@@ -1,7 +1,6 @@
 // Which states the actions can reach: every outcome of every action, breadth first, whatever its probability.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <vector>
@@ -21,21 +20,15 @@ class Reachability {
   // `seconds` are of processor time.
   Reachability(const Belief<Model>& belief, double seconds)
       : unmet_(static_cast<std::size_t>(Model::action_count())), is_met_(unmet_, false) {
-    const auto start = processor_time();
-    double work = 0;
+    const auto latest = processor_time() + std::chrono::duration<double>{seconds};
     try {
       if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
       space_.reach_within(belief, 0);
       while (look(), !space_.is_closed()) {
-        const double spent = std::chrono::duration<double>{processor_time() - start}.count();
-        if (spent > seconds) throw NotEnumerable{"it takes longer than allowed"};
-        // The next action may take far longer than all before.
-        ListLimits now = is_done() ? later_limits : limits;
-        now.work = std::min(now.work, static_cast<std::size_t>(1e5 + work / spent * (seconds - spent)));
-        space_.limit(now);
+        if (is_done()) space_.limit(later_limits);
+        if (processor_time() > latest) throw NotEnumerable{"it takes longer than allowed"};
         const std::size_t known = space_.size();
         space_.reach_within(belief, 1);
-        work += static_cast<double>(space_.work());
         if (space_.size() > known) ++depth_;
       }
     } catch (const NotEnumerable& limit) {
@@ -76,9 +69,7 @@ class Reachability {
     --unmet_;
   }
 
-  static constexpr ListLimits limits{.states = 100'000, .bytes = std::size_t{256} << 20};
-
-  StateSpace<Model> space_{limits};
+  StateSpace<Model> space_{{.states = 100'000, .bytes = std::size_t{256} << 20}};
   std::size_t unmet_;
   std::vector<bool> is_met_;
   std::uint32_t looked_at_ = 0;

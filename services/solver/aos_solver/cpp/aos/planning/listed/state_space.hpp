@@ -97,8 +97,6 @@ class StateSpace {
     }
   }
   void limit(const ListLimits& limits) { lister_.limit(limits); }
-  // Of the last call that listed.
-  std::size_t work() const { return lister_.work(); }
 
   // Begins another mission: its tries come when those of the first one came.
   void start_over() { given_up_with_ = first_given_up_with_; }
