@@ -14,7 +14,7 @@ from aos_runtime.processes.settings import ServiceSettings
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):
     """`mood` is `good`, `slow` (never ready), `faulty`, `broken`, `full` (its disk), `deaf` (to SIGTERM),
-    `stuck` (ends once it was ready) or `parental`."""
+    `stuck` (ends at SIGUSR1) or `parental`."""
 
     mood: str = "good"
 
@@ -35,12 +35,15 @@ async def serve(service: Service[Settings]) -> None:
         case "parental":
             child = await Child.start(guarded(["sh", "-c", "sleep 1000 & echo; wait"]), stdout=PIPE)
             await child.stdout.readline()
+    told = asyncio.Event()
+    asyncio.get_running_loop().add_signal_handler(signal.SIGUSR1, told.set)
     try:
         if service.settings.mood == "deaf":
             asyncio.get_running_loop().remove_signal_handler(signal.SIGTERM)
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
         await service.ready()
         if service.settings.mood == "stuck":
+            await told.wait()
             raise SkillError("the arm is stuck", code="AOS504")
         await asyncio.Event().wait()
     finally:

@@ -196,7 +196,9 @@ async def test_a_service_that_does_not_end_is_told_before_it_is_killed(system: S
 
 
 async def test_an_adapter_that_ends_itself_and_starts_again_says_why(system: System):
-    async with system.up(small("robot", "stuck", is_adapter=True, is_restarted=True)):
+    async with system.up(small("robot", "stuck", is_adapter=True, is_restarted=True)) as supervisor:
+        await supervisor.until_ready()
+        os.kill(descendants(supervisor.pids["robot"])[-1], signal.SIGUSR1)
         await system.until("robot", "ended")
     (told, *_) = [event.detail for event in system.events if event.state == "ended" and event.detail]
     assert told == "exit status 1, the arm is stuck; it is started again"
