@@ -93,6 +93,10 @@ Run = Annotated[
         "--run", metavar="DIR", help="A run directory, or a file of one; else what runs, or the last"
     ),
 ]
+ChosenRuns = Annotated[
+    list[Path] | None,
+    typer.Argument(metavar="RUN...", help="Run directories, or a folder of them; else the last run"),
+]
 Runs = Annotated[
     Path | None,
     typer.Option(

@@ -1,8 +1,12 @@
-"""Python's own parser, one thread at a time, and what code binds in its own scope."""
+"""Python's own parser, one thread at a time, what code binds in its own scope, and where it stands."""
 
 import ast
 import threading
 from collections.abc import Iterator
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Snippet
+from aos_protocol.spelling import column_of
 
 _ONE_AT_A_TIME = threading.Lock()
 """CPython 3.11 counts the depth of all threads together: where a finalizer lets another thread parse in the
@@ -24,6 +28,16 @@ def tree_of(text: str, mode: str) -> ast.AST:
     """The syntax tree of statements ("exec") or an expression ("eval"); errors are those of `ast.parse`."""
     with _ONE_AT_A_TIME:
         return ast.parse(text, mode=mode)
+
+
+def place_in(snippet: Snippet, node: ast.expr | ast.stmt) -> Span:
+    """The document place of a node of the snippet's tree."""
+    return place_of_byte(snippet, node.lineno, node.col_offset)
+
+
+def place_of_byte(snippet: Snippet, line: int, byte_offset: int) -> Span:
+    """The document place of a line of the snippet, from 1, and an offset in it in bytes."""
+    return snippet.locate(line, column_of(snippet.code.split("\n")[line - 1], byte_offset))
 
 
 def own_scope(tree: ast.AST) -> Iterator[ast.AST]:

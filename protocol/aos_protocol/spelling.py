@@ -54,6 +54,11 @@ def _printable(character: str) -> str:
     return "\n    " if character == "\n" else character.encode("unicode_escape").decode()
 
 
+def column_of(line: str, byte_offset: int) -> int:
+    """A column from 1 for an offset in UTF-8 bytes, as compilers and Python's own parser give it."""
+    return len(line.encode()[:byte_offset].decode(errors="ignore")) + 1
+
+
 def shortened(text: str, most: int) -> str:
     """The text; of a longer one its first `most` characters and the number of all."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text):,} characters)"

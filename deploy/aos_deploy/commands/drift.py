@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Runs
+from aos_deploy.options import AsJson, ChosenRuns, Runs
 from aos_deploy.printing import count, print_json
 from aos_deploy.runs.living import chosen_runs
 
@@ -18,14 +17,7 @@ if TYPE_CHECKING:
 
 
 @command("Example: aos drift runs")
-def drift(
-    run: Annotated[
-        list[Path] | None,
-        typer.Argument(metavar="RUN...", help="Run directories, or a folder of them; else the last run"),
-    ] = None,
-    runs: Runs = None,
-    as_json: AsJson = False,
-) -> None:
+def drift(run: ChosenRuns = None, runs: Runs = None, as_json: AsJson = False) -> None:
     """Test whether skills do what their documents say.
 
     The sequential tests of a mission go on from one run to the next here, for each model of its own. Where

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import typer
 
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, Runs
+from aos_deploy.options import AsJson, ChosenRuns, Runs
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.living import chosen_runs
 from aos_protocol.errors import DeployError
@@ -17,10 +17,7 @@ Format = Literal["mcap", "csv", "parquet", "bundle"]
 
 @command("Example: aos export runs/latest --format mcap")
 def export(
-    run: Annotated[
-        list[Path] | None,
-        typer.Argument(metavar="RUN...", help="Run directories, or a folder of them; else the last run"),
-    ] = None,
+    run: ChosenRuns = None,
     format: Annotated[Format, typer.Option("--format", help="What is written")] = "mcap",
     output: Annotated[
         Path | None,

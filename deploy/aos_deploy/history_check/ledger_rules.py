@@ -4,20 +4,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from aos_deploy.history_check.journal_rules import Found, JournalRules, digest
-from aos_protocol.messages import Activate, ActivationId, Fault, Message, Outcome, SkillCall, SkillResult
+from aos_protocol.messages import Activate, ActivationId, Outcome, SkillCall, SkillResult
 from aos_runtime.disk.journal import JournalRow
+from aos_runtime.disk.ledger import Failure
 from aos_runtime.parties.fence import meaning
 
-
-class Failed(Message, frozen=True):
-    """A call that ended with an error."""
-
-    id: ActivationId
-    fault: Fault
-
-
 MIDDLEWARE_KINDS: dict[str, type[Any]] = {"started": Activate, "ended": Outcome}
-ADAPTER_KINDS: dict[str, type[Any]] = {"started": SkillCall, "ended": SkillResult, "failed": Failed}
+ADAPTER_KINDS: dict[str, type[Any]] = {"started": SkillCall, "ended": SkillResult, "failed": Failure}
 
 
 class Motions:
@@ -85,7 +78,7 @@ class LedgerRules:
         if journal.end_ns is not None and row.stamp_ns > journal.end_ns:
             found("over", f"{request.id} starts after the mission's end")
 
-    def _take_end(self, end: Outcome | SkillResult | Failed, found: Found) -> None:
+    def _take_end(self, end: Outcome | SkillResult | Failure, found: Found) -> None:
         if end.id not in self._started:
             found("ends", f"{end.id} ends, and was not started")
         if end.id in self.ended:

@@ -2,9 +2,9 @@
 
 import ast
 
-from aos_language.check.python_names import column_of, nodes_read
+from aos_language.check.python_names import nodes_read
 from aos_language.findings import Findings
-from aos_language.python_syntax import names_bound_by
+from aos_language.python_syntax import names_bound_by, place_in
 from aos_protocol.documents import Snippet
 
 
@@ -19,7 +19,7 @@ def check_input_fields(code: Snippet, tree: ast.AST, findings: Findings) -> None
         name = text if isinstance(text, str) else getattr(node.slice, "id", "")
         if isinstance(node.value, ast.Name) or isinstance(text, str):
             owner = ast.unparse(node.value)
-            span = code.locate(node.lineno, column_of(code, node.lineno, node.col_offset))
+            span = place_in(code, node)
             message = f"the fields of `{owner}` are attributes"
             findings.error("AOS121", message, span, f"Write `{owner}.{name or 'field'}`")
 

@@ -14,7 +14,7 @@ from aos_language.check.rule_gaps import check_rule_gaps
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import ELEMENTS, local_type
-from aos_language.python_syntax import own_scope, tree_of
+from aos_language.python_syntax import own_scope, place_in, tree_of
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
     AbstractionMapping,
@@ -173,7 +173,7 @@ def _check_ends(variable: LocalVariable, code: Snippet, tree: ast.AST, findings:
     for node in returns:
         if node.value is None:
             message = f"`return` without a value makes {variable.name} `None`"
-            span = code.locate(node.lineno, python_names.column_of(code, node.lineno, node.col_offset))
+            span = place_in(code, node)
             hint = f"Write `return {variable.name}`, or `return None` where that is meant"
             findings.warning("AOS121", message, span, hint)
     if variable.name in assigned:

@@ -17,7 +17,7 @@ import msgspec
 
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.findings import Findings
-from aos_language.python_syntax import module_of, names_bound_by, own_scope
+from aos_language.python_syntax import module_of, names_bound_by, own_scope, place_in, place_of_byte
 from aos_protocol.diagnostics import Mend, Severity
 from aos_protocol.documents import (
     AbstractionMapping,
@@ -156,11 +156,11 @@ def check_names(
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Name(id=name), args=[_, *_]) if name in names.messages:
-                span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+                span = place_in(snippet, node)
                 message = f"{name} is given fields by position, which fails where it cannot be imported"
                 findings.warning("AOS121", message, span, f"Give them by name: `{name}(field=...)`")
             case ast.Attribute(value=ast.Name(id="input") as name) if "input" not in own:
-                span = snippet.locate(name.lineno, column_of(snippet, name.lineno, name.col_offset))
+                span = place_in(snippet, name)
                 mend = Mend(span, len("input"), _INPUT)
                 message = "`input` is a function of Python, which has no message"
                 findings.error("AOS121", message, span, f"Write `{_INPUT}`", mend)
@@ -169,7 +169,7 @@ def check_names(
     for node in nodes_read(tree):
         if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load) or node.id in known:
             continue
-        span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+        span = place_in(snippet, node)
         hint = _hint(node.id, names)
         if is_open:
             close = get_close_matches(node.id, names.local_names, 1, _NEARLY)
@@ -193,9 +193,8 @@ def check_fields_set(
                 if known is None or name in known:
                     continue
                 line, end = node.end_lineno or node.lineno, node.end_col_offset or 0
-                column = column_of(constant.code, line, end - len(name.encode()))
                 message = f"the low-level type {constant.type} has no field `{name}`"
-                span = constant.code.locate(line, column)
+                span = place_of_byte(constant.code, line, end - len(name.encode()))
                 hint = f"The fields are {quoted(known)}"
                 findings.unknown(name, known, message, span, hint, severity=Severity.WARNING)
 
@@ -249,9 +248,3 @@ def _local_variables(names: PythonNames) -> str:
     if names.local_names:
         return f"The local variables are {quoted(names.local_names)}"
     return "There are no local variables: add one that gives it"
-
-
-def column_of(snippet: Snippet, line: int, byte_offset: int) -> int:
-    """A column from 1 for an offset in UTF-8 bytes, as `ast` gives it."""
-    text = snippet.code.split("\n")[line - 1]
-    return len(text.encode()[:byte_offset].decode(errors="ignore")) + 1

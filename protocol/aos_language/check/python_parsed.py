@@ -4,11 +4,11 @@ import ast
 import re
 import warnings
 
-from aos_language.check.python_names import column_of
 from aos_language.findings import Findings
 from aos_language.python_syntax import tree_of
 from aos_protocol.diagnostics import Mend
 from aos_protocol.documents import Snippet
+from aos_protocol.spelling import column_of
 
 _CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
 _LINE = re.compile(r"(?<=(?:on|at) line )\d+")
@@ -56,9 +56,8 @@ def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> N
                 | ast.Return(value=ast.Tuple(elts=[only]) as value)
             ) if value.lineno < 1 or value.col_offset == only.col_offset:
                 line = only.end_lineno or only.lineno
-                comma = snippet.code.split("\n")[line - 1].find(
-                    ",", column_of(snippet, line, only.end_col_offset or 0) - 1
-                )
+                text = snippet.code.split("\n")[line - 1]
+                comma = text.find(",", column_of(text, only.end_col_offset or 0) - 1)
                 span = snippet.locate(line, comma + 1)
                 message = "the comma at the end makes this a tuple, which is always true"
                 findings.warning(
@@ -75,7 +74,7 @@ def _check_bit_operators(snippet: Snippet, tree: ast.AST, findings: Findings) ->
         for place, part in enumerate(node.comparators):
             match part:
                 case ast.BinOp(op=ast.BitAnd() | ast.BitOr() as op, left=left):
-                    line, column = part.lineno, column_of(snippet, part.lineno, part.col_offset)
+                    line, column = part.lineno, column_of(lines[part.lineno - 1], part.col_offset)
                     is_bare = not lines[line - 1][: column - 1].rstrip().endswith("(")
                     is_middle = place + 1 < len(node.comparators)
                     if is_bare and (is_middle or isinstance(left, ast.Constant | ast.BinOp)):

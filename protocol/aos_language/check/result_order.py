@@ -2,9 +2,9 @@
 
 import ast
 
-from aos_language.check.python_names import column_of, nodes_read
+from aos_language.check.python_names import nodes_read
 from aos_language.findings import Findings
-from aos_language.python_syntax import names_bound_by, tree_of
+from aos_language.python_syntax import names_bound_by, place_in, tree_of
 from aos_protocol.documents import AbstractionMapping, LocalSource, Snippet
 
 
@@ -40,6 +40,6 @@ def _check(snippet: Snippet, unset: dict[str, str], hint: str, findings: Finding
     for node in nodes:
         if isinstance(node, ast.Name) and node.id in unset and node.id not in own:
             own.add(node.id)
-            span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+            span = place_in(snippet, node)
             message = f"`{node.id}` is `None` here: it is set later, {unset[node.id]}"
             findings.warning("AOS121", message, span, hint)

@@ -4,12 +4,12 @@ import ast
 from collections.abc import Iterable, Iterator
 
 from aos_language.check.mapping_code import snippets_of_mapping
-from aos_language.check.python_names import PythonNames, check_names, column_of, top_level_names
+from aos_language.check.python_names import PythonNames, check_names, top_level_names
 from aos_language.check.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
 from aos_language.local_types import RESERVED_LOCAL_NAMES
-from aos_language.python_syntax import module_of
+from aos_language.python_syntax import module_of, place_in
 from aos_protocol.documents import AbstractionMapping, Snippet
 
 _CHANGING = frozenset({
@@ -30,14 +30,12 @@ def check_shared_mapping_code(
     check_names(snippet, tree, PythonNames.of_constants(mappings, scope), findings)
     names = top_level_names(tree)
     for node, message in _keeping(tree, names):
-        span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+        span = place_in(snippet, node)
         findings.error("AOS121", message, span, "Each activation begins anew: pass it on, and give it back")
     used = {name for mapping in mappings for name in _words(mapping)}
     for statement in tree.body:
         for name in sorted(top_level_names(ast.Module([statement], []))):
-            span = snippet.locate(
-                statement.lineno, column_of(snippet, statement.lineno, statement.col_offset)
-            )
+            span = place_in(snippet, statement)
             if name in RESERVED_LOCAL_NAMES:
                 message = f"`{name}` means something else in a mapping"
                 findings.error("AOS126", message, span, "Choose another name")

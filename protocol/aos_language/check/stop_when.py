@@ -3,10 +3,11 @@
 import ast
 import re
 
-from aos_language.check.python_names import PythonNames, check_names, column_of
+from aos_language.check.python_names import PythonNames, check_names
 from aos_language.check.python_parsed import parsed
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
+from aos_language.python_syntax import place_in
 from aos_protocol.diagnostics import Severity
 from aos_protocol.documents import AbstractionMapping, LocalSource, SkillModel, Snippet
 
@@ -60,7 +61,7 @@ def _check_results(mapping: AbstractionMapping, snippet: Snippet, tree: ast.AST,
     of_result = {v.name for v in mapping.local_variables if v.source is LocalSource.SERVICE_RESPONSE}
     for node in ast.walk(tree):
         if isinstance(node, ast.Name) and node.id in of_result:
-            span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+            span = place_in(snippet, node)
             message = f"`{node.id}` comes from the result, which is not there while the skill runs"
             findings.error("AOS110", message, span, "Name local variables of topics and parameters")
 

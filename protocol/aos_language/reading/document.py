@@ -10,7 +10,7 @@ from aos_language.cpp.keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_language.findings import Findings
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import AbstractionMapping, EnumType, Environment, LowLevelDocument, SkillModel
+from aos_protocol.documents import Content, EnumType
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}")
 _ARRAY = re.compile(r"(.*\S)\s*\[\s*([A-Za-z_]\w*|)\s*\]\s*")
@@ -44,7 +44,7 @@ class Document(msgspec.Struct, frozen=True):
     project: str
     name: str
     span: Span
-    content: Environment | SkillModel | AbstractionMapping | LowLevelDocument | None
+    content: Content | None
     version: Text | None = None
     project_span: Span | None = None
 

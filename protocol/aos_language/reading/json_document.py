@@ -11,7 +11,7 @@ from aos_language.reading.json_skill import read_skill
 from aos_language.reading.json_text import JsonObject, parse_json
 from aos_language.reading.source import Source, Text
 from aos_language.reading.version import read_version
-from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
+from aos_protocol.documents import Content
 from aos_protocol.spelling import nearest
 
 _HEADERS = ("PlpMain", "GsdlMain")
@@ -125,7 +125,7 @@ def _document(
     has_name = name is not None and (not is_skill or check_name(name, "a skill", findings))
     title = name.text if name is not None and has_name else ""
     span = name.span if name is not None else record.span
-    content: Environment | SkillModel | AbstractionMapping | LowLevelDocument | None
+    content: Content | None
     match kind:
         case DocumentKind.ENVIRONMENT:
             content = read_environment(record, project_name, span)

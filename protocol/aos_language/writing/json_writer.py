@@ -13,13 +13,7 @@ _TYPES = {
 }
 
 
-def json_text(
-    content: documents.Environment
-    | documents.SkillModel
-    | documents.AbstractionMapping
-    | documents.LowLevelDocument,
-    version: str = "",
-) -> str:
+def json_text(content: documents.Content, version: str = "") -> str:
     """The text of the document's JSON file."""
     header = {
         "Project": content.project,

@@ -8,13 +8,7 @@ from aos_protocol import documents
 _LOOKS_LIKE_A_SCALE = re.compile(r".*\S\s+(ml_ignore|[\d.]+)")
 
 
-def sdl_text(
-    content: documents.Environment
-    | documents.SkillModel
-    | documents.AbstractionMapping
-    | documents.LowLevelDocument,
-    version: str = "",
-) -> str:
+def sdl_text(content: documents.Content, version: str = "") -> str:
     """The text of an `.ef`, `.sd`, `.am` or `.lf` file. Names of skills are file names, and not in it."""
     lines = [f"project: {content.project}"]
     if version:

@@ -11,6 +11,9 @@ from aos_protocol.documents.low_level import LowLevelDocument
 from aos_protocol.documents.mapping import AbstractionMapping
 from aos_protocol.documents.skill_model import SkillModel
 
+Content = Environment | SkillModel | AbstractionMapping | LowLevelDocument
+"""The content of one document."""
+
 
 class Skill(msgspec.Struct, frozen=True):
     """A skill's two documents; the registry derives the mapping of a skill that has none written."""

@@ -13,7 +13,7 @@ from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, S
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, MovesOn
 from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
-from aos_runtime.adapters.ledger import Ledger
+from aos_runtime.adapters.ledger import CallLedger
 from aos_runtime.adapters.outbox import Outbox
 from aos_runtime.adapters.pauses import Pauses
 from aos_runtime.adapters.results import result_of
@@ -53,9 +53,9 @@ class Calls:
         self._fail = fail
         self._loop = asyncio.get_running_loop()
         name = f"adapter-{service.settings.service}.db"
-        self._ledger = Ledger(Path(service.settings.run_dir) / name)
+        self._ledger = CallLedger(Path(service.settings.run_dir) / name)
         self._fence = Fence(epoch_of_solver(service.bus, service.keys))
-        for call in self._ledger.calls():
+        for call in self._ledger.requests():
             self._fence.note(call)
         self._has_solver = False
         self._running: RunningCall | None = None

@@ -61,7 +61,7 @@ class _Middleware:
         )
         self._mappings = Mappings(folder, self._make_evaluator, self._take_over)
         self._served = ServedPaths(service.bus, service.keys, self._tell_state)
-        self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
+        self._ledger = OutcomeLedger(run_dir / "middleware.db")
         self._fence = Fence(epoch_of_solver(service.bus, service.keys))
         for request in self._ledger.requests():
             self._fence.note(request)

@@ -4,7 +4,7 @@ import re
 from types import CodeType, TracebackType
 
 from aos_middleware.workers.frames import Raised
-from aos_protocol.spelling import shortened
+from aos_protocol.spelling import column_of, shortened
 
 _MAX_ERROR_CHARACTERS = 2000
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*")
@@ -62,10 +62,8 @@ def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tup
             line = trace.tb_lineno
             _, end_line, start, end = list(code.co_positions())[trace.tb_lasti // 2]
             text = lines[line - 1] if 0 < line <= len(lines) else ""
-            # Python counts bytes, documents characters.
-            column = len(text.encode()[: start or 0].decode(errors="ignore")) + 1
             failed = text.encode()[start or 0 : end if end_line == line else None]
-            place = (line, column, failed.decode(errors="ignore"))
+            place = (line, column_of(text, start or 0), failed.decode(errors="ignore"))
         trace = trace.tb_next
     return place
 

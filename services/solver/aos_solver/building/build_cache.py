@@ -18,7 +18,7 @@ from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 
 from aos_protocol.errors import StorageError
-from aos_solver.building.build_lock import build_lock
+from aos_solver.building.build_lock import build_lock, locked
 
 _BUILDING = ".building"
 _SIZE_BYTES = 2 * 2**30
@@ -150,15 +150,9 @@ def _held(folder: Path) -> int | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     try:
-        fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        if os.path.samestat(os.fstat(handle), folder.stat()):
-            return handle
-    except (BlockingIOError, FileNotFoundError):
-        pass
+        return handle if locked(handle, folder, fcntl.LOCK_SH) else None
     except OSError:
         return handle  # Where there are no locks, nobody removes anything.
-    os.close(handle)
-    return None
 
 
 def _remove(folder: Path) -> bool:

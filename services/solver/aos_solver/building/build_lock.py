@@ -44,21 +44,29 @@ def _held(path: Path) -> int | None:
     """The open file that holds the lock; None while another holds it, `_NO_LOCKS` where there are none."""
     handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if os.path.samestat(os.fstat(handle), path.stat()):
+        if locked(handle, path, fcntl.LOCK_EX):
             return handle
-    except BlockingIOError:
-        pass
-    except FileNotFoundError:
-        pass  # Its last holder has just taken it away.
     except OSError as error:
-        if error.errno in (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS):
-            os.close(handle)
-            return _NO_LOCKS
         os.close(handle)
+        if error.errno in (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS):
+            return _NO_LOCKS
         raise
-    os.close(handle)
     return None
+
+
+def locked(handle: int, path: Path, kind: int) -> bool:
+    """Takes the lock of an open file; closes it where another holds that, or what `path` names has changed.
+
+    OSError where there are no locks.
+    """
+    try:
+        fcntl.flock(handle, kind | fcntl.LOCK_NB)
+        if os.path.samestat(os.fstat(handle), path.stat()):
+            return True
+    except (BlockingIOError, FileNotFoundError):
+        pass  # Its last holder may just have taken it away.
+    os.close(handle)
+    return False
 
 
 def _let_go(path: Path, handle: int) -> None:

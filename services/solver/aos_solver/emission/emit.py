@@ -17,6 +17,7 @@ from aos_language.mission_parameters import ParameterLeaf
 from aos_language.templates import Environment, templates_in
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
+from aos_protocol.spelling import column_of
 from aos_solver.emission.document_lines import END, MARK, MODEL_FILE, Origin, put_code, string_literal
 from aos_solver.emission.layout import Layout, layout_of, saved_variables
 from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill
@@ -68,8 +69,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
         origins = self.origins.get(line)
         if not origins:
             return None
-        text = self.cpp.split("\n")[line - 1].encode()
-        column = len(text[: byte_column - 1].decode(errors="ignore")) + 1
+        column = column_of(self.cpp.split("\n")[line - 1], byte_column - 1)
         inside = [o for o in origins if o.column <= column <= o.column + o.length]
         if inside:
             return self.pieces[inside[0].piece - 1].locate(inside[0].line, column - inside[0].column + 1)
