@@ -202,7 +202,7 @@ def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(pr
 
 def test_too_many_states_are_told(problems: Path, tmp_path):
     (tmp_path / "wide.pomdpx").write_text(
-        (problems / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>9999999<")
+        (problems / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>999999<")
     )
     with pytest.raises(ModelError, match="too large once it is written out"):
         read_problem(tmp_path / "wide.pomdpx")

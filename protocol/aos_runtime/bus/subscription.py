@@ -64,11 +64,11 @@ class Subscription(Generic[T]):
             await self._changed.wait()
         return self._items.popleft()
 
-    async def batches(self, most: int) -> AsyncIterator[list[T]]:
-        """The items that are there together, so many at most."""
+    async def batches(self) -> AsyncIterator[list[T]]:
+        """The items that are there together, 256 at most."""
         async for first in self:
             batch = [first]
-            while self._items and len(batch) < most:
+            while self._items and len(batch) < 256:
                 batch.append(self._items.popleft())
             yield batch
 

@@ -20,7 +20,6 @@ publishes beside its answer, and later.
 """
 
 QUEUE_SIZE = 4096
-_BATCH = 256
 
 _log = logging.getLogger("aos.middleware")
 
@@ -56,7 +55,7 @@ class HeardTopics:
 
     async def take(self, messages: Subscription[tuple[str, TopicMessage]]) -> None:
         """Evaluates topic messages until the stream is closed and empty."""
-        async for batch in messages.batches(_BATCH):
+        async for batch in messages.batches():
             await self._evaluate([(self._topic_of[key], message.fields) for key, message in batch])
             for key, message in batch:
                 self._last_numbers[key] = message.number

@@ -21,7 +21,6 @@ from aos_runtime.bus.subscription import merged
 LISTEN_S = 5.0
 """An activation waits this long for new monitors to be at work."""
 
-_BATCH = 256
 _QUEUE_SIZE = 4096
 
 _log = logging.getLogger("aos.middleware")
@@ -147,7 +146,7 @@ class _Monitor:
             async with self._asking:
                 await self._begin()
             self.listens.set()
-            async for batch in messages.batches(_BATCH):
+            async for batch in messages.batches():
                 async with self._asking:
                     await self._evaluate([(topics[key], message.fields) for key, message in batch])
                 for key, message in batch:
