@@ -15,6 +15,12 @@
 
 namespace aos {
 
+// What options earn that are followed, and the discount of what comes after them, which is 0 where the mission has ended.
+struct Followed {
+  double earned = 0;
+  double discount = 1;
+};
+
 template <class Model>
 class OptionFollowing {
  public:
@@ -25,22 +31,22 @@ class OptionFollowing {
   // Begins a decision: what searches have found since the last one is forgotten.
   void begin() { found_.clear(); }
 
-  // What is returned within so many steps of a mission. It takes about `most_steps` of the model; `steps` is counted down.
-  double value(State state, std::size_t horizon, double most_steps, double& steps, Sampler& random) const {
-    double value = 0;
-    double discount = 1;
+  // Follows options for so many steps of a mission. It takes about `most_steps` of the model; `steps` is counted down.
+  Followed follow(State state, std::size_t horizon, double most_steps, double& steps, Sampler& random) const {
+    Followed followed;
     double left = most_steps;
     while (Model::ending(state) == Ending::running && left > 0 && !library_.clock().is_over()) {
-      Followed best = best_known(state, horizon, left, random);
+      Best best = best_known(state, horizon, left, random);
       if (best.option.empty()) best = best_searched(state, horizon, left, random);
       if (best.option.empty()) break;
-      value += discount * best.earned;
-      discount *= std::pow(Model::discount, best.option.size());
+      followed.earned += followed.discount * best.earned;
+      followed.discount *= std::pow(Model::discount, best.option.size());
       horizon -= best.option.size();
       state = std::move(best.after);
     }
+    if (Model::ending(state) != Ending::running) followed.discount = 0;
     steps -= most_steps - left;
-    return value;
+    return followed;
   }
 
  private:
@@ -48,7 +54,7 @@ class OptionFollowing {
   static constexpr int tries = 4;                // of each of them
   static constexpr std::size_t most_found = 64;
 
-  struct Followed {
+  struct Best {
     Option option{};
     double earned = 0;  // on average
     State after{};      // of the last try
@@ -61,7 +67,7 @@ class OptionFollowing {
     bool ends;  // the mission
   };
 
-  Followed best_known(const State& state, std::size_t horizon, double& left, Sampler& random) const {
+  Best best_known(const State& state, std::size_t horizon, double& left, Sampler& random) const {
     first_.clear();
     for (const std::vector<Option>* options : {&library_.options(), &std::as_const(found_)}) {
       for (const Option& option : *options) {
@@ -78,10 +84,10 @@ class OptionFollowing {
     // After an end nothing is earned, so that ends compare by what they earn in all.
     const bool ends = !first_.empty() && first_.front().ends;
     if (ends) sort_first([](const Tried& one, const Tried& other) { return std::pair(one.ends, one.earned) > std::pair(other.ends, other.earned); });
-    Followed best;
+    Best best;
     double most = 0;
     for (auto entry = first_.begin(); entry != first_.begin() + count; ++entry) {
-      Followed again = tried(*entry->option, state, left, random);
+      Best again = tried(*entry->option, state, left, random);
       const double now = ends ? again.earned : income<Model>(again.earned, again.option.size());
       if (now <= most) continue;
       most = now;
@@ -90,7 +96,7 @@ class OptionFollowing {
     return best;
   }
 
-  Followed best_searched(const State& state, std::size_t horizon, double& left, Sampler& random) const {
+  Best best_searched(const State& state, std::size_t horizon, double& left, Sampler& random) const {
     OptionSearch<Model> search{library_.searched_cells(), library_.clock(), library_.retries(), library_.counts()};
     const std::vector<Option> ways = search.from(state, left, random);
     if (ways.empty() || ways.front().size() > horizon) return {};
@@ -98,8 +104,8 @@ class OptionFollowing {
     return tried(ways.front(), state, left, random);
   }
 
-  Followed tried(const Option& option, const State& state, double& left, Sampler& random) const {
-    Followed followed{option, 0, state};
+  Best tried(const Option& option, const State& state, double& left, Sampler& random) const {
+    Best followed{option, 0, state};
     for (int i = 0; i < tries; ++i) {
       followed.after = state;
       followed.earned += taken_option<Model>(option, followed.after, random, library_.retries()).earned / tries;

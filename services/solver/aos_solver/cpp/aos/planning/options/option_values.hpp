@@ -44,7 +44,7 @@ class OptionValues {
       if (i >= fewest_valued && (before - steps) * static_cast<double>(i + 1) / static_cast<double>(i) > affordable) break;
       if (i >= fewest_valued && clock_.is_limited() && clock_.left_s() < latest_s) break;
       const std::size_t k = i * jump % count * stride;
-      valued_.push_back({k, belief.weights()[k], value(belief.states()[k], horizon_, steps, random)});
+      valued_.push_back({k, belief.weights()[k], followed(belief.states()[k], horizon_, steps, random)});
     }
   }
 
@@ -58,7 +58,7 @@ class OptionValues {
       if (Model::ending(next[k]) != Ending::running) continue;
       if (clock_.left_s() < one_s_) return 0;
       const std::size_t left = horizon_ > actions ? horizon_ - actions : 0;
-      gains.emplace_back(weight, value(next[k], left, steps, random) - before);
+      gains.emplace_back(weight, followed(next[k], left, steps, random).earned - before.earned);
       gain += weight * gains.back().second;
       weights += weight;
     }
@@ -74,11 +74,22 @@ class OptionValues {
   double beyond(Seen&& seen) const {
     double sum = 0;
     double weights = 0;
-    for (const auto& [k, weight, value] : valued_) {
-      sum += weight * (value - seen(k));
+    for (const auto& [k, weight, followed] : valued_) {
+      sum += weight * (followed.earned - seen(k));
       weights += weight;
     }
     return weights > 0 ? sum / weights : 0;
+  }
+  // What is earned in the valued states, and the discount of what comes after that.
+  Followed mean() const {
+    Followed mean{0, 0};
+    double weights = 0;
+    for (const auto& [k, weight, followed] : valued_) {
+      mean.earned += weight * followed.earned;
+      mean.discount += weight * followed.discount;
+      weights += weight;
+    }
+    return {mean.earned / weights, mean.discount / weights};
   }
 
  private:
@@ -91,13 +102,13 @@ class OptionValues {
   struct Valued {
     std::size_t state;
     double weight;
-    double value;
+    Followed followed;
   };
 
   // All states have as many steps and as much time, so that their values compare.
-  double value(const State& state, std::size_t horizon, double& steps, Sampler& random) const {
+  Followed followed(const State& state, std::size_t horizon, double& steps, Sampler& random) const {
     const DecisionClock::Slice one(clock_, one_s_);
-    return following_.value(state, horizon, value_steps_, steps, random);
+    return following_.follow(state, horizon, value_steps_, steps, random);
   }
 
   // A step that goes through all numbers below a count, far apart from one to the next.
