@@ -22,6 +22,8 @@ class Route(NamedTuple):
 
 _UNLISTED = ("lists", "near_states", "wide_values")
 _ROLLED_OUT = (*_UNLISTED, "options", "learned_values")
+_OPTIONS = ("enough_ways", "tests_first", "plain_plans", "retries", "detours", "alike_states")
+_SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 _SEARCH = ("own_spread", "max_backup", "turns", "sooner", "kept_tree")
 
 ROUTES = (
@@ -36,7 +38,7 @@ ROUTES = (
         "auto, states unlisted",
         "auto",
         _UNLISTED,
-        ("options", "enough_ways", "tests_first", "detours", "seek", "learned_values"),
+        ("options", *_OPTIONS, "seek", *_SAVINGS, "learned_values"),
     ),
     Route(
         "pomcp with values of many states",
@@ -81,8 +83,6 @@ class BundleRoute(NamedTuple):
 
 
 _WITHOUT_OPTIONS = ("learned_values", "prior", "prior_draw", "asked_leaves")
-
-_SAVINGS = ("savings", "saving_lookahead", "saving_rollouts")
 
 BUNDLES = (
     BundleRoute("survey", 1000, 60, ("plain_plans",)),

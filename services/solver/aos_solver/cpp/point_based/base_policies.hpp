@@ -16,6 +16,7 @@
 #include <optional>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "point_based/belief_graph.hpp"
 #include "point_based/constants.hpp"
 #include "point_based/online.hpp"
@@ -194,8 +195,6 @@ class BasePolicies {
     }
     return known;
   }
-
-  static double share_of_entropy(double probability) { return probability > 0 ? -probability * std::log(probability) : 0; }
 
   const FlatModel& model_;
   const Regions& regions_;

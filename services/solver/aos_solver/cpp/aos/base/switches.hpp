@@ -9,16 +9,19 @@
 #include <string_view>
 #endif
 
-// The lines have what tells which planner decides; mechanisms of options; of savings; of SARSOP; of POMCP's values of states
-// and its prior (two lines); and of its search (two lines).
-#define AOS_MECHANISMS(of)                                                                                     \
+#define AOS_MECHANISMS(of) \
+  /* which planner decides */ \
   of(lists) of(estimated_draws) of(exact) of(near_states) of(belief_tree) of(options) of(savings) of(seek) \
-  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) \
+  /* options */ \
+  of(enough_ways) of(tests_first) of(goal_conditions) of(plain_plans) of(whole_lists) of(retries) of(kept_ways) of(detours) of(alike_states) \
+  /* savings */ \
   of(saving_lookahead) of(saving_rollouts) \
+  /* SARSOP */ \
   of(endless) of(certainty_equivalent) of(repeated_trials) of(lower_trials) of(simple_policies) \
+  /* POMCP's values of states, and its prior */ \
   of(listed_values) of(wide_values) of(learned_values) of(prior) of(prior_draw) of(asked_leaves) of(first_state) of(priced_information) \
-  of(step_table) of(expected_rewards) \
-  of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns) \
+  /* POMCP's search */ \
+  of(step_table) of(expected_rewards) of(rollout_repeats) of(rollout_ends) of(rollout_shares) of(own_spread) of(max_backup) of(turns) \
   of(certain_actions) of(sooner) of(observation_cells) of(kept_tree)
 
 namespace aos::switches {

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "aos/belief/drawn_step.hpp"
 #include "aos/belief/effort.hpp"
 #include "aos/belief/gathering.hpp"
@@ -231,7 +232,7 @@ class Belief {
   // The entropy in nats.
   double entropy() const {
     double sum = 0;
-    for (const auto& particle : particles()) sum -= particle.weight * std::log(particle.weight);
+    for (const auto& particle : particles()) sum += share_of_entropy(particle.weight);
     return std::max(sum, 0.0);
   }
 

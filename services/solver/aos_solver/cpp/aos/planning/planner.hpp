@@ -70,6 +70,8 @@ class Planner {
   virtual const char* name() const = 0;
   // Returns whether it can decide, and is ready then. `choosing.why` goes on with the reason, or with what keeps it from that.
   virtual bool prepare(const Question<Model>& question, Sampler& random, Choosing& choosing) = 0;
+  // The planner that searches after `prepare`: this one, or another that it has compared itself with and made ready.
+  virtual Planner& decider() { return *this; }
   // Searches for the decision of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
   virtual std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) = 0;
 

@@ -62,8 +62,7 @@ class Planners {
     const Question<Model> question{belief, budget, horizon, barred_, is_by_name, space_.reach(belief)};
     choosing.why = is_by_name ? "it was asked for" : question.is_listed ? space_.listed_text() : space_.obstacle();
     const auto& order = order_[static_cast<std::size_t>(kind)];
-    used_ = *std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); });
-    if (used_ == &savings_ && savings_.yields()) used_ = &rollouts_;
+    used_ = &(*std::ranges::find_if(order, [&](Planner<Model>* planner) { return planner->prepare(question, random, choosing); }))->decider();
     const auto prepared = thread_time();
     const Question<Model> left{belief, left_of(budget, choosing.spent), horizon, barred_, is_by_name, question.is_listed};
     const std::uint64_t simulations = used_->search(left, random, choosing.why);

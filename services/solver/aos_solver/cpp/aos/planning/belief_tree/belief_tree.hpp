@@ -72,7 +72,7 @@ class BeliefTree final : public TreePlanner<Model> {
 
   void start_over() override { tables_.forget(); }
 
-  // Runs the search for the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
+  // See `search`.
   std::uint64_t search_from_root(Budget budget, int horizon, Sampler& random, const BarredActions& barred) {
     const auto start = PlanningClock::now();
     barred_ = barred;

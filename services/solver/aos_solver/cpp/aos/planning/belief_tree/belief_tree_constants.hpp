@@ -8,7 +8,7 @@
 
 namespace aos {
 
-// --- the tree ----------------------------------------------------------------------------------------
+// --- the tree
 
 // Beliefs after n visits of an action: `beliefs_of_one_visit` n^`belief_widening`.
 inline constexpr double beliefs_of_one_visit = 4;
@@ -17,7 +17,7 @@ inline constexpr double belief_widening = 0.3;
 inline constexpr std::size_t tree_states = 100;
 inline constexpr std::size_t tree_root_states = 500;
 
-// --- probabilities of observations -------------------------------------------------------------------
+// --- probabilities of observations
 
 // Runs of the model's code along an outcome.
 inline constexpr std::size_t sensing_runs = 64;
@@ -31,7 +31,7 @@ inline constexpr double highest_log_ratio = 60;
 // Of what is observed, the share that no run gave, above which POMCP decides.
 inline constexpr double max_unknown_share = 0.5;
 
-// --- limits ------------------------------------------------------------------------------------------
+// --- limits
 
 inline constexpr std::size_t max_belief_tree_bytes = std::size_t{256} << 20;
 inline constexpr std::uint64_t max_prepared_runs = 1'000'000;  // steps of the model before a search

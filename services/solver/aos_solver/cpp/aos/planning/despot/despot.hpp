@@ -166,7 +166,7 @@ class Despot final : public TreePlanner<Model> {
     return end;
   }
 
-  // --- the root --------------------------------------------------------------------------------------
+  // --- the root
 
   // Makes the root. Returns false if there is nothing to decide.
   bool plant(const Belief<Model>& belief, Sampler& random) {
@@ -217,7 +217,7 @@ class Despot final : public TreePlanner<Model> {
     return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, min_scenarios));
   }
 
-  // --- the tree --------------------------------------------------------------------------------------
+  // --- the tree
 
   // Adds a node for the outcomes from `first` to `last`.
   std::uint32_t add_node(std::size_t first, std::size_t last, int depth, std::uint32_t parent,
@@ -313,7 +313,7 @@ class Despot final : public TreePlanner<Model> {
   bool is_barred(std::uint32_t number, std::size_t action) const { return number == 0 && barred_.contains(action); }
   std::size_t tried_actions(std::uint32_t number) const { return number == 0 ? deviations_.size() : action_count(); }
 
-  // --- trials ----------------------------------------------------------------------------------------
+  // --- trials
 
   // Runs one trial. Returns false once the bounds have met or nothing can be added.
   bool explore() {

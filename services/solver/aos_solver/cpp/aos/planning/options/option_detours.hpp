@@ -111,7 +111,7 @@ class OptionDetours {
       if (!goes_on || !observation.is_listed(1) || observation.tells_nothing()) continue;
       telling_[a] = true;
       const auto same = std::ranges::find_if(looks_, [&](const Look& other) {
-        return other.action == action && std::ranges::equal(other.reports, look.reports, [](const auto& one, const auto& two) { return one.is_like(two); });
+        return other.action == action && std::ranges::equal(other.reports, look.reports, &StepReports::is_like);
       });
       if (same == looks_.end()) looks_.push_back(std::move(look));
       else if (look.ahead.paid > same->ahead.paid) *same = std::move(look);

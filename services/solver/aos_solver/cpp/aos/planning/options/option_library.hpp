@@ -113,13 +113,7 @@ class OptionLibrary {
 
   // Adds options, and what is left of each after its first actions: at most so many for each. Returns whether there were any.
   bool add(const std::vector<Option>& found, std::size_t most) {
-    for (const Option& option : found) {
-      const auto last = option.begin() + static_cast<std::ptrdiff_t>(std::min(most, option.size()));
-      for (auto first = option.begin(); first != last && options_.size() < max_options; ++first) {
-        Option rest(first, option.end());
-        if (std::ranges::find(options_, rest) == options_.end()) options_.push_back(std::move(rest));
-      }
-    }
+    for (const Option& option : found) add_with_rests(options_, option, most, max_options);
     return !found.empty();
   }
 

@@ -98,7 +98,7 @@ class OptionMoves {
     steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
     const bool is_repeated = !tests_.is_move(way.front()) && std::ranges::count(way, way.front()) == std::ssize(way);
     if (is_repeated && tells_alike(reports.front(), tests_.reports_of(way.front()))) return here;
-    const RepeatedObservation last{is_repeated ? reports.front() : tell_nothing(reports) ? reports.back() : std::vector<StepReports>{}};
+    const auto last = is_repeated ? RepeatedObservation{reports.front()} : RepeatedObservation::at_last(reports);
     const auto told = regret_.after(last, is_repeated ? static_cast<int>(way.size()) : 1, start, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (const auto& of_step : reports) {
         if (!of_step[k].branches().empty()) observe(of_step, of_step[k].drawn(random), weights);
@@ -127,7 +127,7 @@ class OptionMoves {
     double share = 0;
     for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
     if (share < 0.5) return;
-    const RepeatedObservation last{share < 1 - 1e-9 || !tell_nothing(reports) ? std::vector<StepReports>{} : reports.back()};
+    const auto last = share < 1 - 1e-9 ? RepeatedObservation{std::vector<StepReports>{}} : RepeatedObservation::at_last(reports);
     if (!last.is_listed(1)) steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
     const auto told = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
@@ -140,11 +140,6 @@ class OptionMoves {
     candidates.push_back({way.front(), earned + discount * (seen - stake * told.regret), discount, "what can be observed elsewhere", told.avoided,
                           way, regret_.now() - told.regret});
     if (share > 1 - 1e-9) candidates.back().reports = std::move(reports);
-  }
-
-  // Whether nothing is observed on the way but at its last step.
-  static bool tell_nothing(const std::vector<std::vector<StepReports>>& reports) {
-    return std::all_of(reports.begin(), reports.end() - 1, [](const auto& of_step) { return RepeatedObservation{of_step}.tells_nothing(); });
   }
 
   const SampledBelief<Model>& belief_;

@@ -46,8 +46,7 @@ class OptionPairs {
       const int times = static_cast<int>(test->way.size());
       const Telling here{{tests_.reports_of(test->action)}, times};
       const Telling there{{reports_after(move->way, test->action, steps, random)}, times};
-      const auto is_alike = [](const StepReports& one, const StepReports& other) { return one.is_like(other); };
-      if (std::ranges::equal(here.reports.front(), there.reports.front(), is_alike)) continue;
+      if (std::ranges::equal(here.reports.front(), there.reports.front(), &StepReports::is_like)) continue;
       const double before = test->value + test->discount * gained(here, *move, elsewhere, steps, random);
       const double after = move->value + move->discount * gained(elsewhere, *test, there, steps, random);
       if (before > after) test->value = std::max(test->value, move->value + before - after);
@@ -62,11 +61,7 @@ class OptionPairs {
     std::vector<std::vector<StepReports>> reports;  // [step][state]
     int times;
 
-    // What tells all of it, if that can be listed.
-    RepeatedObservation listed() const {
-      const bool tells_last = std::all_of(reports.begin(), reports.end() - 1, [](const auto& of_step) { return RepeatedObservation{of_step}.tells_nothing(); });
-      return RepeatedObservation{tells_last ? reports.back() : std::vector<StepReports>{}};
-    }
+    RepeatedObservation listed() const { return RepeatedObservation::at_last(reports); }
     void draw(std::size_t k, StateWeights& weights, Sampler& random) const {
       for (int i = 0; i < times; ++i) {
         for (const auto& of_step : reports) observe(of_step, of_step[k].drawn(random), weights);

@@ -58,7 +58,9 @@ class OptionPolicy {
     if (!is_prepared_) library_.prepare(belief, random);
     affordable_ = affordable;
     const auto states = std::clamp<double>(of_states * affordable_ / Model::action_count(), 16, library_.counts() ? 32 : 64);
-    belief_.draw_alike(belief, static_cast<std::size_t>(states), [&](const State& state) { return library_.running_down().all_else_of(state); }, random);
+    const auto all_else = [&](const State& state) { return library_.running_down().all_else_of(state); };
+    if (switches::alike_states) belief_.draw_alike(belief, static_cast<std::size_t>(states), all_else, random);
+    else belief_.draw(belief, static_cast<std::size_t>(states), random);
     library_.drop_unused(gains_, taken_way_);
     double left = of_options * affordable_;
     changes_.measure(belief_.states(), library_.cells(), left, random);
@@ -289,10 +291,8 @@ class OptionPolicy {
   // they are seen. Half of that distance is what may be wrong about it.
   void settle(double running) {
     estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
-    const OptionCandidate* best = nullptr;
-    for (const OptionCandidate& candidate : candidates_) {
-      if (best == nullptr || candidate.value > best->value) best = &candidate;
-    }
+    const auto most = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
+    const OptionCandidate* const best = most != candidates_.end() ? &*most : nullptr;
     const double open = best != nullptr ? std::max(regret_.value_seen() - best->value, 0.0) / 2 : 0;
     const double beyond = values_.beyond([this](std::size_t k) { return regret_.value_seen(k); });
     const double error = std::hypot(open, beyond / 2, regret_.error());

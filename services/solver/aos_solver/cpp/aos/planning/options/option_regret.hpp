@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/options/option_gains.hpp"
 #include "aos/planning/options/repeated_observation.hpp"
@@ -47,7 +49,7 @@ class OptionRegret {
     likely_.clear();
     price_ = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < belief_.size(); ++k) seen_.push_back(gains_.best_in(k));
-    value_seen_ = mean(belief_.weights());
+    value_seen_ = value_seen(belief_.weights());
     regret_ = after(belief_.weights());
   }
   // Lets a robot find out the state at this price for each nat, so that it never loses more by not knowing it. What is told by
@@ -60,7 +62,7 @@ class OptionRegret {
   void watch(std::vector<std::size_t> likely) { likely_ = std::move(likely); }
   double value_seen(std::size_t state) const { return seen_[state]; }
   double value_seen() const { return value_seen_; }
-  double value_seen(const StateWeights& weights) const { return mean(weights); }
+  double value_seen(const StateWeights& weights) const { return std::inner_product(weights.begin(), weights.end(), seen_.begin(), 0.0); }
   double now() const { return regret_; }
   // The standard error of `value_seen`, since few states are drawn.
   double error() const {
@@ -73,7 +75,7 @@ class OptionRegret {
     return std::sqrt(squares * concentration);
   }
   double after(const StateWeights& weights) const {
-    const double blind = std::max(mean(weights) - gains_.best(weights), 0.0);
+    const double blind = std::max(value_seen(weights) - gains_.best(weights), 0.0);
     return blind > 0 && std::isfinite(price_) ? std::min(blind, price_ * entropy(weights)) : blind;
   }
 
@@ -111,15 +113,9 @@ class OptionRegret {
     constexpr double of_gain = 0.02;
     return of_gain * static_cast<double>(gains_.size() * belief_.size());
   }
-  double mean(const StateWeights& weights) const {
-    double sum = 0;
-    for (std::size_t k = 0; k < weights.size(); ++k) sum += weights[k] * seen_[k];
-    return sum;
-  }
-
   static double entropy(const StateWeights& weights) {
     double nats = 0;
-    for (const double weight : weights) nats -= weight > 0 ? weight * std::log(weight) : 0;
+    for (const double weight : weights) nats += share_of_entropy(weight);
     return nats;
   }
 

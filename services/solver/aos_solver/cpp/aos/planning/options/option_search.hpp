@@ -34,6 +34,14 @@ namespace aos {
 // A way of acting: actions one after the other, whatever is observed.
 using Option = std::vector<int>;
 
+// Adds an option, and what is left of it after its first actions, as far as they are new: at most `most` of it, and up to `limit` in all.
+inline void add_with_rests(std::vector<Option>& options, const Option& option, std::size_t most, std::size_t limit) {
+  for (std::size_t first = 0; first < std::min(most, option.size()) && options.size() < limit; ++first) {
+    Option rest(option.begin() + static_cast<std::ptrdiff_t>(first), option.end());
+    if (std::ranges::find(options, rest) == options.end()) options.push_back(std::move(rest));
+  }
+}
+
 // What an option earned from a state, discounted, and the probability that the mission goes on after it.
 struct OptionOutcome {
   double earned = 0;

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "aos/base/stable_order.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
@@ -56,16 +56,9 @@ class PlainPlans {
 
   // What an action returns that is taken so many times.
   static PlainPlan played(int action, const SampledBelief<Model>& belief, std::size_t tries, int length, Sampler& random) {
-    double sum = 0;
-    double squares = 0;
-    draw_states(belief.weights(), static_cast<int>(tries), random, [&](std::size_t k) {
-      const double one = returned(belief.states()[k], action, length, random);
-      sum += one;
-      squares += one * one;
-    });
-    const auto count = static_cast<double>(tries);
-    const double mean = sum / count;
-    return {action, mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1))};
+    SampleMean mean;
+    draw_states(belief.weights(), static_cast<int>(tries), random, [&](std::size_t k) { mean.add(returned(belief.states()[k], action, length, random)); });
+    return {action, mean.mean(), mean.error()};
   }
 
  private:
@@ -77,8 +70,7 @@ class PlainPlans {
   // Less two standard errors. To leave, or to reach a goal, is no decay.
   static double decay(int action, const SampledBelief<Model>& belief, int horizon, Sampler& random) {
     const double first = played(action, belief, last_tries, 1, random).returned;
-    double sum = 0;
-    double squares = 0;
+    SampleMean mean;
     draw_states(belief.weights(), static_cast<int>(last_tries), random, [&](std::size_t k) {
       State state = belief.states()[k];
       double lost = 0;
@@ -87,12 +79,9 @@ class PlainPlans {
         const double reward = Model::step(state, action, random).reward;
         if (Model::ending(state) == Ending::running || Model::ending(state) == Ending::failure) lost += discount * (first - reward);
       }
-      sum += lost;
-      squares += lost * lost;
+      mean.add(lost);
     });
-    constexpr auto count = static_cast<double>(last_tries);
-    const double mean = sum / count;
-    return mean - 2 * std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1));
+    return mean.mean() - 2 * mean.error();
   }
 
   static double returned(State state, int action, int length, Sampler& random) {

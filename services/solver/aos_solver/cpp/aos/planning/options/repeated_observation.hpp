@@ -20,6 +20,12 @@ class RepeatedObservation {
     }
   }
 
+  // What is observed in a row of steps, [step][state], if it is observed at the last of them only; else none is listed.
+  static RepeatedObservation at_last(const std::vector<std::vector<StepReports>>& steps) {
+    const bool is_at_last = std::all_of(steps.begin(), steps.end() - 1, [](const auto& step) { return RepeatedObservation{step}.tells_nothing(); });
+    return RepeatedObservation{is_at_last ? steps.back() : std::vector<StepReports>{}};
+  }
+
   // Whether all combinations of so many observations can be gone through.
   bool is_listed(int times) const {
     double combinations = 1;  // how often each response comes, in whatever order

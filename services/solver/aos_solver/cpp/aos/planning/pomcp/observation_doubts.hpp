@@ -4,18 +4,16 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/pomcp/search_tree.hpp"
 #include "aos/planning/values/few_outcomes.hpp"
 
 namespace aos {
-
-inline double share_of_entropy(double probability) { return probability > 0 ? -probability * std::log(probability) : 0; }
 
 // The probabilities of what is observed.
 class ObservationOddsOfStep {

@@ -7,7 +7,7 @@
 
 namespace aos {
 
-// --- exploration -------------------------------------------------------------------------------------
+// --- exploration
 
 // Visits with a spread that was seen elsewhere, which fill up an action's own.
 inline constexpr double prior_visits = 4;
@@ -20,7 +20,7 @@ inline constexpr std::uint64_t turns = 8;
 // Simulations between two looks at the root's spread.
 inline constexpr std::uint64_t spread_renewal = 256;
 
-// --- the value of a history --------------------------------------------------------------------------
+// --- the value of a history
 
 // Visits of a history before its best action gives its value.
 inline constexpr std::uint32_t settled_visits = 16;
@@ -30,14 +30,14 @@ inline constexpr std::uint32_t well_visited_share = 4;
 inline constexpr std::uint64_t fewest_rollouts = 10;
 inline constexpr std::uint64_t most_rollouts = 100;
 
-// --- what is known before ----------------------------------------------------------------------------
+// --- what is known before
 
 // States of a history that tell what its actions are worth. Twelve were worse in ship10: docs/lab/learned-values.md.
 inline constexpr std::uint32_t asked_states = 8;
 // Steps of the model that make a prior of the root's actions.
 inline constexpr std::size_t max_prior_steps = 20'000;
 
-// --- rewards and observations ------------------------------------------------------------------------
+// --- rewards and observations
 
 // Steps of a simulation whose rewards count by their expectation: docs/lab/untuned.md. Nobody has varied the number of paths.
 inline constexpr std::size_t expected_steps = 2;
@@ -56,7 +56,7 @@ inline constexpr std::size_t priced_missions = 24;
 inline constexpr std::size_t priced_particles = 48;
 inline constexpr std::size_t most_priced_steps = 15'000'000;
 
-// --- limits ------------------------------------------------------------------------------------------
+// --- limits
 
 inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // of the trees of all threads
 // Of a budget in time, always used, so that a first look does not decide.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "aos/base/stable_order.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -37,33 +37,22 @@ class SavingIndex final : public StateValues<Model> {
     if (!values_.learn(base, belief, horizon, random)) return -std::numeric_limits<double>::infinity();
     constexpr double beyond_doubt = 2;  // standard errors
     double sum = 0;
-    double more = 0;
-    double squares = 0;
-    double count = 0;
+    SampleMean more;
     for (int mission = 0; mission < missions; ++mission) {
       const State start = belief.sample(random);
       if (Model::ending(start) != Ending::running) continue;
       const double returned = played(start, mission < practised ? &cells : nullptr, horizon, random);
       if (mission < practised) continue;
-      const double beyond = returned - values_.returned(values_.action(), start, StepLuck{random});
       sum += returned;
-      more += beyond;
-      squares += beyond * beyond;
-      ++count;
+      more.add(returned - values_.returned(values_.action(), start, StepLuck{random}));
     }
-    const double error = std::sqrt(std::max(squares / count - more * more / (count * count), 0.0) / (count - 1));
-    return count > 1 && more / count > beyond_doubt * error ? sum / count : -std::numeric_limits<double>::infinity();
+    return more.count() > 1 && more.mean() > beyond_doubt * more.error() ? sum / more.count() : -std::numeric_limits<double>::infinity();
   }
 
   // Looks for ways from a state. `steps` is counted down.
   void extend(const LeafCells<Model>& cells, const State& state, double& steps, Sampler& random) {
     SavingSearch<Model> search{cells, values_};
-    for (const Option& way : search.from(state, steps, random)) {
-      for (auto first = way.begin(); first != way.end() && ways_.size() < most_ways; ++first) {
-        Option rest(first, way.end());
-        if (std::ranges::find(ways_, rest) == ways_.end()) ways_.push_back(std::move(rest));
-      }
-    }
+    for (const Option& way : search.from(state, steps, random)) add_with_rests(ways_, way, way.size(), most_ways);
   }
 
   // Values the ways from all states, by their weights.

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "aos/base/stable_order.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
@@ -38,6 +38,7 @@ class SavingPolicy {
   // Learns what states are worth, once in a mission. Returns whether ways are found.
   bool learn(const Belief<Model>& belief, int horizon, Sampler& random) {
     if (has_learned_) return index_ != nullptr;
+    const ForgottenTexts forgotten;
     has_learned_ = true;
     index_ = nullptr;
     cells_.prepare(belief, random);
@@ -55,6 +56,7 @@ class SavingPolicy {
 
   // Draws states, and finds and values ways. It may take so many steps of the model.
   void prepare(const Belief<Model>& belief, double affordable, const BarredActions& barred, Sampler random) {
+    const ForgottenTexts forgotten;
     double steps = affordable;
     const auto states = std::clamp<double>(of_states * affordable / Model::action_count(), 16, 32);
     belief_.draw(belief, static_cast<std::size_t>(states), random);
@@ -167,7 +169,7 @@ class SavingPolicy {
     }
     steps -= static_cast<double>(belief_.size());
     double entropy = 0;
-    for (const auto& [observation, share] : shares) entropy -= share > 0 ? share * std::log(share) : 0;
+    for (const auto& [observation, share] : shares) entropy += share_of_entropy(share);
     return entropy;
   }
 

@@ -37,7 +37,7 @@ class SavingsPlanner final : public Planner<Model> {
     if (!is_asked || belief.probability_of(Ending::running) <= 0) return false;
     Sampler own{Sampler{random}.bits()};
     if (!yields_) {
-      if (!learn(belief, horizon, own)) return false;
+      if (!policy_.learn(belief, horizon, own)) return false;
       const bool asks = switches::saving_rollouts && !has_asked_ && !is_by_name;
       find_ways(question, asks ? 1 - of_rollouts : 1, own, choosing);
       if (asks) yields_ = do_rollouts_tell_more(question, own, choosing);
@@ -47,8 +47,7 @@ class SavingsPlanner final : public Planner<Model> {
     choosing.why += "; to act tells more by rollouts than what it saves";
     return rollouts_.prepare(question, random, choosing);
   }
-  // Whether POMCP that ends in rollouts decides in its place.
-  bool yields() const { return yields_; }
+  Planner<Model>& decider() override { return yields_ ? static_cast<Planner<Model>&>(rollouts_) : *this; }
 
   std::uint64_t search(const Question<Model>& question, Sampler& random, std::string& why) override {
     why += "; what saves most against a rest decides";
@@ -80,14 +79,8 @@ class SavingsPlanner final : public Planner<Model> {
  private:
   static constexpr double of_rollouts = 0.5;  // of the budget of a decision that asks it
 
-  bool learn(const Belief<Model>& belief, int horizon, Sampler& random) {
-    const ForgottenTexts forgotten;
-    return policy_.learn(belief, horizon, random);
-  }
-
   void find_ways(const Question<Model>& question, double share, Sampler& random, Choosing& choosing) {
     const SearchTime time{choosing};
-    const ForgottenTexts forgotten;
     const auto start = PlanningClock::now();
     // A look for options has taken its share of the budget.
     if (options_.has_looked()) share *= 1 - OptionPolicy<Model>::of_options;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "aos/base/mixed.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -52,17 +53,13 @@ class SeekPolicy {
     find_classes();
     const int first = first_action(random);
     if (first < 0) return {};
-    double sum = 0, squares = 0, count = 0;
+    SampleMean returned;
     steps_ = std::max(steps_, affordable / 2);
     for (int mission = 0; mission < most_missions && (mission < fewest_missions || steps_ > 0); ++mission) {
       const auto k = static_cast<std::size_t>(random.choose(belief_.weights().data(), static_cast<int>(belief_.size()), 1.0));
-      const double one = played(k, random);
-      sum += one;
-      squares += one * one;
-      ++count;
+      returned.add(played(k, random));
     }
-    const double mean = sum / count;
-    return {first, mean, std::sqrt(std::max(squares / count - mean * mean, 0.0) / (count - 1)), static_cast<int>(count)};
+    return {first, returned.mean(), returned.error(), static_cast<int>(returned.count())};
   }
   // What the best end at once returns on average; 0 without an end.
   double returned_at_once() const { return returned_at_once_; }
@@ -79,7 +76,7 @@ class SeekPolicy {
   static constexpr int most_missions = 64;
   static constexpr double least_information = 1e-4;
 
-  // --- ends and wins ----------------------------------------------------------------------------------
+  // --- ends and wins
 
   // Keeps the ends that return most on average.
   void find_ends(Sampler& random) {
@@ -161,14 +158,13 @@ class SeekPolicy {
       }
       for (std::size_t z = 0; z < classes_; ++z) {
         double doubt = 0;
-        for (std::size_t o = 0; o < test.outcomes; ++o) doubt += entropy(test.odds[z * test.outcomes + o]);
+        for (std::size_t o = 0; o < test.outcomes; ++o) doubt += share_of_entropy(test.odds[z * test.outcomes + o]);
         test.doubts.push_back(doubt);
       }
     }
   }
-  static double entropy(double p) { return p > 0 ? -p * std::log(p) : 0; }
 
-  // --- the policy -------------------------------------------------------------------------------------
+  // --- the policy
 
   double information(const Test& test, const std::vector<double>& weights) {
     seen_.assign(test.outcomes, 0);
@@ -178,7 +174,7 @@ class SeekPolicy {
       for (std::size_t o = 0; o < test.outcomes; ++o) seen_[o] += weights[z] * test.odds[z * test.outcomes + o];
     }
     double sum = -doubt;
-    for (const double p : seen_) sum += entropy(p);
+    for (const double p : seen_) sum += share_of_entropy(p);
     return sum;
   }
 

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "aos/base/progress.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -102,7 +102,7 @@ class LearnedValues final : public StateValues<Model> {
     }
   }
 
-  // --- examples --------------------------------------------------------------------------------------
+  // --- examples
 
   // Takes one example from each walk, since states of the same walk have too much in common.
   void walk(const Belief<Model>& belief, std::size_t successors, Sampler& random, bool has_values) {
@@ -182,7 +182,7 @@ class LearnedValues final : public StateValues<Model> {
     }
   }
 
-  // --- values ----------------------------------------------------------------------------------------
+  // --- values
 
   // One sweep of fitted value iteration.
   void improve() {
@@ -223,22 +223,14 @@ class LearnedValues final : public StateValues<Model> {
 
   // Compares both policies from the same states. The difference must exceed twice its standard error.
   bool beats_rollouts(const Belief<Model>& belief, Sampler& random) const {
-    double count = 0;
-    double sum = 0;
-    double squares = 0;
+    SampleMean differences;
     std::size_t steps = 0;
     for (int test = 0; test < tested_missions && steps < max_tested_steps; ++test) {
       const State& state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
-      const double difference = earned_by_values(state, random) - earned_by_rollouts(state, random, steps);
-      ++count;
-      sum += difference;
-      squares += difference * difference;
+      differences.add(earned_by_values(state, random) - earned_by_rollouts(state, random, steps));
     }
-    if (count < min_compared_missions) return false;
-    const double mean = sum / count;
-    const double variance_of_mean = std::max(squares / count - mean * mean, 0.0) / (count - 1);
-    return mean > 2 * std::sqrt(variance_of_mean);
+    return differences.count() >= min_compared_missions && differences.mean() > 2 * differences.error();
   }
 
   // The discounted return of one mission whose policy observes the state.

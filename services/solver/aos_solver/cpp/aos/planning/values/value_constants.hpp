@@ -7,7 +7,7 @@
 
 namespace aos {
 
-// --- values that are computed ------------------------------------------------------------------------
+// --- values that are computed
 
 inline constexpr std::size_t max_layered_values = 8'000'000;  // of listed states, one for each number of decisions to go
 // Of values of many states, before a list begins: walks, their work in steps and copies of 64 bytes, and states whose steps
@@ -16,7 +16,7 @@ inline constexpr std::size_t looked_at = 20'000;
 inline constexpr std::size_t max_looking_work = 600'000;
 inline constexpr std::size_t priced_states = 100;
 
-// --- values that are learned -------------------------------------------------------------------------
+// --- values that are learned
 
 // Steps of a round, and rounds. The second effort is made where the first one fails its test: with it and with walks that put off
 // their end, a search for victims returned 13.3 in place of 1.9 (docs/lab/learned-values.md).
@@ -39,7 +39,7 @@ inline constexpr std::size_t max_tested_steps = 2'000'000;
 inline constexpr std::size_t max_example_bytes = std::size_t{32} << 20;  // of the states of a round
 inline constexpr std::size_t max_example_cells = 20'000'000;             // of all rows
 
-// --- tables over few variables -----------------------------------------------------------------------
+// --- tables over few variables
 
 // Cells of a variable, where its values are many or real.
 inline constexpr double max_cell_values = 255;
@@ -55,7 +55,7 @@ inline constexpr std::size_t max_tried_lookups = 6'000'000;
 inline constexpr double max_unexplained_share = 2e-4;
 inline constexpr double variances_of_chance = 3;
 
-// --- missions that tell a value ----------------------------------------------------------------------
+// --- missions that tell a value
 
 // Of a budget, at each decision, and as much for all of them at the first one.
 inline constexpr double share_of_groups = 0.01;

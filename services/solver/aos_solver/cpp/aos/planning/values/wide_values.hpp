@@ -96,7 +96,7 @@ class WideValues final : public StateValues<Model> {
     return action > 0 && Model::skill_of(action - 1) == skill && Model::has_alike_groundings(skill);
   }
 
-  // --- is it worth beginning? ------------------------------------------------------------------------
+  // --- is it worth beginning?
 
   // Random walks tell how many values each byte of a running state takes. Their combinations are an estimate of the number
   // of states, since walks may miss values, and since some combinations may not occur. The limits of a list hold anyway.
@@ -134,7 +134,7 @@ class WideValues final : public StateValues<Model> {
     return product;
   }
 
-  // --- the list --------------------------------------------------------------------------------------
+  // --- the list
 
   void list(const Belief<Model>& belief) {
     lister_.add_states_of(belief);
