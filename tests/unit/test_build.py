@@ -58,10 +58,13 @@ def places(error: ModelError) -> list[str]:
     return [str(diagnostic.span) for diagnostic in error.diagnostics]
 
 
-async def test_a_model_is_built_once_and_then_found(bundles: Path, cache_dir: Path):
+async def test_a_model_is_built_once_which_is_told_and_then_found(bundles: Path, cache_dir: Path):
     emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
-    first = await build(emitted, cache_dir=cache_dir)
     told: list[str] = []
+    first = await build(emitted, cache_dir=cache_dir, on_progress=told.append)
+    assert told[0].startswith(f"compiling {emitted.project} with ")
+    assert told[-1].startswith(f"compiled {emitted.project} in ")
+    told.clear()
     second = await build(emitted, cache_dir=cache_dir, on_progress=told.append)
     assert second.executable == first.executable
     assert not told
@@ -76,14 +79,6 @@ async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir
     assert first.executable == second.executable
     assert entries(cache_dir, BEING_BUILT) == []
     assert await answers(first)
-
-
-async def test_progress_says_what_takes_the_time(cache_dir: Path):
-    remarks: list[str] = []
-    emitted = emitted_skill("state__.total += 2;")
-    await build(emitted, cache_dir=cache_dir, on_progress=remarks.append)
-    assert remarks[0].startswith("compiling test with ")
-    assert remarks[-1].startswith("compiled test in ")
 
 
 @pytest.mark.parametrize(
