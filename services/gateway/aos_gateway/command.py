@@ -70,6 +70,9 @@ def serve(
     endpoints, robots = connect or [], robot or []
     if len(endpoints) != len(robots):
         raise typer.BadParameter("give one --robot for each --connect", param_hint="--robot")
+    for folder in (*(runs or ()), *(projects or ())):
+        if not folder.is_dir():
+            typer.echo(f"{folder} is no folder yet; it is shown once it is there", err=True)
     if listen != "localhost" and not _is_address(listen):
         raise typer.BadParameter("no address of this machine", param_hint="--listen")
 
