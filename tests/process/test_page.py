@@ -70,9 +70,14 @@ def screens(page: Page) -> Iterator[str]:
         yield f"{width}-{theme}"
 
 
+def wait_for_width(page: Page) -> None:
+    """Waits until nothing is wider than the screen, which charts follow a frame later."""
+    page.wait_for_function("document.documentElement.scrollWidth <= innerWidth")
+
+
 def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
     """The findings of the accessibility checker: the rule, and the elements. A screen may not be too wide."""
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    wait_for_width(page)
     page.evaluate((installed_sources(ROOT, cache_dir) / AXE).read_text())
     found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
     return [(each["id"], [node["target"] for node in each["nodes"]]) for each in found]
@@ -316,7 +321,7 @@ def test_long_names_are_told_whole_and_widen_no_screen(
         page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
         expect(page.locator(".stepper-place")).to_have_text("110 of 120")
         for screen in screens(page):
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), (view, screen)
+            wait_for_width(page)
             kept(page, f"long-{screen}{view.replace('/', '-')}")
     is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
     for _ in screens(page):
