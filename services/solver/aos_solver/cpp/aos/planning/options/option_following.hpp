@@ -105,13 +105,13 @@ class OptionFollowing {
   }
 
   Best tried(const Option& option, const State& state, double& left, Sampler& random) const {
-    Best followed{option, 0, state};
+    Best best{option, 0, state};
     for (int i = 0; i < tries; ++i) {
-      followed.after = state;
-      followed.earned += taken_option<Model>(option, followed.after, random, library_.retries()).earned / tries;
+      best.after = state;
+      best.earned += taken_option<Model>(option, best.after, random, library_.retries()).earned / tries;
     }
     left -= tries * static_cast<double>(option.size());
-    return followed;
+    return best;
   }
 
   const OptionLibrary<Model>& library_;

@@ -111,17 +111,18 @@ class OptionPolicy {
   }
   double reward_of(int action, Sampler& random) const { return PlainPlans<Model>::played(action, belief_, of_reward, 1, random).returned; }
   // Whether the world, left to itself, comes to cost more than ways earn where the state is seen. If they are followed one after
-  // the other, what it costs counts from where no way goes on. Ways do not tell what to do where it is more.
+  // the other, its cost counts from where no way goes on. Ways do not tell what to do then.
   bool is_neglect_dear(int horizon, Sampler& random) {
     double earned = 0;
     for (std::size_t k = 0; k < belief_.size(); ++k) earned += belief_.weights()[k] * gains_.best_in(k);
-    if (!PlainPlans<Model>::all_decay(belief_, horizon, earned, random)) return false;
+    const double lost = PlainPlans<Model>::least_decay(belief_, horizon, earned, random);
+    if (lost <= earned) return false;
     clock_.end_at(of_all);
     double left = affordable_ - taken_;
     values_.begin(belief_, horizon, tried_options, left, random);
     taken_ = affordable_ - left;
     const Followed seen = values_.mean();
-    return PlainPlans<Model>::all_decay(belief_, horizon, seen.earned / seen.discount, random);
+    return seen.discount * lost > seen.earned;
   }
   // Lets a plain plan decide. What was told of all else is `lost` too much.
   void settle_for(const PlainPlan& plain, double lost) {

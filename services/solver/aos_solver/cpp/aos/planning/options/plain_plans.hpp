@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "aos/base/stable_order.hpp"
@@ -46,12 +47,12 @@ class PlainPlans {
     return played(actions.front(), belief, last_tries, horizon, random);
   }
 
-  // Whether each plan, up to its end, returns by more than `amount` less than if each of its steps returned what its first one does.
-  static bool all_decay(const SampledBelief<Model>& belief, int horizon, double amount, Sampler& random) {
-    for (int action = 0; action < Model::action_count(); ++action) {
-      if (decay(action, belief, horizon, random) <= amount) return false;
-    }
-    return true;
+  // How much less each plan, up to its end, returns than if each of its steps returned what its first one does: the least of that,
+  // or the first that is `enough` or less.
+  static double least_decay(const SampledBelief<Model>& belief, int horizon, double enough, Sampler& random) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int action = 0; action < Model::action_count() && least > enough; ++action) least = std::min(least, decay(action, belief, horizon, random));
+    return least;
   }
 
   // What an action returns that is taken so many times.
