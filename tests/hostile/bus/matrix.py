@@ -86,8 +86,9 @@ def wrong(routed: Routed, tried: Iterable[Attempt]) -> Iterator[str]:
         # Where nobody may do the opposite, two try what neither may.
         partner, passes = (able or partners)[0], attempt.is_allowed and bool(able)
         has = has_effect(routed, attempt, partner)
-        # On a busy machine the round trips overtake what was said before them: Zenoh sends them first.
-        if has != passes and not (passes and has_effect(routed, attempt, partner)):
+        # Round trips of a busy machine overtake what was said before: Zenoh sends them first.
+        again = (has_effect(routed, attempt, partner) for _ in range(4))
+        if has != passes and not (passes and any(again)):
             yield f"{attempt}: {'passes' if has else 'has no effect'}"
 
 
