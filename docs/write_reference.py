@@ -67,7 +67,6 @@ def key_rows() -> Iterator[tuple[str, str, str, str]]:
 
 
 def key_table() -> str:
-    """The key table as Markdown."""
     lines = ["| Key | Kind | What for | Message |", "| --- | --- | --- | --- |"]
     for key, kind, what, said in key_rows():
         lines.append(f"| `{key}` | {kind} | {what} | {said.replace('->', '→')} |")

@@ -20,7 +20,6 @@ class Collected:
         self.headers: dict[str, str] = {}
 
     def take(self, body: bytes, service_pb2: Any) -> None:
-        """Takes the body of a request."""
         for resource in service_pb2.ExportTraceServiceRequest.FromString(body).resource_spans:
             said = {each.key: each.value.string_value for each in resource.resource.attributes}
             for scope in resource.scope_spans:

@@ -35,7 +35,6 @@ def pytest_report_header() -> str:
 
 @pytest.fixture(scope="session")
 def root() -> Path:
-    """The checkout."""
     return ROOT
 
 

@@ -102,8 +102,6 @@ __reward = -1;
 
 
 class Answer(NamedTuple):
-    """An answer of the gateway."""
-
     status: int
     headers: dict[str, str]
     body: bytes
@@ -115,8 +113,6 @@ class Answer(NamedTuple):
 
 
 class Gateway(NamedTuple):
-    """A gateway that serves."""
-
     port: int
     token: str
     process: subprocess.Popen[str]

@@ -45,7 +45,6 @@ class Surroundings(QuietPorts):
 
     @property
     def decisions(self) -> Sequence[DecisionRecord]:
-        """The records of decisions."""
         return [record for record in self.records if record.outcome is None]
 
     @property

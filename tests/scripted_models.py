@@ -96,7 +96,6 @@ def text_project(files: Mapping[str, str]) -> Project:
 
 
 def bundle_project(bundle: Path) -> Project:
-    """The project of a bundle on the disk."""
     loaded = load_bundle(bundle)
     assert loaded.project is not None, [d for d in loaded.diagnostics if d.is_error]
     return loaded.project

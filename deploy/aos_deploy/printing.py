@@ -30,7 +30,6 @@ def show(value: T, as_json: bool, for_people: Callable[[T], object]) -> None:
 
 
 def json_text(value: object) -> str:
-    """A value as indented JSON."""
     return msgspec.json.format(msgspec.json.encode(value), indent=2).decode()
 
 

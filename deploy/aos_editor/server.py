@@ -41,8 +41,6 @@ _KINDS = {
 
 
 class _Name(msgspec.Struct, frozen=True):
-    """A name in a document."""
-
     at: Occurrence
     folder: Path
     bundle: Bundle
@@ -265,7 +263,6 @@ def _symbol(entry: Entry, lines: Sequence[str], codec: PositionCodec) -> types.D
 def _range(
     lines: Sequence[str], line: int, column: int, end_line: int, end: int, codec: PositionCodec
 ) -> types.Range:
-    """Lines and columns from 0, columns in characters."""
     return types.Range(
         codec.position_to_client_units(lines, ServerTextPosition(line, column)),
         codec.position_to_client_units(lines, ServerTextPosition(end_line, end)),

@@ -318,7 +318,6 @@ def _python(mapping: AbstractionMapping) -> Iterator[Occurrence]:
 
 
 def files_of(occurrences: Iterable[Occurrence]) -> dict[str, list[Occurrence]]:
-    """Occurrences by file."""
     by_file: dict[str, list[Occurrence]] = {}
     for occurrence in occurrences:
         by_file.setdefault(occurrence.span.file, []).append(occurrence)

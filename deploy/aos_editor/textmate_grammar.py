@@ -20,7 +20,6 @@ _WITH_PYTHON = [
 
 
 def textmate_grammar() -> str:
-    """The grammar as JSON."""
     line = {"match": _opening(_names(_WORDS)), "captures": _captures()}
     comment = {"name": "comment.line.aos", "match": r"(?:^|\s)(?://|#).*$"}
     parts = [part for _, section in _WITH_PYTHON for part in section.parts.items()]

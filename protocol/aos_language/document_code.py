@@ -31,7 +31,6 @@ def absent_skills(cpp: Cpp, known: Collection[str]) -> frozenset[str]:
 
 
 def shared_code_of(environment: Environment) -> SharedCode:
-    """The shared code of an environment, read."""
     if environment.shared_code is None:
         return NO_SHARED_CODE
     compounds = frozenset(compound.name for compound in environment.compounds)

@@ -36,7 +36,6 @@ def place_in(snippet: Snippet, node: ast.expr | ast.stmt) -> Span:
 
 
 def place_of_byte(snippet: Snippet, line: int, byte_offset: int) -> Span:
-    """The document place of a line of the snippet, from 1, and an offset in it in bytes."""
     return snippet.locate(line, column_of(snippet.code.split("\n")[line - 1], byte_offset))
 
 

@@ -22,8 +22,6 @@ class Clock(Protocol):
 
 
 class SystemClock:
-    """The machine's clocks."""
-
     def now_ns(self) -> int:
         return time.time_ns()
 

@@ -27,7 +27,6 @@ async def listen(call: Any) -> dict[str, str]:
 
 
 async def open_door(call: Any, door: str) -> None:
-    """Opens a door."""
     await _move(call)
 
 

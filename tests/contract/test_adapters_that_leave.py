@@ -1,5 +1,3 @@
-"""An adapter whose process ends or freezes: its skills are unavailable until somebody serves them."""
-
 import asyncio
 import os
 import signal

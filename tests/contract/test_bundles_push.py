@@ -1,5 +1,3 @@
-"""`aos bundle` against a running registry."""
-
 import asyncio
 import json
 import shutil

@@ -1,5 +1,3 @@
-"""The sessions on the bus: how one opens, is present, and leaves."""
-
 import asyncio
 import os
 import signal

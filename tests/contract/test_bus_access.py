@@ -1,5 +1,3 @@
-"""A router that knows its parties: who gets in, what passes, and what is told of the rest."""
-
 from collections.abc import Iterator
 
 import pytest

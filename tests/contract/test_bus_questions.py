@@ -1,5 +1,3 @@
-"""Questions on the bus, against a real router: answers, and each way they can fail."""
-
 import asyncio
 import queue
 import sys

@@ -1,5 +1,3 @@
-"""Streams on the bus, against a real router."""
-
 import asyncio
 
 import msgspec

@@ -1,5 +1,3 @@
-"""Child processes: what becomes of their input when they end."""
-
 import asyncio
 import gc
 import os

@@ -1,5 +1,3 @@
-"""An adapter that is a class of a user's own, and what such a class may get wrong."""
-
 import asyncio
 from pathlib import Path
 

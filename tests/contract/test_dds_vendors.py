@@ -1,5 +1,3 @@
-"""Topics over DDS with a program of another vendor: Cyclone DDS here, Fast DDS there."""
-
 import asyncio
 import random
 import shutil

@@ -1,5 +1,3 @@
-"""Skills that fail: what the rules make of it, what may move next, and what is not used."""
-
 import asyncio
 import os
 import signal

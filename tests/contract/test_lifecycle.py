@@ -1,5 +1,3 @@
-"""The life of a service process: ready, told to stop, at fault, or left by its parent."""
-
 import asyncio
 import os
 import signal

@@ -1,5 +1,3 @@
-"""The middleware as the solver follows it."""
-
 import asyncio
 
 from processes import HANG_S

@@ -1,5 +1,3 @@
-"""The outcomes that the middleware makes of a call and its result: a defined one, whatever goes wrong."""
-
 import asyncio
 import math
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""The middleware service on the real bus: its documents, and activations that are repeated or cut off."""
-
 import asyncio
 import sys
 from collections.abc import Awaitable

@@ -1,5 +1,3 @@
-"""Monitors on the real bus: what they have heard comes with the next outcome, and they stop what runs."""
-
 import asyncio
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""A mission through the real middleware and a real engine: what its runs tell, and low-level values."""
-
 import asyncio
 import math
 from collections.abc import AsyncIterator

@@ -1,5 +1,3 @@
-"""Skills that are played by their documents: the answer is the observation, and no fields are needed."""
-
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 from functools import partial

@@ -1,5 +1,3 @@
-"""Skills that are functions in a file, called over the real bus, and whatever they do wrong."""
-
 import asyncio
 import os
 from collections.abc import AsyncIterator

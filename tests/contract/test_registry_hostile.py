@@ -1,5 +1,3 @@
-"""A registry that is sent and given what no bundle should be: it refuses, and goes on."""
-
 import asyncio
 import gzip
 import io

@@ -1,5 +1,3 @@
-"""A registry that is killed while it stores: every accepted push is there whole when it is back."""
-
 import asyncio
 import os
 import random

@@ -1,5 +1,3 @@
-"""The registry service on the real bus: pushing, asking, dropping, and what a crash leaves."""
-
 import asyncio
 import shutil
 import sys

@@ -1,5 +1,3 @@
-"""A service that follows the registry gets its documents, however late the registry answers."""
-
 import asyncio
 from pathlib import Path
 

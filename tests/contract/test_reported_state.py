@@ -1,5 +1,3 @@
-"""Waiting for a state that is told when it changes and given to whoever asks."""
-
 import asyncio
 
 import pytest

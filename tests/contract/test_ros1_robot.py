@@ -1,5 +1,3 @@
-"""ROS 1 with a real roscore and a robot that knows nothing of AOS."""
-
 import asyncio
 from collections.abc import AsyncIterator, Iterator
 from pathlib import Path

@@ -46,7 +46,6 @@ async def robot(endpoint: str) -> AsyncIterator[Node]:
 
 @pytest_asyncio.fixture
 async def node(endpoint: str) -> AsyncIterator[Node]:
-    """The node that asks."""
     async with opened(endpoint, "aos") as node:
         yield node
 

@@ -1,5 +1,3 @@
-"""The skills service on the real bus, with the simulated robot."""
-
 import asyncio
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -33,8 +31,6 @@ FAR_AWAY = {"x": 4.0, "y": 0.0, "yaw": 0.0}
 
 
 class Robot(AdapterProcess):
-    """The simulated robot."""
-
     def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, world: Path) -> None:
         super().__init__(bus, keys, endpoint, folder)
         self.world = world

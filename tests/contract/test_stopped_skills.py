@@ -1,5 +1,3 @@
-"""Skills that `stop_when` of their mapping stops, on the real bus."""
-
 import asyncio
 
 import msgspec

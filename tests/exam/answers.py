@@ -8,7 +8,6 @@ from .problem import Problem
 
 
 def lists() -> defaultdict[str, list[Any]]:
-    """Lists by a name."""
     return defaultdict(list)
 
 

@@ -35,7 +35,6 @@ class Documents:
 
 
 def documents(seed: int) -> Documents:
-    """The bundle of this seed."""
     source = random.Random(f"documents/{seed}")
     length = source.randint(2, 4)
     registers = [Register(f"r{i}", source.choice(KINDS)) for i in range(length)]

@@ -39,7 +39,6 @@ class Register:
         }.get(self.kind, place)
 
     def write(self, state: str, value: str) -> str:
-        """A statement."""
         place = self.place(state)
         return {
             "bool": f"{place} = ({value}) != 0;",

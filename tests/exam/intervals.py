@@ -102,7 +102,6 @@ class Intervals(Answers):
         return f"{self.counts['margins held']} of {self.counts['decisions']} margins held"
 
     def table(self) -> str:
-        """Returns all of it for people."""
         found = self.counts
         decided, right = found["decisions"], found["sure"] - found["wrong signs"]
         lines = [

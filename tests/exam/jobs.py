@@ -66,7 +66,6 @@ class Job:
 
 
 def job(seed: int) -> Job:
-    """The job of this seed."""
     source = random.Random(f"jobs/{seed}")
     stages = source.randint(1, 3)
     found_at = source.choice((-1, *range(stages)))

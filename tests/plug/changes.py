@@ -45,7 +45,6 @@ class Project:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """All documents."""
         facts = self._facts
         texts = {"plug.ef": _environment(facts), "listen.sd": _listen(facts), "wait.sd": _wait(facts)}
         texts["listen.am"] = mapping_text("left", "right", project=PROJECT, skill="listen")

@@ -13,6 +13,5 @@ async def listen(call: Any) -> dict[str, str]:
 
 
 async def wait(call: Any) -> dict[str, str]:
-    """Waits for a while."""
     await asyncio.sleep(MOVES_S)
     return {"answer": "waited"}

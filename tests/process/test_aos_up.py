@@ -1,5 +1,3 @@
-"""The main job: `aos-up` with the real services, watched from outside, ended in every way."""
-
 import contextlib
 import json
 import os
@@ -89,7 +87,6 @@ class Up:
         pytest.fail(f"aos-up ended before any {kind}: {self.events}\n{self.error_text()}")
 
     def until_ready(self, service: str) -> None:
-        """Reads until a service says that it is ready."""
         while True:
             event = self.until("service")
             if (event["service"], event["state"]) == (service, "ready"):

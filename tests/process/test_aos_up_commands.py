@@ -1,5 +1,3 @@
-"""The small commands beside aos-up, as a user types them."""
-
 import json
 import os
 import subprocess

@@ -1,5 +1,3 @@
-"""Noisy rewards: planners and beliefs count them by their mean, worlds draw them."""
-
 from pathlib import Path
 
 import pytest

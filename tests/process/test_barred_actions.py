@@ -1,5 +1,3 @@
-"""Actions that nobody could carry out now are not decided for, whichever planner decides."""
-
 from pathlib import Path
 
 import pytest

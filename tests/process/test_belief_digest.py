@@ -1,5 +1,3 @@
-"""The digest of a belief: a replay of the outcomes gives it again, whatever became of the engine."""
-
 from pathlib import Path
 
 import msgspec

@@ -1,5 +1,3 @@
-"""Beliefs against Bayes' rule by hand: exact where steps can be enumerated, and how far off elsewhere."""
-
 import random
 import re
 from pathlib import Path

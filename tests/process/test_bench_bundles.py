@@ -1,5 +1,3 @@
-"""The benchmark bundles say what the literature says: beliefs and rewards along random walks."""
-
 import itertools
 import math
 import random

@@ -1,5 +1,3 @@
-"""`aos bench`: the baselines are of the same problems, and its report can be read."""
-
 import json
 import shutil
 import subprocess

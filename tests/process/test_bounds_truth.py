@@ -1,5 +1,3 @@
-"""The point-based solver's bounds against exact values, on random models."""
-
 import json
 import subprocess
 from pathlib import Path

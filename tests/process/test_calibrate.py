@@ -1,5 +1,3 @@
-"""Calibration: what recorded missions of known models say about their documents' numbers."""
-
 import asyncio
 import json
 import os

@@ -1,5 +1,3 @@
-"""Commands are one line of named fields, which both sides know by the same names."""
-
 import asyncio
 import json
 from asyncio.subprocess import PIPE

@@ -1,5 +1,3 @@
-"""A gateway that knows of a system nothing but its endpoint, as one on another host does through ssh."""
-
 import json
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Constraints in `aos plan` and `aos simulate`, and policies that keep to them."""
-
 import json
 from pathlib import Path
 

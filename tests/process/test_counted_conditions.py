@@ -1,5 +1,3 @@
-"""Code that counts conditions is made of what people write, and no model fails to compile by it."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""DESPOT: reproducible, within its budget, as good as the truth on problems whose truth is known."""
-
 from pathlib import Path
 
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text

@@ -1,5 +1,3 @@
-"""A bundle's picture.py: what it draws, and that nothing it does reaches whoever asks."""
-
 import base64
 import json
 import shutil

@@ -1,5 +1,3 @@
-"""Drift in missions with a real engine: alarms in the records, over missions and other documents."""
-
 from pathlib import Path
 
 from models import engine_of_text

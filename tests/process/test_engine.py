@@ -1,5 +1,3 @@
-"""The engine child against published values, and what may happen to a process."""
-
 import os
 import signal
 from pathlib import Path

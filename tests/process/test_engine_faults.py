@@ -1,5 +1,3 @@
-"""The reports of an engine that cannot go on: another state, a strange response, an unknown command."""
-
 import asyncio
 import json
 from asyncio.subprocess import PIPE

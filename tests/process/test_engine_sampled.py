@@ -1,5 +1,3 @@
-"""Beliefs that cannot be enumerated: held as particles, and right on average."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""`aos experiment run`: a report of real missions, which goes on where it was."""
-
 import json
 import subprocess
 import sys

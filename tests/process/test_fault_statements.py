@@ -1,5 +1,3 @@
-"""A fault of model code in a section of many statements is told at the statement that failed."""
-
 import json
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Messages that somebody makes up in mid-mission change nothing, and a log tells of each."""
-
 from pathlib import Path
 
 from hostile.bus.cell import STEPS, cell

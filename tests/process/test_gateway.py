@@ -1,5 +1,3 @@
-"""The gateway over HTTP: a mission that is over, one that runs, and what is refused."""
-
 import io
 import json
 import os

@@ -1,5 +1,3 @@
-"""The guard around commands: their ending is passed on, and nothing of them stays behind."""
-
 import os
 import signal
 import sys

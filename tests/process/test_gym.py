@@ -1,5 +1,3 @@
-"""Bundles as Gymnasium environments."""
-
 import subprocess
 import sys
 import traceback

@@ -1,5 +1,3 @@
-"""Hot plug: skills that land in mid-mission are in use from the next decision on."""
-
 import subprocess
 import sys
 from pathlib import Path

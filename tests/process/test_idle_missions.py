@@ -1,5 +1,3 @@
-"""A mission that decides for what changes nothing and tells nothing: it says so, or gives up."""
-
 from pathlib import Path
 
 from models import built_text

@@ -1,5 +1,3 @@
-"""Ctrl-C in commands that work for long: what they say, and that they end at once."""
-
 import asyncio
 import json
 import os

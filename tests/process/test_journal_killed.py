@@ -1,5 +1,3 @@
-"""The journal of a process that is killed while it writes."""
-
 import signal
 import subprocess
 import sys

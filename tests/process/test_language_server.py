@@ -1,5 +1,3 @@
-"""The language server, started and spoken to as an editor does."""
-
 import asyncio
 import json
 import subprocess

@@ -1,5 +1,3 @@
-"""Beliefs of many states: kept when an engine dies, carried over, corrected, and told in brief."""
-
 from collections.abc import AsyncIterator
 from pathlib import Path
 

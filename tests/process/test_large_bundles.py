@@ -1,5 +1,3 @@
-"""A thousand state variables and an array of ten thousand elements are models like any other."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Problems with too many states to list: what POMCP knows of their states before the first decision."""
-
 from pathlib import Path
 
 from exam.bundles import told_of_bundle

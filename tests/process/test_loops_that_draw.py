@@ -1,5 +1,3 @@
-"""Loops that draw until a condition holds: in either order, nested, endless. Draws from many weights."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Mapping code in its worker process: what it cannot do to the service, and what is said about it."""
-
 import asyncio
 import os
 import signal

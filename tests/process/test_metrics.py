@@ -1,5 +1,3 @@
-"""The gateway's metrics of a mission that runs, for Prometheus."""
-
 import json
 import os
 import signal

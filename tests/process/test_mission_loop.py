@@ -1,5 +1,3 @@
-"""The mission loop with a real engine, and a robot that the test scripts."""
-
 import asyncio
 from pathlib import Path
 

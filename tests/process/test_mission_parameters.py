@@ -1,5 +1,3 @@
-"""Mission parameters at work: one compiled model, whose engines are started with values."""
-
 import asyncio
 import json
 import os

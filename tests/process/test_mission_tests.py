@@ -1,5 +1,3 @@
-"""`aos test`: real missions of users' tests, with what a continuous integration reads."""
-
 import json
 import subprocess
 import sys

@@ -1,5 +1,3 @@
-"""Missions that follow one another in a system that stays: started, stopped, kept apart, taken up."""
-
 import asyncio
 import json
 import os

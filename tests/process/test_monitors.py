@@ -1,5 +1,3 @@
-"""Monitors in beliefs: what they say is weighed by Bayes' rule, and the journal gives it again."""
-
 import random
 from collections import defaultdict
 from collections.abc import AsyncIterator, Mapping

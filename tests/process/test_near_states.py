@@ -1,5 +1,3 @@
-"""Models with endlessly many states, of which a decision reaches few, such as counts without an end."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""`aos new`: what it writes lints clean, plans and plays."""
-
 import json
 from pathlib import Path
 from typing import Any

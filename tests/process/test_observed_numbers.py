@@ -1,5 +1,3 @@
-"""Observations that are numbers: beliefs against posteriors worked out by hand."""
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Models at the edges of what documents can say: each is planned, or refused with the reason."""
-
 from pathlib import Path
 
 import pytest

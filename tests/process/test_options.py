@@ -1,5 +1,3 @@
-"""Decisions where states cannot be listed: ways to rewards against what could be found out first."""
-
 from pathlib import Path
 from statistics import fmean
 

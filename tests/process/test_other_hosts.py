@@ -1,5 +1,3 @@
-"""Adapters on another host, through an SSH server of this machine or a stand-in for one."""
-
 import os
 import shutil
 import subprocess

@@ -1,5 +1,3 @@
-"""Programs that are no adapters: ready before the adapters, watched, gone with all that they started."""
-
 import asyncio
 import contextlib
 import json

@@ -1,5 +1,3 @@
-"""The output of commands where nobody looks at a terminal: their results, and nothing beside them."""
-
 import asyncio
 import json
 import signal

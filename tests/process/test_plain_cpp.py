@@ -1,5 +1,3 @@
-"""C++ that documents have now and then: copies that grow, captures with values, references to a state."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""The search against known values: the tiger's optimum, and small random POMDPs solved independently."""
-
 from collections.abc import AsyncIterator
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Decisions by values of many states, which do not pay for what is not seen."""
-
 from pathlib import Path
 from statistics import fmean
 

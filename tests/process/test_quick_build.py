@@ -1,5 +1,3 @@
-"""The two builds of a model, quick and thorough."""
-
 from pathlib import Path
 from unittest.mock import AsyncMock
 

@@ -1,5 +1,3 @@
-"""States that are listed anew: what was worked out of an earlier listing is of other states."""
-
 from pathlib import Path
 
 import pytest

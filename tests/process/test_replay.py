@@ -1,5 +1,3 @@
-"""A mission that is replayed decides the same, bit for bit, and a replay says where it does not."""
-
 from pathlib import Path
 
 import msgspec

@@ -1,5 +1,3 @@
-"""`aos check` replays the outcomes of a run, and holds each journalled belief against that."""
-
 from collections.abc import Callable
 from pathlib import Path
 

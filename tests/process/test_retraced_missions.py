@@ -1,5 +1,3 @@
-"""A mission whose documents changed is taken up through its models as they were."""
-
 from pathlib import Path
 
 import msgspec

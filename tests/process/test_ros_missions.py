@@ -1,5 +1,3 @@
-"""Whole missions by foreign names: an original bundle on our robot, and over ROS 1 and ROS 2."""
-
 import json
 import os
 import re

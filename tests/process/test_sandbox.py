@@ -1,5 +1,3 @@
-"""The sandbox with real commands: documents' code that reaches out, and a kernel without Landlock."""
-
 import subprocess
 import sys
 from pathlib import Path

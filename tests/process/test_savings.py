@@ -1,5 +1,3 @@
-"""Decisions where nothing is rewarded and what is neglected costs: what saves most against a rest."""
-
 from pathlib import Path
 
 from models import built_text, engine_of, engine_of_text

@@ -1,5 +1,3 @@
-"""A model whose code is shared is the model whose code is written out."""
-
 from pathlib import Path
 
 from models import engine_of_text

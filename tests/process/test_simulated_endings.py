@@ -1,5 +1,3 @@
-"""A simulated mission tells how its world has ended, and what the belief held for it."""
-
 import json
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""`aos skill` and `aos resume` beside a mission that holds."""
-
 import json
 import re
 import signal

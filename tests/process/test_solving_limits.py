@@ -1,5 +1,3 @@
-"""Solving ends with its time, and a longer time does more."""
-
 from pathlib import Path
 
 import numpy as np

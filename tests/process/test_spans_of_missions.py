@@ -1,5 +1,3 @@
-"""Spans of a mission by the real `aos-up`, in a real collector."""
-
 import subprocess
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Deadlines of child processes on a machine that is busy with other work."""
-
 import os
 import sys
 from collections.abc import AsyncIterator

@@ -1,5 +1,3 @@
-"""Missions that somebody steers, with a real engine: what they do at once, and after a kill."""
-
 import asyncio
 from collections.abc import Callable
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Missions that are stopped before they begin, while their model is compiled."""
-
 import json
 from pathlib import Path
 

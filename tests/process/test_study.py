@@ -1,5 +1,3 @@
-"""Explanations of decisions, and decisions under other circumstances, held against planning."""
-
 import math
 from pathlib import Path
 

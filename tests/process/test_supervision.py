@@ -1,5 +1,3 @@
-"""The supervisor with small real services on a real bus: order, ends, and what stays behind."""
-
 import asyncio
 import os
 import re

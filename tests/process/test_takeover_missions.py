@@ -1,5 +1,3 @@
-"""Missions in which another model takes over, or that other documents take up."""
-
 from pathlib import Path
 
 import msgspec

@@ -1,5 +1,3 @@
-"""A mission is the fold of its journal: cut off at any row, it goes on as if nothing had been."""
-
 import msgspec
 import pytest
 from models import engine_of

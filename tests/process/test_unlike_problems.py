@@ -1,5 +1,3 @@
-"""Problems with too many states to list, each with one trait that sampling gets wrong easily."""
-
 from pathlib import Path
 
 from models import built_text, engine_of, engine_of_text

@@ -1,5 +1,3 @@
-"""Models whose states can be listed although there are too many observations to list."""
-
 import math
 from pathlib import Path
 

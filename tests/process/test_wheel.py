@@ -1,5 +1,3 @@
-"""AOS from its wheel in an empty folder: the examples, the benchmarks and the main job are all there."""
-
 from collections.abc import Iterator
 from pathlib import Path
 

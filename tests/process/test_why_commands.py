@@ -1,5 +1,3 @@
-"""`aos why`, `whatif`, `replay`, `diff`: a mission that runs and its directory give the same answers."""
-
 import json
 import shutil
 from pathlib import Path

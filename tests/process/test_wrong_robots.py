@@ -1,5 +1,3 @@
-"""Each claim of a shipped experiment fails on a robot that does otherwise."""
-
 import pytest
 from wrong_robots import Wrong, tried_by_model, wrong_robots
 

@@ -56,7 +56,6 @@ class Played(msgspec.Struct):
         return recorded(self.rows)
 
     def replay(self, mission: RecordedMission | None = None, *, decides: bool = False) -> ReplayedMission:
-        """A replay of it."""
         return ReplayedMission(mission or self.mission, self, self.settings, decides=decides, niceness=0)
 
     async def revision(self, number: int) -> Project:

@@ -1,5 +1,3 @@
-"""Ablations switch off mechanisms that the engine has, and every one of them."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""The time of an activation, which is its skill's."""
-
 from types import SimpleNamespace
 from typing import Any
 

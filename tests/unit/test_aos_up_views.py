@@ -1,5 +1,3 @@
-"""The output of aos-up: plain lines, JSON lines, and the live screen, from the same events."""
-
 import io
 import json
 

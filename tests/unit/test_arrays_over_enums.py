@@ -1,5 +1,3 @@
-"""Arrays over an enum: `state.at[Soda]`, in documents, in emitted models and in what people see."""
-
 import json
 from pathlib import Path
 

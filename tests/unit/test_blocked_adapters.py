@@ -1,5 +1,3 @@
-"""An adapter whose call holds up its event loop ends, and one that only takes long goes on."""
-
 import subprocess
 import sys
 

@@ -1,5 +1,3 @@
-"""Building emitted models: the cache, mistakes at their places, limits."""
-
 import asyncio
 import json
 import os

@@ -1,5 +1,3 @@
-"""Several processes with one cache: one makes an entry, and the others wait for it, but not for ever."""
-
 import asyncio
 import os
 import subprocess

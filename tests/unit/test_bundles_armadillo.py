@@ -1,5 +1,3 @@
-"""The figures of our armadillo bundles, and what each has of the others."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""`aos lint` and `aos inspect` as a person calls them."""
-
 import json
 import shutil
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Several bundles of a deploy file, which make one project together."""
-
 from pathlib import Path
 
 import pytest

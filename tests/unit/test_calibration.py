@@ -1,5 +1,3 @@
-"""The proposals of calibration: only what records contradict, never what the documents exclude."""
-
 import numpy as np
 import pytest
 

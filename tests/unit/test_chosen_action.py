@@ -1,5 +1,3 @@
-"""Extrinsic changes know which skill was chosen, also where skills have the same parameters or none."""
-
 from pathlib import Path
 
 import pytest

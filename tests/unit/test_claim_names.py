@@ -1,5 +1,3 @@
-"""Claims that something never happens, about skills and states that no document has, are mistakes."""
-
 from pathlib import Path
 
 import pytest

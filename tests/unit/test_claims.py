@@ -1,5 +1,3 @@
-"""Claims about missions, what they mean, and how sure a share is."""
-
 import math
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The simulated laboratory: cups are seen in pictures, grasped, and dropped into bins."""
-
 from pathlib import Path
 from typing import Any
 

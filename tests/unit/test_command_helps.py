@@ -1,5 +1,3 @@
-"""The helps of commands are whole on a terminal of 80 columns, and each has an example."""
-
 import io
 import re
 import subprocess

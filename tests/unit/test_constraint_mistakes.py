@@ -1,5 +1,3 @@
-"""Constraints in deploy files: every mistake is told before anything starts, at its place."""
-
 from pathlib import Path
 
 import pytest

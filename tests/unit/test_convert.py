@@ -1,5 +1,3 @@
-"""Documents in the other dialect say the same: there, and back again."""
-
 from pathlib import Path
 
 import pytest

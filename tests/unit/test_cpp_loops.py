@@ -1,5 +1,3 @@
-"""The loops that draw, and the variables that live across their rounds."""
-
 import pytest
 
 from aos_language.cpp.loops import DrawingLoop, Scope, loops_of

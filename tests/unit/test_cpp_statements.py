@@ -1,5 +1,3 @@
-"""Marks at the statements of C++ code."""
-
 from random import Random
 
 import pytest

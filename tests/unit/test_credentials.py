@@ -1,5 +1,3 @@
-"""Names and passwords of a run, the place of its bus, and the systemd unit that starts one."""
-
 import fcntl
 import os
 import shutil

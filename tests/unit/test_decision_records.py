@@ -1,5 +1,3 @@
-"""Decision records: whoever reads one that no longer holds is told by which it is superseded."""
-
 import re
 from pathlib import Path
 

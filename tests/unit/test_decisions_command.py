@@ -1,5 +1,3 @@
-"""`aos decisions` of a run that is over."""
-
 import pytest
 from commands import aos
 from long_run import write_long_run

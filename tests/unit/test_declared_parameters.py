@@ -1,5 +1,3 @@
-"""Mission parameters in the documents of all dialects, and the values that somebody sets."""
-
 from pathlib import Path
 
 import pytest

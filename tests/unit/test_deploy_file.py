@@ -1,5 +1,3 @@
-"""The deploy file: what it means, and that everything wrong with it is found at once and at its place."""
-
 import shutil
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""The programs that a deploy file starts: which, with what settings, in which folder."""
-
 from pathlib import Path
 
 import msgspec

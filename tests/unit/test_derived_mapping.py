@@ -1,5 +1,3 @@
-"""A skill without an abstraction mapping has one: its path, its fields, and `response` of the result."""
-
 import json
 
 import pytest

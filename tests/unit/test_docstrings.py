@@ -1,5 +1,3 @@
-"""The docstrings of all tracked Python files: each begins with a whole sentence or with a noun phrase."""
-
 import ast
 import re
 import subprocess

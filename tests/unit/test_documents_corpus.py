@@ -1,5 +1,3 @@
-"""The original bundles: all of them load, and what is strange in them is said at the right place."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""The examples of the language page are documents that load."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Seeded mistakes are told at their places, and the bundles they are seeded in are models that run."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""The contents that are read out of C++ snippets."""
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -1,5 +1,3 @@
-"""Skills' tests that go on from one run to the next."""
-
 import json
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""The knowledge of the language server about words and outlines, without an editor."""
-
 import json
 import re
 import shutil

@@ -1,5 +1,3 @@
-"""The original AOS bundles as emitted models."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Every construct of the documents in emitted models: types, containers, loops, draws, built-ins."""
-
 from pathlib import Path
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""The effects of an emitted model's step: copies of the state, phases, rewards, endings."""
-
 from pathlib import Path
 
 import pytest

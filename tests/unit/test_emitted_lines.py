@@ -1,5 +1,3 @@
-"""The emitted C++ as a person reads it: the width of its lines, names of its own, what it explains."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Every code of the table of errors is provoked, here or by a test that names it."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""The report of an experiment on its missions: figures, the optimum beside them, tables and drawings."""
-
 import re
 
 import pytest

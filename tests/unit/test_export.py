@@ -1,5 +1,3 @@
-"""Records of runs to take home: MCAP files, tables and files of whole runs, each read back."""
-
 import base64
 import csv
 import json

@@ -1,5 +1,3 @@
-"""Failpoints: a process fails at the place that the environment names, once, and else nowhere."""
-
 import signal
 import subprocess
 import sys

@@ -1,5 +1,3 @@
-"""Only the mission's newest solver is obeyed, and an id stands for one motion."""
-
 from typing import Any
 
 import msgspec

@@ -1,5 +1,3 @@
-"""Fields under other names, as `bind:` gives them for foreign paths."""
-
 import pytest
 
 from aos_protocol.errors import SkillError

@@ -1,5 +1,3 @@
-"""Access to the gateway: by which name, from which page, with which token."""
-
 import asyncio
 import socket
 

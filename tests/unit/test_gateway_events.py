@@ -1,5 +1,3 @@
-"""The event stream of a mission: its past, and what is told before the system is heard."""
-
 import asyncio
 from contextlib import aclosing, nullcontext
 from types import SimpleNamespace

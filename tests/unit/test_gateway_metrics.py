@@ -1,5 +1,3 @@
-"""Metrics in Prometheus' text format, and what a decision record adds to them."""
-
 from typing import Any
 
 from decision_records import decision_record

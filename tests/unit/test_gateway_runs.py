@@ -1,5 +1,3 @@
-"""The names of runs in the gateway, and questions to a run that ends."""
-
 import asyncio
 import sys
 from collections.abc import AsyncIterator

@@ -1,5 +1,3 @@
-"""The rows of steps that views over time are made of."""
-
 from typing import Any
 
 from decision_records import decision_record

@@ -1,5 +1,3 @@
-"""The conditions of rewards and goals that code counts, as far as its text tells."""
-
 import pytest
 
 from aos_language.cpp.goal_conditions import counted_conditions

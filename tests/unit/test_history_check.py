@@ -1,5 +1,3 @@
-"""The check of a run's history: each rule is broken in a history that otherwise holds, and is caught."""
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,7 +20,6 @@ replace = msgspec.structs.replace
 
 
 def belief(step: int) -> messages.BeliefSummary:
-    """The belief after a step."""
     return messages.BeliefSummary((), 0.0, step / 10, 0.0, 1, True)
 
 
@@ -109,7 +106,6 @@ class History:
         entries[place] = entries[place]._replace(payload=replace(entries[place].payload, **changes))
 
     def broken_rules(self) -> set[str]:
-        """The names of the rules that are broken."""
         files = {"adapter-robot.db": rows(self.robot), "adapter-other.db": rows(self.other)}
         history = check.History(MISSION, rows(self.journal), self.summary)
         found = check.check_histories([history], rows(self.middleware), files).violations

@@ -1,5 +1,3 @@
-"""Histories in pages, out of a journal: every record once, in order, whatever stands between them."""
-
 from pathlib import Path
 
 import pytest

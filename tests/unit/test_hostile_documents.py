@@ -1,5 +1,3 @@
-"""Documents and uploads that a stranger makes to be read for ever: refused, with few words."""
-
 import asyncio
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Files of runs that a stranger made: refused, or what is wrong in them is told."""
-
 import json
 import zipfile
 from pathlib import Path

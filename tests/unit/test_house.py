@@ -1,5 +1,3 @@
-"""Limits of the house that a test can hold everybody to: functions, their parameters, what git tracks."""
-
 import ast
 import re
 import subprocess

@@ -1,5 +1,3 @@
-"""The way of messages to the event loop: in order, and with time for the rest between them."""
-
 import asyncio
 from functools import partial
 

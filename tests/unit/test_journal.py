@@ -1,5 +1,3 @@
-"""The journal: what was appended stays, in order, and nothing but appending is possible."""
-
 import random
 import sqlite3
 import zlib

@@ -1,5 +1,3 @@
-"""The JSON reader: values, and the place of everything."""
-
 import json
 import string
 

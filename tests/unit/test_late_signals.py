@@ -1,5 +1,3 @@
-"""Signals that come when the mission is over, two that are one, and a terminal that is closed."""
-
 import os
 import pty
 import subprocess

@@ -1,5 +1,3 @@
-"""Each mistake is told once, brings no other finding, and hides none."""
-
 import json
 
 import pytest

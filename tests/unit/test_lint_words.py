@@ -1,5 +1,3 @@
-"""The answers of the checks to words and signs that a newcomer writes."""
-
 import re
 
 import pytest

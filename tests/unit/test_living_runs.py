@@ -1,5 +1,3 @@
-"""The run that a command means."""
-
 import os
 from pathlib import Path
 

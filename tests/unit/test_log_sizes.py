@@ -1,5 +1,3 @@
-"""Logs of programs that print without end."""
-
 from aos_deploy.processes.log_sizes import shorten
 from aos_deploy.processes.ready import _Printed
 

@@ -1,5 +1,3 @@
-"""Low-level values: where they begin, who gives new ones, who finds them."""
-
 from pathlib import Path
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""The decisions of lowering, and what it refuses."""
-
 import pytest
 from mappings import mapping_of_model, mapping_text
 from msgspec.structs import replace

@@ -1,5 +1,3 @@
-"""The draws that count by their mean, as far as the text of the code tells."""
-
 import re
 
 import pytest

@@ -1,5 +1,3 @@
-"""The capacity that the vectors of a state get."""
-
 import pytest
 
 from aos_language.cpp.snippets import read_cpp

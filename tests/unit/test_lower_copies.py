@@ -1,5 +1,3 @@
-"""The copies of the state that a step keeps: those that are read after a newer one is written."""
-
 import pytest
 from acting import acting
 

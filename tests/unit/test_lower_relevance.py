@@ -1,5 +1,3 @@
-"""The state variables that matter to nobody, as far as the text of the code tells."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""The edits that turn document code into C++, and the way back through them."""
-
 import pytest
 
 from aos_language.cpp.snippets import read_cpp

@@ -1,5 +1,3 @@
-"""The module that is generated from a mapping, and what is said about one that is not Python."""
-
 import ast
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Faults of mapping code: what is said, and at which place of the document."""
-
 import math
 
 import pytest

@@ -1,5 +1,3 @@
-"""The names in the Python of mappings: what nothing gives is told, what Python allows is not."""
-
 import pytest
 from texts import encoded
 

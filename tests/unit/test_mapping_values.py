@@ -1,5 +1,3 @@
-"""Robot data as objects with attributes, and back."""
-
 from enum import Enum
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""Monitors in documents: what is wrong with either half, told at its line, and both dialects."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Model code as a C++ programmer writes it: it compiles, and does what it says."""
-
 from pathlib import Path
 
 import pytest

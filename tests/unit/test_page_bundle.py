@@ -1,5 +1,3 @@
-"""The page that comes with AOS is what its sources make, and small."""
-
 import asyncio
 import gzip
 import os

@@ -1,5 +1,3 @@
-"""Pages lead to what is there, and pages of reference have no dates."""
-
 import importlib
 import re
 from functools import cache

@@ -1,5 +1,3 @@
-"""Pages name commands, options, modules and targets of make that there are."""
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Faults of skills that a model plays: which can be asked for, and when they come."""
-
 from collections import Counter
 
 import pytest

@@ -1,5 +1,3 @@
-"""Tests `.pomdp` files of other programs: without a model, with a byte order mark, and of MDPs."""
-
 import numpy as np
 import pytest
 

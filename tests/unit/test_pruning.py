@@ -1,5 +1,3 @@
-"""Old runs are removed, the newest stay, and so does whatever goes on."""
-
 from pathlib import Path
 
 from aos_deploy.runs.directory import RunDirectory

@@ -1,5 +1,3 @@
-"""A robot's functions that would end its process, and classes that cannot be made."""
-
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast

@@ -1,5 +1,3 @@
-"""Python is parsed by one thread at a time: CPython's parser mixes threads up."""
-
 import gc
 import threading
 import time

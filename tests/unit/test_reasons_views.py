@@ -1,5 +1,3 @@
-"""A decision explained in lines: what they say, and that they are eight at most."""
-
 from msgspec.structs import replace
 
 from aos_deploy.views.reasons import why_lines

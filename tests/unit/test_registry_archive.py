@@ -1,5 +1,3 @@
-"""Bundles in archives: taken whole, or refused with the entry's name."""
-
 import io
 import shutil
 import tarfile

@@ -1,5 +1,3 @@
-"""Merging pushes, and the catalogue that keeps revisions."""
-
 from pathlib import Path
 from typing import Any
 

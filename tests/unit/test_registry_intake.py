@@ -1,5 +1,3 @@
-"""The cost of a push: each file is read once, and what is cheap to refuse is refused first."""
-
 from collections import Counter
 from pathlib import Path
 

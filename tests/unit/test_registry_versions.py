@@ -1,5 +1,3 @@
-"""Versions that documents declare, and what a push over a declared one needs."""
-
 from pathlib import Path
 
 import pytest

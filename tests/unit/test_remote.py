@@ -1,5 +1,3 @@
-"""Programs on other hosts: what ssh is told, and what is said when it fails."""
-
 import shlex
 import socket
 

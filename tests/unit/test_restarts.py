@@ -1,5 +1,3 @@
-"""The rule for starting a process again."""
-
 from aos_deploy.processes.restarts import STARTS, STARTS_OF_ADAPTER, WITHIN_S, Restarts
 
 

@@ -1,5 +1,3 @@
-"""rmw_zenoh's keys, tokens and attachments: the examples of its design document, and round trips."""
-
 import pytest
 
 from aos_skills.ros.node import Qos

@@ -1,5 +1,3 @@
-"""Interfaces of ROS: the user's files, hashes as ROS 2 has them, values as CDR."""
-
 from pathlib import Path
 
 import pytest

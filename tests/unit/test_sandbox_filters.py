@@ -1,5 +1,3 @@
-"""The filters of system calls, run as the kernel runs them, for both kinds of machine."""
-
 import errno
 import os
 import re

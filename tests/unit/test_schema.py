@@ -1,5 +1,3 @@
-"""The JSON Schemas are of one mind with the readers."""
-
 import copy
 import json
 from collections.abc import Iterator

@@ -1,5 +1,3 @@
-"""SDL text cut into sections."""
-
 from aos_language.findings import Findings
 from aos_language.reading.sdl_sections import GRAMMARS, places_of_words
 from aos_language.reading.sdl_text import Section, parse_sdl

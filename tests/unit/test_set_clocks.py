@@ -1,5 +1,3 @@
-"""Waits and moments where somebody has set the clock meanwhile."""
-
 import asyncio
 import os
 

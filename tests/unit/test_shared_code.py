@@ -1,5 +1,3 @@
-"""Constants and functions that all model code of a project shares."""
-
 import json
 from pathlib import Path
 

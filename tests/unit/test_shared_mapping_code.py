@@ -1,5 +1,3 @@
-"""Python that all mappings of a project share."""
-
 import json
 
 import pytest

@@ -1,5 +1,3 @@
-"""Slips that C++ and Python take without a word, or tell only when a robot runs."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""A topic on which nothing ever comes is told, once."""
-
 import logging
 
 from aos_middleware.robot.silent_topics import CALLS, SilentTopics

@@ -1,5 +1,3 @@
-"""Repeats and crashes: there is at most one motion for each activation."""
-
 from pathlib import Path
 
 import pytest

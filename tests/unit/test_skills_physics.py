@@ -1,5 +1,3 @@
-"""The simulated Armadillo: what its skills do, in real physics."""
-
 import json
 import subprocess
 import sys

@@ -1,5 +1,3 @@
-"""Missions as OpenTelemetry's spans: what is sent to a collector, and what keeps its place."""
-
 import json
 import socket
 from pathlib import Path
@@ -71,7 +69,6 @@ def write(run: Path, *rows: DecisionRecord | MissionState) -> None:
 
 
 def told(span: Any) -> dict[str, Any]:
-    """The attributes of a span."""
     kinds = ("string_value", "int_value", "double_value", "bool_value")
     return {
         each.key: next(getattr(each.value, kind) for kind in kinds if each.value.HasField(kind))

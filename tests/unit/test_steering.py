@@ -1,5 +1,3 @@
-"""Steering as a fold: what each verb does, and what a script leads to."""
-
 import asyncio
 from typing import Any, cast
 from unittest.mock import create_autospec

@@ -1,5 +1,3 @@
-"""`stop_when` of a mapping: what is wrong with it, and when it holds."""
-
 from typing import Any
 
 import pytest

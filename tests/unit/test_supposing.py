@@ -1,5 +1,3 @@
-"""Suppositions as text: what they change, and what is said of those that change nothing."""
-
 import pytest
 
 from aos_protocol.errors import StudyError

@@ -1,5 +1,3 @@
-"""The durations of missions in a system that stays."""
-
 from pathlib import Path
 
 from decision_records import decision_record

@@ -1,5 +1,3 @@
-"""Progress of long work where standard error is no terminal."""
-
 import io
 import threading
 

@@ -1,5 +1,3 @@
-"""Builds that nobody waits for end with their compiler, however often they are asked to."""
-
 import asyncio
 import gc
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""The simulated Panda that plays tic-tac-toe: ink where the pen touches, a board read from a picture."""
-
 import os
 import pty
 import random

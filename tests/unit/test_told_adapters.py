@@ -1,5 +1,3 @@
-"""The settings that an adapter makes of the words of its command, and the class that these name."""
-
 import os
 import tempfile
 from pathlib import Path

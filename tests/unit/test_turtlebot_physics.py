@@ -1,5 +1,3 @@
-"""The simulated TurtleBot3: wheels on the floor, a lidar, and ways around what it meets."""
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Reasons why skills cannot be run: what several have in common is told once."""
-
 from aos_protocol.unavailable import by_reason, told_together
 
 

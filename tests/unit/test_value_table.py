@@ -1,5 +1,3 @@
-"""The tables of the actions' values and of simulated missions."""
-
 import math
 
 import pytest

@@ -1,5 +1,3 @@
-"""The verdict on a run: a function of its journal, which needs no space on the disk."""
-
 import sqlite3
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""World files of the simulated rooms, and what is wrong in them."""
-
 from pathlib import Path
 
 import pytest

@@ -113,7 +113,6 @@ def _print(found: Replayed) -> None:
 
 
 def _ranges(steps: list[int]) -> str:
-    """The steps for people: `1-4, 7`."""
     parts: list[list[int]] = []
     for step in steps:
         if parts and step == parts[-1][-1] + 1:

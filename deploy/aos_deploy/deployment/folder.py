@@ -43,7 +43,6 @@ def deploy_file_at(path: Path) -> Path:
 
 
 def deploy_files_in(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
-    """The deploy files in a folder, each with its bundles."""
     for file in sorted(folder.iterdir()):
         if file.suffix not in _SUFFIXES or not file.is_file():
             continue

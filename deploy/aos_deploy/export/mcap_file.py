@@ -88,7 +88,6 @@ class _File:
             self._plot(VALUES, values_of(record), row)
 
     def add_picture(self, picture: Picture) -> None:
-        """A picture of the world."""
         seconds, nanoseconds = divmod(picture.stamp_ns, 1_000_000_000)
         content = {
             "timestamp": {"sec": seconds, "nsec": nanoseconds},
@@ -101,7 +100,6 @@ class _File:
         )
 
     def attach(self, path: Path, run: Path) -> None:
-        """A file of the run as it is."""
         kind = "application/json" if path.suffix == ".json" else "text/plain"
         stamp_ns = path.stat().st_mtime_ns
         self._writer.add_attachment(stamp_ns, stamp_ns, str(path.relative_to(run)), kind, path.read_bytes())

@@ -279,7 +279,6 @@ class MissionRun:
         )
 
     def _summary(self, verdict: Verdict, folder: Path) -> Summary:
-        """The summary of the mission in this folder."""
         begun = beginning_of(folder)
         return Summary(
             robot=self._deployment.file.robot,

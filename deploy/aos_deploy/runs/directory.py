@@ -149,7 +149,6 @@ class RunDirectory:
             return path.open("ab")
 
     def last_log_lines(self, service: str) -> list[str]:
-        """The end of a service's log."""
         try:
             text = self.log(service).read_text(encoding="utf-8", errors="replace")
         except OSError:

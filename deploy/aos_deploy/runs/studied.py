@@ -104,11 +104,9 @@ class _Read:
         return self._studied.mission
 
     def replay(self, mission: RecordedMission) -> ReplayedMission:
-        """A replay of it."""
         return self._studied.replay(lambda text: None, niceness=0)
 
     async def files(self, revision: int) -> dict[str, bytes]:
-        """The files of a revision."""
         return await self._studied.documents.files(revision)
 
 

@@ -9,7 +9,6 @@ _LONG_UPDATE_S = 0.1
 
 
 def why_lines(why: Why) -> list[str]:
-    """The lines of `aos why`."""
     lines = [_verdict(why), _expected(why)]
     lines += [_consequence(each) for each in why.expected if each.action or each.goal_probability][:3]
     lines += _terms(why)

@@ -222,7 +222,6 @@ def _experiments(where: str = "deploy/experiments") -> dict[str, Path]:
 
 
 def _experiment_file(name: str, where: str = "deploy/experiments") -> Path:
-    """The file of that name, or the shipped experiment."""
     given = Path(name)
     if given.suffix in (".yaml", ".yml"):
         return given.resolve()

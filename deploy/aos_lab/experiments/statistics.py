@@ -58,7 +58,6 @@ def _became(mission: RecordedMission, number: int) -> str:
 
 
 def markdown_statistics(statistics: Statistics) -> str:
-    """The report."""
     around = statistics.surroundings
     lines = [f"# {statistics.title}", "", statistics.about.strip(), "", around.text(statistics.command), ""]
     lines += ["## What came of each step", "", *_steps(statistics), ""]

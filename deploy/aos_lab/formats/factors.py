@@ -34,7 +34,6 @@ class Variable(msgspec.Struct, frozen=True, dict=True):
 
     @cached_property
     def numbers(self) -> dict[str, int]:
-        """The number of each value."""
         return {value: number for number, value in enumerate(self.values)}
 
 

@@ -187,7 +187,6 @@ class _Reader:
     def _rows(
         self, statement: Statement, kind: str, states: Sequence[int], *, is_matrix: bool
     ) -> Sequence[Distribution]:
-        """A distribution for each of the states."""
         words = statement.words
         keyword = words[0].text if len(words) == 1 else ""
         if keyword == "uniform":

@@ -26,11 +26,9 @@ class Element:
         return [word for piece in _joined(self.pieces) for word in words_of(*piece)]
 
     def all(self, tag: str) -> Iterator[Element]:
-        """The children with that tag."""
         return (child for child in self.children if child.tag == tag)
 
     def first(self, tag: str) -> Element | None:
-        """The first child with that tag."""
         return next(self.all(tag), None)
 
 

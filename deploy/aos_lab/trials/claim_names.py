@@ -135,7 +135,6 @@ class ClaimNames:
 
 
 def _patterns(said: When) -> Iterator[str]:
-    """The patterns of steps."""
     for name in ("first", "last", "some", "never"):
         yield from [pattern] if (pattern := getattr(said, name, None)) is not None else []
     for name in ("starts", "order", "never_order", "actions"):

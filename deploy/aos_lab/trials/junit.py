@@ -14,8 +14,6 @@ from aos_lab.trials.trial import Trial
 
 
 class Tested(msgspec.Struct, frozen=True, kw_only=True):
-    """The result of a test."""
-
     verdicts: tuple[Verdict, ...]
     trials: tuple[Trial, ...]
     passed: bool
@@ -47,7 +45,6 @@ def verdict_text(verdict: Verdict) -> str:
 
 
 def write_junit(path: Path, tested: Mapping[str, Tested]) -> None:
-    """One file for all tests."""
     root = ElementTree.Element("testsuites")
     for name, test in tested.items():
         failures = sum(not verdict.is_seen for verdict in test.verdicts)

@@ -83,7 +83,6 @@ def check_low_level(
 
 
 def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
-    """All Python of a mapping."""
     for rule in mapping.rules:
         yield from [rule.condition] if rule.condition is not None else []
         yield from (assignment.value for assignment in rule.assignments)

@@ -19,7 +19,6 @@ from aos_protocol.documents import Assignment, Environment, SkillModel
 
 
 def check_environment_code(environment: Environment, scope: Scope, findings: Findings) -> None:
-    """All model code of the environment."""
     blocks = (
         environment.initial_belief,
         environment.extrinsic_changes,
@@ -32,7 +31,6 @@ def check_environment_code(environment: Environment, scope: Scope, findings: Fin
 
 
 def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> None:
-    """All model code of a skill."""
     blocks = (
         model.possible_parameters,
         model.precondition,

@@ -220,7 +220,6 @@ class _Reading:
     # --- expressions ---
 
     def _expression(self, node: tree_sitter.Node, control: _Control) -> None:
-        """An expression that is a statement."""
         if node.type == "parenthesized_expression" and node.named_child_count == 1:
             self._expression(node.named_children[0], control)
         elif node.type == "comma_expression":

@@ -6,7 +6,6 @@ import tree_sitter
 
 
 def text_of(node: tree_sitter.Node) -> str:
-    """The text of a node."""
     return (node.text or b"").decode("utf-8", "replace")
 
 

@@ -68,7 +68,6 @@ class SharedCode(msgspec.Struct, frozen=True):
 
     @property
     def drawing(self) -> frozenset[str]:
-        """The functions that draw."""
         return frozenset(function.name for function in self.functions if function.draws)
 
     @property

@@ -44,7 +44,6 @@ def read_environment(record: Record, project: str, span: Span) -> documents.Envi
 
 
 def _monitors(record: Record) -> Iterator[documents.MonitorModel]:
-    """The model of each monitor."""
     for item in record.records("Monitors", "a monitor"):
         name, code = item.text("Name", required=True), item.code("AssignmentCode")
         item.ignore("Comment")

@@ -125,7 +125,6 @@ class Record:
         return None if value is None else float(value.value)
 
     def integer(self, key: str, *, required: bool = False) -> int | None:
-        """An integer; `10.0` is one, with a warning."""
         number = self.number(key, required=required)
         if number is None:
             return None

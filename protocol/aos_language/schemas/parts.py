@@ -61,7 +61,6 @@ def object_of(description: str, required: tuple[str, ...] = (), **properties: Sc
 
 
 def list_of(items: Schema) -> Schema:
-    """A list of such items."""
     return {"type": "array", "items": items}
 
 

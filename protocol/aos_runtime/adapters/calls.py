@@ -246,7 +246,6 @@ class Calls:
         return self._running is None or await self._stop(self._running, "the adapter ends")
 
     def close(self) -> None:
-        """Closes the ledger."""
         self._ledger.close()
 
     def _tell(self, progress: SkillProgress) -> None:

@@ -28,7 +28,6 @@ def make_folder_of_missions(run: Path) -> None:
 
 
 def mission_folder(run: Path, number: int) -> Path:
-    """The folder of a mission."""
     return run / _FOLDER / str(number) if number else run
 
 

@@ -59,11 +59,9 @@ class RegistryWatch:
         await self._adopt(revision)
 
     async def documents(self, revision: int) -> Project:
-        """The documents of a revision."""
         return (await self._ask(ProjectQuery(self._project, revision))).project
 
     async def files(self, revision: int) -> dict[str, bytes]:
-        """The source files of a revision."""
         return (await self._ask(ProjectQuery(self._project, revision, with_files=True))).files
 
     async def _ask(self, query: ProjectQuery) -> ProjectRevision:

@@ -282,7 +282,6 @@ class MissionRunner:
         self._has_begun.set()
 
     def _terms(self, name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
-        """The terms of a mission."""
         search = msgspec.structs.replace(self._settings_as(Search), seed=seed)
         policy = Path(self._settings.policy) if self._settings.policy else None
         return Terms(

@@ -27,7 +27,6 @@ class StudyDesk:
         self._study = Study(source, Path(settings.cache_dir), NICENESS, patience_s=_PATIENCE_S)
 
     async def answer(self, bus: Bus, keys: Keys) -> None:
-        """Answers from now on."""
         await bus.answer(keys.study_why, WhyQuery, self._why)
         await bus.answer(keys.study_whatif, WhatIfQuery, self._what_if)
         await bus.answer(keys.study_tree, TreeQuery, self._tree)

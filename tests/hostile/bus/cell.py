@@ -77,7 +77,6 @@ class Cell:
 
     @property
     def mission(self) -> str:
-        """The mission's name."""
         return self.run.name
 
     def session(self, user: str) -> zenoh.Session:

@@ -142,7 +142,6 @@ def _told(actor: zenoh.Session, partner: zenoh.Session, key: str) -> bool:
 
 
 def _announced(actor: zenoh.Session, partner: zenoh.Session, key: str) -> bool:
-    """The actor announces, the partner watches."""
     seen: list[Any] = []
     watch = partner.liveliness().declare_subscriber(key, Callback(seen.append, indirect=False), history=True)
     try:

@@ -59,7 +59,6 @@ class Gauge(Counter):
     kind = "gauge"
 
     def set(self, value: float, **labels: str) -> None:
-        """Sets the value."""
         self._sums[tuple(labels.items())] = value
 
     def clear(self) -> None:
@@ -79,7 +78,6 @@ class Histogram(Family):
         self._sums: dict[_Labels, float] = {}
 
     def observe(self, value: float, **labels: str) -> None:
-        """Counts one observation."""
         key = tuple(labels.items())
         numbers = self._numbers.setdefault(key, [0] * len(self._bounds))
         numbers[bisect_left(self._bounds, value)] += 1
@@ -96,7 +94,6 @@ class Histogram(Family):
 
 
 def exposition(families: Iterable[Family]) -> bytes:
-    """All families as text."""
     return "".join(f"{line}\n" for family in families for line in family.lines()).encode()
 
 

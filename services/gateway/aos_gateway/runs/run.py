@@ -142,8 +142,6 @@ class Run(ABC):
 
 
 class KeptRun(Run):
-    """A run with its directory."""
-
     def __init__(self, directory: RunDirectory, record: RunRecord) -> None:
         self.directory = directory
         self.record = record

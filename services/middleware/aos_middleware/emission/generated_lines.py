@@ -21,7 +21,6 @@ class MarkedLines:
         self._origins: list[LineOrigin] = []
 
     def line(self, text: str, origin: LineOrigin) -> str:
-        """One line that stands for `origin`."""
         self._origins.append(origin)
         return f"\x00{len(self._origins) - 1}\x00{text}"
 
@@ -62,7 +61,6 @@ class MarkedLines:
 
 
 def literal(text: str) -> str:
-    """A Python literal of a text."""
     if text.isprintable() and '"' not in text and "\\" not in text:
         return f'"{text}"'
     return repr(text)

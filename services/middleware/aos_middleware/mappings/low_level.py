@@ -90,7 +90,6 @@ class LowLevelValues:
 
 
 def _by_parameter(variables: Mapping[str, str], values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """The values of the variables that are parameters, by paths from the parameters."""
     for parameter, variable in variables.items():
         for path, value in values.items():
             first, dot, rest = path.partition(".")

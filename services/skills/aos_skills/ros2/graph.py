@@ -25,7 +25,6 @@ class Graph:
         self._has_changed.set()
 
     def find(self, kind: Kind, name: str) -> list[Endpoint]:
-        """All endpoints of a kind with a name."""
         return [one for one in self._endpoints.values() if one.kind is kind and one.name == name]
 
     def names(self, kind: Kind) -> dict[str, str]:
@@ -33,7 +32,6 @@ class Graph:
         return {one.name: one.type_name for one in self._endpoints.values() if one.kind is kind}
 
     async def changed(self) -> None:
-        """Returns at the next change."""
         self._has_changed.clear()
         await self._has_changed.wait()
 

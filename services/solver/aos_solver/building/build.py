@@ -86,7 +86,6 @@ class BuiltModel(msgspec.Struct, frozen=True):
 
     @property
     def cache_dir(self) -> Path:
-        """The cache that it is an entry of."""
         return self.executable.parent.parent
 
 

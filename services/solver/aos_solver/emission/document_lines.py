@@ -122,7 +122,6 @@ def _has_long_literals(piece: Piece) -> bool:
 
 
 def _put_inline(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> None:
-    """The pieces within the line."""
     line = ""
     origins: list[Origin] = []
     for index, part in enumerate(parts):

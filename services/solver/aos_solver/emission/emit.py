@@ -85,7 +85,6 @@ class EmittedModel(msgspec.Struct, frozen=True):
 
 
 def emit(program: Program) -> EmittedModel:
-    """The C++ of a program."""
     cpp, origins = _laid_out(program)
     # Constraints without a cost leave the model what it is: what was solved for it goes on to fit.
     without = msgspec.structs.replace(program, constraints=())

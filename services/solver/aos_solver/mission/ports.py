@@ -39,8 +39,6 @@ class Available(Protocol):
 
 
 class Robot(Available, Protocol):
-    """The robot and its world."""
-
     @property
     def world_ending(self) -> Ending | None:
         """The ending of the world, where somebody sees it; nobody tells a real robot."""

@@ -46,7 +46,6 @@ class Ragged(msgspec.Struct, frozen=True):
 
     @property
     def row_numbers(self) -> Integers:
-        """The number of the row that each element is in."""
         return np.repeat(np.arange(len(self)), np.diff(self.first))
 
 

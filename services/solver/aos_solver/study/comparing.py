@@ -106,7 +106,6 @@ def _differences(record: DecisionRecord, plans: tuple[Plan | None, ...]) -> Iter
 
 
 def _decided(searches: tuple[SearchMade, ...], plans: tuple[Plan | None, ...]) -> Plan | None:
-    """The plan of the search that made the decision."""
     for made, plan in reversed(list(zip(searches, plans, strict=True))):
         if not made.is_dropped and not made.is_pondering:
             return plan

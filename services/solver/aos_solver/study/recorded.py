@@ -47,7 +47,6 @@ class RecordedMission(msgspec.Struct, frozen=True):
         return tuple(made[step] for step in sorted(made))
 
     def of_kind(self, kind: type[M]) -> Iterator[M]:
-        """The messages of one kind."""
         return (event.said for event in self.events if isinstance(event.said, kind))
 
     def decision(self, step: int) -> DecisionRecord:

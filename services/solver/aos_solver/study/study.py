@@ -34,9 +34,7 @@ class Source(Protocol):
         """A replay of it that makes no decision again."""
         ...
 
-    async def files(self, revision: int) -> dict[str, bytes]:
-        """The files of a revision of the documents."""
-        ...
+    async def files(self, revision: int) -> dict[str, bytes]: ...
 
 
 class Study:

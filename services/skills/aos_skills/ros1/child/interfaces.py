@@ -30,20 +30,14 @@ class GoalMessage(Message, Protocol):
 
 
 class ResultMessage(Message, Protocol):
-    """A result with its header."""
-
     result: Message
 
 
 class FeedbackMessage(Message, Protocol):
-    """Feedback with its header."""
-
     feedback: Message
 
 
 class Service(Protocol):
-    """A service's class."""
-
     _request_class: Type[Message]
     _response_class: Type[Message]
 

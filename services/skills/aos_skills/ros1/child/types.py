@@ -91,7 +91,6 @@ class Types:
             self._texts[f"{package}/{short}{suffix}"] = part.format(short)
 
     def message(self, name: str) -> Type[Message]:
-        """A message's class."""
         if name not in self._classes:
             if name in self._texts:
                 context = genmsg.MsgContext.create_default()
@@ -110,7 +109,6 @@ class Types:
         return self.message(name)()
 
     def service(self, name: str) -> Type[Service]:
-        """A service's class."""
         if name not in self._services:
             self._services[name] = (
                 self._made_service(name) if name in self._files else _installed_service(name)

@@ -149,7 +149,6 @@ class Asking(Closing):
 
     @property
     def model_digest(self) -> str:
-        """The digest of the model that is asked."""
         return self._built.emitted.digest
 
     @property
@@ -207,7 +206,6 @@ class Asking(Closing):
         return _FIRST_MONITOR + self.description.monitors.index(monitor)
 
     async def _change_belief(self, command: str, kind: type[B]) -> B:
-        """The answer to a command that changes the belief."""
         answer = await self._ask(with_change(command, self._changes + 1), kind)
         self._changes += 1
         return answer

@@ -90,7 +90,6 @@ class Pieces:
         self._told_apart = told_apart
 
     def code(self, snippet: Snippet, rewriting: Rewriting, of_loops: LoopsOfPiece = NO_LOOPS) -> Piece:
-        """Statements."""
         return self._make(
             snippet, read_cpp(snippet.code), rewriting, self._numbered(of_loops), is_statements=True
         )
@@ -101,7 +100,6 @@ class Pieces:
         return msgspec.structs.replace(of_loops, first=first)
 
     def expression(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
-        """One expression."""
         return self._make(snippet, read_cpp_expression(snippet.code), rewriting)
 
     def declarations(

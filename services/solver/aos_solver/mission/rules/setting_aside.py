@@ -84,7 +84,6 @@ class SettingAside:
         return reason
 
     def reasons(self, now_s: float, announced: Mapping[str, int]) -> dict[str, str]:
-        """The skills that are set aside now, each with the reason."""
         for skill, pause in list(self._pauses.items()):
             has_come_anew = pause.announced not in (None, announced.get(skill, 0))
             if has_come_anew:

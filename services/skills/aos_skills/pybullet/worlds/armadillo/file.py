@@ -36,8 +36,6 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ArmadilloFile(RoomFile, frozen=True, forbid_unknown_fields=True):
-    """The room."""
-
     robot: Place
     tables: dict[str, Table]
     person: Place

@@ -20,7 +20,6 @@ def empty_cells(board: str) -> list[int]:
 
 
 def marked(board: str, cell: int, mark: str) -> str:
-    """The board with one more mark."""
     return board[:cell] + mark + board[cell + 1 :]
 
 
