@@ -253,7 +253,10 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
     assert robot.child is not None
     async with asyncio.timeout(HANG_S):
         assert await robot.child.wait() == 1
-    assert "/skill did not stop within 2 s" in (robot.folder / "python.log").read_text()
+    log = (robot.folder / "python.log").read_text()
+    line = ROBOT[: ROBOT.index("    time.sleep(1000)")].count("\n") + 1
+    assert f"/skill is cancelled, and goes on at {robot.folder / 'robot.py'}:{line}" in log
+    assert "/skill did not stop within 2 s" in log
 
 
 async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robot, root: Path):
@@ -263,7 +266,8 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
     (robot.folder / "take.py").write_text(f"import asyncio{function.replace('./take.sh', str(script))}")
     script.write_text(
         "#!/bin/sh\ntrap 'kill $!; exit 1' TERM\nread -r fields\n"
-        'case $fields in *never*) sleep 1000 & wait $! ;; *no*) exit 3 ;; esac\necho "$fields"\n'
+        "case $fields in *never*) sleep 1000 & wait $! ;; *no*) exit 3 ;; *odd*) fields=odd ;; esac\n"
+        'echo "$fields"\n'
     )
     script.chmod(0o700)
     await robot.start(take="take.py:take")
@@ -271,6 +275,8 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
     refusal = await robot.refusal("/take", 2, side="none")
     assert (refusal.code, "take.sh ended with 3" in refusal.message) == ("AOS510", True)
     assert (await robot.refusal("/take", 3, side="never", deadline_s=0.5)).code == "AOS503"
+    refusal = await robot.refusal("/take", 5, side="odd")
+    assert (refusal.code, "take.sh printed no JSON: b'odd" in refusal.message) == ("AOS504", True)
     assert (await robot.call("/take", 4, side="right")).fields == {"side": "right"}, "it runs on"
 
 

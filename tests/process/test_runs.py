@@ -204,8 +204,9 @@ def test_a_mission_that_was_killed_does_not_run(place: Place, tmp_path: Path):
 def test_an_endpoint_is_held_by_one_start_at_a_time():
     with ExitStack() as first:
         endpoint = first.enter_context(hold_endpoint("tcp/127.0.0.1:0"))
+        first.enter_context(hold_endpoint(endpoint.replace("127.0.0.1", "127.0.0.2")))
         with pytest.raises(BusError, match="another AOS runs there"):
-            first.enter_context(hold_endpoint(endpoint))
+            first.enter_context(hold_endpoint(endpoint.replace("127.0.0.1", "localhost")))
     with hold_endpoint(endpoint) as again:
         assert again == endpoint
 

@@ -1,5 +1,10 @@
 import io
+import itertools
 import json
+import os
+import pty
+import sys
+import threading
 
 import pytest
 from decision_records import decision_record
@@ -333,6 +338,40 @@ def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch):
     rest = text.getvalue().rpartition("pick")[2]
     assert "cancelled after 1 step" in rest
     assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(rest)
+
+
+def test_a_screen_is_drawn_by_one_thread_while_another_tells_it_events():
+    screen, is_drawn, shown_on = Screen("armadillo"), threading.Event(), Console(file=io.StringIO())
+
+    def tell() -> None:
+        for number in itertools.cycle(range(3000)):
+            if number == 0:
+                screen.services = {}
+            screen.take(ServiceChanged(f"{number}", "ready", 0.0))
+            if is_drawn.is_set():
+                return
+
+    before_s = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    telling = threading.Thread(target=tell)
+    telling.start()
+    try:
+        for _ in range(500):
+            list(screen.__rich_console__(shown_on, shown_on.options))
+    finally:
+        sys.setswitchinterval(before_s)
+        is_drawn.set()
+        telling.join()
+
+
+def test_a_terminal_that_is_closed_is_noticed_at_the_next_event():
+    terminal, inside = pty.openpty()
+    with os.fdopen(inside, "w") as file:
+        view = LiveView("armadillo", Console(file=file))
+        view(DECISION)
+        os.close(terminal)
+        with pytest.raises(OSError, match="terminal was closed"):
+            view(Told("searching"))
 
 
 def test_without_colour_there_is_no_style_at_all(monkeypatch):

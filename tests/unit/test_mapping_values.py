@@ -1,3 +1,4 @@
+import math
 from enum import Enum
 from typing import Any
 
@@ -82,9 +83,10 @@ def test_a_value_that_contains_itself_is_refused():
 
 
 def test_texts_for_records_are_json_where_that_is_possible():
-    assert [text_of(value) for value in (True, 1.5, "a", None, Message(x=1))] == [
+    assert [text_of(value) for value in (True, 1.5, math.nan, "a", None, Message(x=1))] == [
         "true",
         "1.5",
+        "nan",
         '"a"',
         "null",
         '{"x":1}',

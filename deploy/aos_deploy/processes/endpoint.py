@@ -26,7 +26,7 @@ def hold_endpoint(endpoint: str) -> Iterator[str]:
     if not endpoint:
         yield ""
         return
-    address, _, port = endpoint.rpartition(":")
+    address, _, port = endpoint.replace("tcp/localhost:", "tcp/127.0.0.1:").rpartition(":")
     with socket.socket(socket.AF_UNIX) as name:
         if port != "0":
             _take(name, address, int(port))
@@ -36,7 +36,7 @@ def hold_endpoint(endpoint: str) -> Iterator[str]:
 
 
 def _take(name: socket.socket, address: str, port: int) -> None:
-    if not _has_taken(name, port):
+    if not _has_taken(name, address, port):
         raise _refusal(address, port, "another AOS runs there")
     try:
         _try_to_bind(address, port)
@@ -53,15 +53,15 @@ def _take_any(name: socket.socket, address: str) -> int:
             _try_to_bind(address, port)
         except OSError:
             continue
-        if _has_taken(name, port):
+        if _has_taken(name, address, port):
             return port
     raise _refusal(address, 0, "there is no free port")
 
 
-def _has_taken(name: socket.socket, port: int) -> bool:
-    """Binds the port's name, an abstract socket of Linux; returns whether this start has it now."""
+def _has_taken(name: socket.socket, address: str, port: int) -> bool:
+    """Binds the endpoint's name, an abstract socket of Linux; returns whether this start has it now."""
     try:
-        name.bind(f"\0aos-port-{port}")
+        name.bind(f"\0aos-{address}:{port}")
     except OSError:
         return False
     return True

@@ -1,6 +1,8 @@
 """The live view of a mission in a terminal."""
 
+import errno
 import io
+import threading
 import time
 from collections.abc import Iterator
 from typing import Self
@@ -28,7 +30,8 @@ _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow",
 class Screen:
     """The contents of the screen, as far as the events have told.
 
-    It keeps to the height of the terminal from 24 rows on, and needs 80 columns.
+    It keeps to the height of the terminal from 24 rows on, and needs 80 columns. It may be drawn by another
+    thread than the one that tells it events.
     """
 
     def __init__(self, title: str) -> None:
@@ -41,9 +44,14 @@ class Screen:
         self.steps: dict[int, DecisionRecord] = {}
         self.latest: DecisionRecord | None = None
         self.progress: SkillProgress | None = None
+        self._one_at_a_time = threading.Lock()
 
     def take(self, event: Event) -> None:
         """Brings the screen up to date."""
+        with self._one_at_a_time:
+            self._take(event)
+
+    def _take(self, event: Event) -> None:
         match event:
             case ServiceChanged():
                 # A process that ended by itself is printed above the screen, too.
@@ -75,6 +83,10 @@ class Screen:
         self.remark = text
 
     def __rich_console__(self, console: Console, _: ConsoleOptions) -> RenderResult:
+        with self._one_at_a_time:
+            return list(self._parts(console))
+
+    def _parts(self, console: Console) -> Iterator[RenderableType]:
         yield self._headline()
         yield self._services()
         if self.latest is not None:
@@ -157,11 +169,15 @@ class Screen:
 
 
 class LiveView:
-    """Redraws a `Screen` four times a second and at each event; leaves its last state on the terminal."""
+    """Redraws a `Screen` four times a second and at each event; leaves its last state on the terminal.
+
+    An event after the terminal was closed is an OSError (EIO).
+    """
 
     def __init__(self, title: str, console: Console | None = None) -> None:
         self.screen = Screen(title)
         shown = console or our_console()
+        self._is_drawn = shown.is_terminal
         self._live = Live(self.screen, console=shown, refresh_per_second=4, transient=False)
 
     def __enter__(self) -> Self:
@@ -174,6 +190,8 @@ class LiveView:
 
     def __call__(self, event: Event) -> None:
         self.screen.take(event)
+        if self._is_drawn and not self._live.console.is_terminal:  # rich draws no more, and says nothing.
+            raise OSError(errno.EIO, "the terminal was closed")
         if isinstance(event, SkillProgress):
             return  # It can come many times a second.
         is_end = isinstance(event, ServiceChanged) and event.state == "ended" and event.detail

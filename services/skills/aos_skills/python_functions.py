@@ -22,10 +22,13 @@ from typing import Any
 
 from aos_protocol.errors import DeployError, SkillError
 from aos_runtime.adapters import Answer, Call, Host
+from aos_runtime.code_places import place_of
 
 _log = logging.getLogger("aos.adapter")
 
 _END_S = 1.0
+_TOLD_S = 1.0
+"""A function that goes on for so long after its cancellation is told with its place."""
 _POSITIONAL = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
 
 
@@ -40,6 +43,7 @@ class PythonAdapter:
         self._objects: dict[tuple[str, str], Any] = {}
         self._functions: dict[str, Callable[..., Any]] = {}
         self._task: asyncio.Task[Any] | None = None
+        self._working: int | None = None  # The thread of the function that runs.
         self._loop = asyncio.new_event_loop()
         # A daemon, so that a function that never ends does not keep the process.
         self._thread = threading.Thread(target=self._loop.run_forever, name="skills", daemon=True)
@@ -61,7 +65,11 @@ class PythonAdapter:
             return await asyncio.shield(ended)
         except asyncio.CancelledError:
             stopping = asyncio.run_coroutine_threadsafe(self._cancel(call), self._loop)
-            await asyncio.wait({asyncio.wrap_future(stopping), ended})
+            both = {asyncio.wrap_future(stopping), ended}
+            _, going_on = await asyncio.wait(both, timeout=_TOLD_S)
+            if going_on:
+                _log.warning("%s is cancelled, and goes on at %s", call.path, self._place())
+                await asyncio.wait(both)
             raise
 
     async def close(self) -> None:
@@ -70,6 +78,15 @@ class PythonAdapter:
             closing = asyncio.run_coroutine_threadsafe(self._close_all(), self._loop)
             await asyncio.wait({asyncio.wrap_future(closing)}, timeout=_END_S)
             self._loop.call_soon_threadsafe(self._loop.stop)
+
+    def _place(self) -> str:
+        """File and line at which the function that runs stands, or awaits something."""
+        frames, awaiting = [], self._task.get_coro() if self._task is not None else None
+        while (frame := getattr(awaiting, "cr_frame", None)) is not None:
+            frames.append((frame, frame.f_lineno))
+            awaiting = getattr(awaiting, "cr_await", None)
+        stack = traceback.extract_stack(sys._current_frames().get(self._working or 0))
+        return place_of([*traceback.StackSummary.extract(frames), *stack])
 
     # --- on the user's thread ---
 
@@ -143,7 +160,7 @@ class PythonAdapter:
         return made
 
     async def _run(self, function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
-        self._task = asyncio.current_task()
+        self._task, self._working = asyncio.current_task(), self._thread.ident
         kind = type(function)
         if inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(kind.__call__):
             try:
@@ -174,7 +191,9 @@ class PythonAdapter:
                 error = _failure(call, failure)
             self._loop.call_soon_threadsafe(settle, answer, error)
 
-        threading.Thread(target=work, name=call.path, daemon=True).start()
+        thread = threading.Thread(target=work, name=call.path, daemon=True)
+        thread.start()
+        self._working = thread.ident
         try:
             return await asyncio.shield(ended)
         except asyncio.CancelledError:

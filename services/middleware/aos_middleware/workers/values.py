@@ -5,6 +5,7 @@ of a robot framework: `__input.pose.x`, `Point(x=1.0)`. `Message` gives the firs
 the framework's class cannot be imported, and `plain_from` turns both, and the real classes, into plain data.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -91,9 +92,12 @@ def is_truth(value: Any) -> bool:
 
 
 def text_of(value: Any) -> str:
-    """A local variable's value for people and records: JSON where it is plain data, else its `repr`."""
+    """A local variable's value for people and records: JSON where it is plain data, else its `repr`, as of a
+    number that is not finite."""
     try:
-        return msgspec.json.encode(plain_from(value)).decode()
+        plain = plain_from(value)
+        is_json = not isinstance(plain, float) or math.isfinite(plain)
+        return msgspec.json.encode(plain).decode() if is_json else str(plain)
     except (TypeError, ValueError, OverflowError):
         return repr(value)
 
