@@ -27,7 +27,7 @@ class Robot:
     def stop(self, _):
         self.stops += 1
         if self.stops == 2:
-            raise ValueError("the brake is worn")
+            raise ValueError("the brake's worn")
         return TriggerResponse(success=True, message="stands")
 
     def drive(self, goal):

@@ -20,6 +20,8 @@ MAX_BYTES = 16 * 1024 * 1024
 UNREADABLE = (msgspec.MsgspecError, RecursionError, UnicodeDecodeError)
 """The errors of msgspec's decoders. The last two come of nested values, and of text that is no UTF-8."""
 
+_HINT = "A payload is a MessagePack map of version, stamp_ns, sender and body: see docs/protocol.md"
+
 M = TypeVar("M", bound=Message)
 
 _encoder = msgspec.msgpack.Encoder()
@@ -44,7 +46,7 @@ def encode(message: Message, *, sender: str, stamp_ns: int) -> bytes:
 def open_envelope(payload: bytes) -> Envelope:
     """The envelope, its body still encoded."""
     if len(payload) > MAX_BYTES:
-        raise BusError(f"a message of {len(payload)} bytes is too large", code="AOS602")
+        raise BusError(f"a message of {len(payload)} bytes is too large, and {MAX_BYTES} go", code="AOS602")
     envelope = _checked_decode(payload, Envelope)
     if envelope.version.split(".")[0] != PROTOCOL_VERSION.split(".")[0]:
         message = f"{envelope.sender} speaks protocol {envelope.version}, this is {PROTOCOL_VERSION}"
@@ -78,5 +80,5 @@ def _checked_decode(payload: bytes | msgspec.Raw, kind: type[M]) -> M:
     try:
         message: M = _decoder(kind).decode(payload)
     except UNREADABLE as error:
-        raise BusError(f"no {kind.__name__}: {error}", code="AOS602") from error
+        raise BusError(f"no {kind.__name__}: {error}", code="AOS602", hint=_HINT) from error
     return message

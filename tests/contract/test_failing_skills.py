@@ -9,7 +9,7 @@ from mapping_documents import skill_of
 from middleware_system import HANG_S, SENSE, System, answering, hang
 
 from aos_protocol.codec import MAX_BYTES
-from aos_protocol.errors import SkillError
+from aos_protocol.errors import LostAnswerError, SkillError
 from aos_protocol.messages import Activate, ActivationId, Cancelled, Outcome, SkillCall, SkillResult, Stray
 from aos_runtime.disk.journal import Journal
 from aos_runtime.parties.asking import ask_until_answered
@@ -200,6 +200,18 @@ async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: Sys
     outcome = await system.activate("sense", 1)
     assert outcome.fault is not None
     assert (outcome.status, outcome.fault.code) == ("unknown", "AOS602")
+    assert "docs/protocol.md" in outcome.fault.hint
+
+
+async def test_a_call_that_is_dropped_by_an_adapter_that_stays_is_no_loss_of_the_adapter(system: System):
+    async def drop(call: SkillCall) -> dict[str, Any]:
+        raise LostAnswerError("nothing more comes")
+
+    await system.adapter.serve("/sense", drop)
+    outcome = await system.activate("sense", 1)
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS504")
+    assert "dropped the call" in outcome.fault.message
 
 
 async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_doubt(system: System):

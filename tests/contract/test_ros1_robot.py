@@ -48,7 +48,7 @@ async def node(master: str) -> AsyncIterator[Ros1Node]:
 async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros1Node):
     stop = {"success": True, "message": "stands"}
     assert await node.call(ServiceRequest("/robot/stop", {}, timeout_s=HANG_S, discovery_s=HANG_S)) == stop
-    with pytest.raises(SkillError, match="the brake is worn") as raised:
+    with pytest.raises(SkillError, match="failed: error processing request: the brake's worn") as raised:
         await node.call(ServiceRequest("/robot/stop", {}, timeout_s=HANG_S))
     assert raised.value.code == "AOS510"
     with pytest.raises(SkillError, match="is of type std_srvs/Trigger, not std_srvs/SetBool"):

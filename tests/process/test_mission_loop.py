@@ -246,6 +246,15 @@ async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for
     assert state.ending == "goal"
 
 
+async def test_a_mission_that_ends_since_a_skill_has_left_names_it(field: BuiltModel):
+    around = Surroundings(done)
+    around.unavailable = {"flood": "its adapter has left"}
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    state, _ = await run_mission(field, done, limits=MissionLimits(stop_below_value=1.9), around=around)
+    assert state.ending == "nothing_worthwhile"
+    assert "to return more than 1.9: flood is left out, as it was waited for" in state.remark
+
+
 async def test_an_adapter_that_is_started_again_is_waited_for_as_long_as_that_takes(field: BuiltModel):
     def come_back() -> None:
         waits.append(len(around.decisions))

@@ -95,7 +95,9 @@ class Call:
             before_s = 0.0 if limit_s == self._max_duration_s else request.deadline_s - limit_s
             raise _timed_out(path, limit_s, before_s) from error
         except LostAnswerError as error:
-            raise _lost_adapter(path, self._clock.monotonic_s() - started_s) from error
+            after_s = self._clock.monotonic_s() - started_s
+            has_left = await self._around.served.has_left(path, GONE_S)
+            raise (_lost_adapter if has_left else _dropped)(path, after_s) from error
         except NobodyAnswersError as error:
             # One that ends at once may have begun before its receipt went out.
             after_s = self._clock.monotonic_s() - started_s
@@ -167,6 +169,12 @@ def _timed_out(path: str, limit_s: float, before_s: float) -> SkillError:
     if before_s >= _TOLD_BEFORE_S:
         text += f", after {before_s:.1f} s of its time had passed before the call"
     return SkillError(text, code="AOS503", hint=f"See the skill's log. {_TIME_HINT}")
+
+
+def _dropped(path: str, after_s: float) -> SkillError:
+    message = f"the adapter of {path} dropped the call {after_s:.1f} s after it came, and is still there"
+    hint = "Mend the adapter: it replies to each call. Whether the skill did its work is not known"
+    return SkillError(message, code="AOS504", hint=hint)
 
 
 def _lost_adapter(path: str, after_s: float) -> SkillError:

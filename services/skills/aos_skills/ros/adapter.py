@@ -135,16 +135,17 @@ class RosAdapter:
             elif not is_there and path in self._serving:
                 self._serving.discard(path)
                 self.host.withdraw(path)
-                _log.warning("%s", self._why_missing(path, way, kind))
+                _log.warning("%s: %s", path, self._why_missing(path, way, kind))
 
     def _why_missing(self, path: str, way: Way, kind: str) -> str:
         """Tells people which node has left or serves something else, or else which services there are."""
         if kind:
             return f"{way.name} is a{'n' if kind == 'action' else ''} {kind} and no {way.kind}"
+        it = "it" if way.name == path else way.name  # Then all paths of a node have one reason.
         if node := self._nodes.get(path):
-            return f"the node {node} serves {way.name} no more: look whether it runs, and at its log"
+            return f"the node {node} serves {it} no more: look whether it runs, and at its log"
         if path in self._nodes:
-            return f"the node that served {way.name} has left: look whether it runs, and at its log"
+            return f"the node that served {it} has left: look whether it runs, and at its log"
         return f"no node serves {way.name}; served are {', '.join(self.node.served()) or 'none'}"
 
     def _say_what_is_missing(self) -> None:

@@ -3,6 +3,7 @@ ways."""
 
 from __future__ import annotations
 
+import re
 import threading
 from typing import Callable, TypedDict
 
@@ -94,7 +95,7 @@ class Robot:
         try:
             response: Fields = plain(rospy.ServiceProxy(name, cls).call(request))
         except rospy.ServiceException as error:
-            text = str(error).replace("b'", "").rstrip("'")
+            text = re.sub(r"""b(['"])(.*)\1$""", r"\2", str(error))
             if "responded with an error" in text:
                 raise Refusal("AOS510", f"{name} failed: {text.partition(': ')[2] or text}")
             if "unable to connect" in text or "unavailable" in text:

@@ -303,7 +303,10 @@ class Chooser:
         ending = ending_after_planning(plan.best, plan.actions, self._limits)
         if ending and without.reasons.keys() & self._set_aside().keys():
             return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
-        return Ended(ending, remark_of_ending(ending, belief, self._limits)) if ending else None
+        if ending is None:
+            return None
+        remark = remark_of_ending(ending, belief, self._limits)
+        return Ended(ending, ": ".join(filter(None, (remark, "; ".join(without.reasons.values())))))
 
     async def _repeated(self, model: RunningModel, allowed: set[int]) -> Plan | None:
         """The action that failed, once more: where that is to be, and it is among those `allowed`."""
