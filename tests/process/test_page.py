@@ -226,6 +226,10 @@ def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_
     served, run = living
     address = f"http://127.0.0.1:{served.port}/#/missions/{run.name}"
     page = late(browser, served, run, "/system")
+    expect(page.locator(".presence.is-there").first).to_be_visible()
+    refused = served.ask(f"/v1/runs/{run.name}/bundles?name=listen.sd", "POST", b"project: tiger\n")
+    assert refused.status == 422
+    expect(page.locator(".push .problem")).to_contain_text("listen.sd was refused; nothing has changed")
     better = (run.parents[1] / "tiger/listen.sd").read_text().replace("0.85 : 0.15", "0.95 : 0.05")
     given = {"name": "listen.sd", "mimeType": "text/plain", "buffer": better.encode()}
     page.locator("input[type=file]").set_input_files(given)

@@ -35,3 +35,11 @@ def test_what_another_search_has_found_is_part_of_the_error_of_a_value():
     found = Value(1.0, 0.3, 10).beside(Value(1.4, 0.1, 5))
     assert (found.q, found.n) == (1.0, 10)
     assert found.stderr == pytest.approx(0.5)
+
+
+def test_a_new_search_tells_no_more_than_what_was_proven_at_the_decision_leaves_open():
+    decided = Value(11.7, 0.1, at_least=11.0, at_most=12.1)
+    found = Value(15.2, 8.2, 1).within(decided)
+    assert (found.q, found.stderr) == (12.1, pytest.approx(1.1))
+    assert Value(11.5, 0.2).within(decided) == Value(11.5, 0.2)
+    assert Value(15.2, 8.2).within(Value(11.7)) == Value(15.2, 8.2)  # Nothing was proven.

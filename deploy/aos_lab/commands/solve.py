@@ -33,6 +33,7 @@ from aos_solver.child.answers.models import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.policy import Policy, PolicyHeader
+from aos_solver.offline.solver_program import build_solver
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
@@ -206,6 +207,7 @@ async def _solve(
     model: ExplicitModel, limits: SolvingLimits, on_progress: Callable[[Bounds], None]
 ) -> Solution:
     """Solves until a limit or Ctrl-C. Shows that it works until there are bounds to tell."""
+    await build_solver(cache_dir(), lambda remark: typer.echo(f"aos: {remark}", err=True))
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     loop.add_signal_handler(signal.SIGINT, stop.set)

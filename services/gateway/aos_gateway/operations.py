@@ -151,7 +151,7 @@ def _decoded(data: bytes, kind: type[msgspec.Struct]) -> Any:
     try:
         return msgspec.json.decode(data or b"{}", type=kind)
     except UNREADABLE as error:
-        raise GatewayError(f"the body is no {kind.__name__}: {error}", code="AOS901") from error
+        raise GatewayError(f"the body is wrong: {error}", code="AOS901") from error
 
 
 def _structure(given: dict[str, str], kind: type[msgspec.Struct]) -> Any:

@@ -29,9 +29,9 @@ export function chance(value) {
 
 export function percent(value) {
   if (!isNumber(value)) return "–";
-  if (value > 0.995 && value < 1) return ">99 %";
-  if (value < 0.005 && value > 0) return "<1 %";
-  return `${Math.round(value * 100)} %`;
+  if (value > 0.9995 && value < 1) return ">99.9 %";
+  if (value < 0.0005 && value > 0) return "<0.1 %";
+  return `${Number((value * 100).toFixed(1))} %`;
 }
 
 export function seconds(value) {

@@ -62,6 +62,8 @@ export function System() {
 function Push({ run }) {
   const [problem, setProblem] = useState(null);
   const [told, setTold] = useState("");
+  const last = reports.value[0];
+  const refused = last?.is_accepted === false && { message: `${last.source || last.project} was refused; nothing has changed`, diagnostics: last.diagnostics };
   async function push(event) {
     const file = event.target.files[0];
     if (!file) return;
@@ -83,6 +85,6 @@ function Push({ run }) {
           <p class="note">A document, or an archive of some. They take over at a decision, and the mission goes on.</p>`
       : html`<p class="note">Open the address that <code>aos serve</code> prints to change something here.</p>`}
     <p role="status">${told}</p>
-    <${Findings} problem=${problem} />
+    <${Findings} problem=${problem ?? refused} />
   </div>`;
 }

@@ -1,5 +1,6 @@
 """The solver's executable: compiled once, from the sources beside this file."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from aos_solver.building.build_cache import BuildCache, digest_of
@@ -14,7 +15,7 @@ _OBJECT = "sarsop.o"
 _EXECUTABLE = "sarsop"
 
 
-async def build_solver(cache_dir: Path) -> Path:
+async def build_solver(cache_dir: Path, on_progress: Callable[[str], None] = lambda remark: None) -> Path:
     """The executable, from the cache or compiled now.
 
     ModelError AOS202 when the compiler ran out of time, AOS203 without a compiler.
@@ -26,6 +27,7 @@ async def build_solver(cache_dir: Path) -> Path:
     name = f"sarsop-{digest_of([compiler.version, *options, *texts])}"
 
     async def make(staging: Path) -> None:
+        on_progress(f"compiling the solver with {compiler.version}, once for all models")
         for command in (compilation, compiler.linking([_OBJECT], _EXECUTABLE)):
             output, status = await run_compiler(
                 compiler,

@@ -45,9 +45,11 @@ class Reasons:
         other = self._other(instead, values)
         action, others = values[decision.action], values[other]
         if not valuing.is_exact and decision.chosen_by != "policy":
-            alone = await valuing.alone(self._engine, decision.action, valuing.share_alone)
-            action = action.beside(alone)
-            others = await valuing.alone(self._engine, other, valuing.share_alone)
+            alone = [
+                (await valuing.alone(self._engine, name, valuing.share_alone)).within(values[name])
+                for name in (decision.action, other)
+            ]
+            action, others = action.beside(alone[0]), alone[1]
         margin = Margin.of(action, others)
         belief = await self._engine.summary()
         async with put_aside(self._engine):
@@ -90,7 +92,7 @@ class Reasons:
             return dict(await self._valuing.values(self._engine, anywhere=True))
         if self._valuing.begun is not None:
             return dict(self._valuing.begun)
-        return {value.action: Value(value.q, value.stderr, value.n) for value in self._decision.actions}
+        return {value.action: Value.of(value) for value in self._decision.actions}
 
     def _other(self, instead: str, values: dict[str, Value]) -> str:
         made = deciding_search(self._decision)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Self
 
 import msgspec
 
-from aos_protocol.messages import DecisionRecord, SearchMade
+from aos_protocol.messages import ActionValue, DecisionRecord, SearchMade
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
@@ -15,11 +16,29 @@ from aos_solver.study.replaying import ReplayedMission
 
 
 class Value(msgspec.Struct, frozen=True):
-    """The value of an action and its standard error; `n` is how often a search tried it."""
+    """The value of an action and its standard error; `n` is how often a search tried it. What is proven of it
+    is `at_least` and `at_most`."""
 
     q: float
     stderr: float = 0.0
     n: int = 0
+    at_least: float = -math.inf
+    at_most: float = math.inf
+
+    @classmethod
+    def of(cls, told: ActionValue) -> Self:
+        least = -math.inf if told.at_least is None else told.at_least
+        most = math.inf if told.at_most is None else told.at_most
+        return cls(told.q, told.stderr, told.n, least, most)
+
+    def within(self, decided: Value) -> Value:
+        """The value as far as what was proven at the decision leaves room for it, and so its error.
+
+        The searches of a mission have found out more than one new search does.
+        """
+        least = min(decided.at_least, decided.q)
+        room = max(decided.at_most - least, decided.stderr)
+        return Value(min(max(self.q, least), decided.at_most), min(self.stderr, room), self.n)
 
     def beside(self, other: Value) -> Value:
         """The value with an error that counts what another, shorter search of it has found.
@@ -127,7 +146,7 @@ class Valuing:
 
 
 def _values_of(plan: Plan) -> dict[str, Value]:
-    return {value.action: Value(value.q, value.stderr, value.n) for value in plan.actions}
+    return {value.action: Value.of(value) for value in plan.actions}
 
 
 def best_of(values: Mapping[str, Value], but: str = "") -> str:
