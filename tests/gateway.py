@@ -108,7 +108,6 @@ class Answer(NamedTuple):
 
     @property
     def json(self) -> Any:
-        """The body as data."""
         return json.loads(self.body)
 
 
@@ -127,7 +126,6 @@ class Gateway(NamedTuple):
         has_token: bool = True,
         headers: dict[str, str] | None = None,
     ) -> Answer:
-        """The answer to a request."""
         connection = HTTPConnection("127.0.0.1", self.port, timeout=HANG_S)
         sent = {"authorization": f"Bearer {self.token}"} if has_token else {}
         connection.request(method, path, body, sent | (headers or {}))

@@ -34,7 +34,6 @@ class Installation:
         return subprocess.run(line, **self._place, text=True, capture_output=True, timeout=_PATIENCE_S)
 
     def start(self, *command: str) -> subprocess.Popen[str]:
-        """A command that goes on."""
         name, *arguments = command
         line, pipe = [str(self.commands / name), *arguments], subprocess.PIPE
         return subprocess.Popen(

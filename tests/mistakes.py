@@ -55,7 +55,6 @@ class Verdict(msgspec.Struct, frozen=True):
 
 
 def mistakes() -> Iterator[Mistake]:
-    """All of the table, in its order."""
     table = tomllib.loads((ROOT / "tests/data/mistakes.toml").read_text(encoding="utf-8"))
     for bundle, rows in table.items():
         files = _bundle(bundle)

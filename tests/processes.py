@@ -83,7 +83,6 @@ def has_listener(port: int) -> bool:
 
 
 def kill(pid: int) -> None:
-    """Kills the process with SIGKILL."""
     os.kill(pid, signal.SIGKILL)
 
 

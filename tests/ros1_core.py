@@ -32,7 +32,6 @@ def _has_ros1() -> bool:
 
 
 def skip_without_ros1() -> None:
-    """Skips a test on a machine without ROS 1."""
     if not _has_ros1():
         pytest.skip(
             "needs Debian's python3-rospy, python3-roslaunch, python3-actionlib; .ci/run installs them"

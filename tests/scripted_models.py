@@ -50,8 +50,6 @@ class Played(msgspec.Struct, frozen=True):
 
 
 class ScriptedModel(msgspec.Struct, frozen=True):
-    """A compiled model that draws from a script."""
-
     emitted: EmittedModel
     executable: Path
 
@@ -62,7 +60,6 @@ class ScriptedModel(msgspec.Struct, frozen=True):
         return Played(answer[0], answer[1:])
 
     def fault(self, *actions: str, initial: str = "") -> dict[str, Any]:
-        """The fault that the actions end with."""
         answer = self._run("play", script="\n".join([initial, *actions]) + "\n")
         assert isinstance(answer, dict), answer
         return answer
@@ -115,7 +112,6 @@ def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
 
 
 def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
-    """The model of a project, compiled for the script."""
     emitted, _ = lowered(project)
     return ScriptedModel(emitted, asyncio.run(_compiled(emitted, cache_dir)) / _EXECUTABLE)
 

@@ -40,7 +40,6 @@ class WrongRobot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def missions(self) -> range:
-        """The seeds of its missions of the model."""
         return range(self.first_seed, self.first_seed + self.seeds)
 
 

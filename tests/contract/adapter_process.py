@@ -46,7 +46,6 @@ class AdapterProcess:
         return await self.bus.ask(self.keys.call(call.path), call, SkillResult, timeout_s=HANG_S)
 
     async def cancel(self, path: str) -> Cancelled:
-        """Cancels whatever runs on the path."""
         return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=HANG_S)
 
     async def stop(self) -> None:

@@ -23,7 +23,6 @@ from aos_runtime.processes.settings import ServiceSettings
 
 
 def free_endpoint() -> str:
-    """An endpoint nobody listens at."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
@@ -50,7 +49,6 @@ def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 @pytest.fixture
 def keys() -> Keys:
-    """The keys of the robot `test`."""
     return Keys("test")
 
 
@@ -89,7 +87,6 @@ async def process_system(
 
 @pytest.fixture
 def finer(bundles: Path) -> dict[str, bytes]:
-    """The documents of the finer Armadillo."""
     return read_bundle_files(bundles / "armadillo-finer")[0]
 
 

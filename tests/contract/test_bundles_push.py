@@ -23,7 +23,6 @@ Aos = Callable[..., Awaitable[Result]]
 
 @pytest_asyncio.fixture
 async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Aos]:
-    """Runs `aos` with a registry on the bus."""
     settings = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path))
     path = tmp_path / "registry.json"
     path.write_bytes(msgspec.json.encode(settings))

@@ -26,12 +26,12 @@ return __input.level
 """
 
 
-async def monitored(system: System, battery: str = BATTERY) -> Driving:
+async def monitored(system: System) -> Driving:
     """The project has a skill that drives, one that ends at once, and a monitor."""
     project = system.registry.current.project
     sense = skill_of(SENSE.replace("level <= 3", "True"), "sense.am")
     skills = (skill_of(DRIVE, "drive.am"), sense)
-    monitor = mapping_of(battery, "battery.am")
+    monitor = mapping_of(BATTERY, "battery.am")
     system.registry.announce(msgspec.structs.replace(project, skills=skills, monitors=(monitor,)))
     state = await system.state(system.registry.current.revision)
     assert state.skills == ("drive", "sense")

@@ -39,7 +39,6 @@ async def opened(endpoint: str, name: str, *interfaces: Path) -> AsyncIterator[N
 
 @pytest_asyncio.fixture
 async def robot(endpoint: str) -> AsyncIterator[Node]:
-    """The node that serves."""
     async with opened(endpoint, "robot") as node:
         yield node
 
@@ -161,7 +160,6 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
 
 
 def serve_goals(robot: Node, send_goal: Handler, get_result: Handler) -> None:
-    """Serves an action whose server is broken."""
     robot.publisher("/lab/fibonacci/_action/feedback", f"{FIBONACCI}_FeedbackMessage")
     robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", send_goal)
     robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", get_result)

@@ -155,7 +155,6 @@ async def robot_of(kind: str, request: pytest.FixtureRequest, endpoint: str) -> 
 async def lab(
     request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
 ) -> AsyncIterator[Lab]:
-    """The robot, and the adapter to it."""
     robot, options = await robot_of(request.param, request, endpoint)
     lab = Lab(bus, keys, endpoint, tmp_path, robot)
     await lab.start(

@@ -36,7 +36,6 @@ class Robot(AdapterProcess):
         self.world = world
 
     async def launch(self, **settings: Any) -> Child:
-        """Starts the process."""
         shipped = {"bind": ALL_PATHS, "options": {"world": str(self.world)}}
         adapter = "aos_skills.pybullet.adapter:PybulletAdapter"
         return await self.launched("pybullet", adapter=adapter, **(shipped | settings))

@@ -65,7 +65,6 @@ def main() -> int:
 
 
 def _add_models(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    """Adds the commands about random models."""
     for name, text in (
         ("bounds", "hold claims against the truth"),
         ("regret", "play missions"),

@@ -12,7 +12,6 @@ def lists() -> defaultdict[str, list[Any]]:
 
 
 def lists_of_lists() -> defaultdict[str, defaultdict[str, list[Any]]]:
-    """Lists by two names."""
     return defaultdict(lists)
 
 

@@ -16,7 +16,6 @@ Change = Callable[[int, int], Odds]
 
 
 def disguised(random: random.Random, world: World) -> World:
-    """Some of the disguises, by chance."""
     if random.random() < 0.4:
         world = _with_shuffled_actions(random, world)
     if random.random() < 0.3:

@@ -129,7 +129,6 @@ def _files(
 
 
 def _skill(last: Register, sink: str, moves: Sequence[str]) -> list[str]:
-    """The lines of the skill document."""
     value = last.read("state")
     earned = {
         "reward": f"{value} == 1 ? {PRIZE} : -{PRIZE}",

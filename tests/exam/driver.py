@@ -53,7 +53,6 @@ class Driver:
         return {"problem": problem.name, "crash": ending}
 
     def close(self) -> None:
-        """Ends the process."""
         if self._process is not None:
             self._process.kill()
             self._process.communicate()

@@ -98,7 +98,6 @@ class Intervals(Answers):
         return f"{problem.name}: a margin that was told as sure has the other sign: {answer['cases']}"
 
     def line(self) -> str:
-        """Returns how far it is."""
         return f"{self.counts['margins held']} of {self.counts['decisions']} margins held"
 
     def table(self) -> str:
@@ -144,7 +143,6 @@ class Intervals(Answers):
         )
 
     def as_json(self) -> dict[str, Any]:
-        """Returns the counts as data."""
         return {"counts": dict(self.counts), "crashes": self.crashes}
 
 

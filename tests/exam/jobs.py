@@ -48,7 +48,6 @@ class Job:
 
     @property
     def files(self) -> dict[str, str]:
-        """The whole bundle."""
         return self._with(self.skills)
 
     def spare(self, broken: str) -> dict[str, str] | None:

@@ -64,7 +64,6 @@ class Problem:
         return dataclasses.replace(self, world=dataclasses.replace(self.world, horizon=horizon))
 
     def text(self) -> str:
-        """Returns the text that the driver reads."""
         world = self.world
         words = [
             f"problem {self.name}",

@@ -46,8 +46,8 @@ def hostile_skills() -> dict[str, str]:
     return {f"{HOSTILE}{number}": name for number, name in enumerate(MAPPINGS)}
 
 
-def write_system(place: Path, *, is_good: bool = True, times: int = _OFTEN) -> Path:
-    """Writes a deploy file and its bundle, with the good skill where it `is_good`; returns the bundle.
+def write_system(place: Path, *, times: int = _OFTEN) -> Path:
+    """Writes a deploy file and its bundle with the good skill; returns the bundle.
 
     A skill that has failed so many `times` in a row is not chosen again.
     """
@@ -59,9 +59,8 @@ def write_system(place: Path, *, is_good: bool = True, times: int = _OFTEN) -> P
     (place / "robot.py").write_text(_ROBOT)
     files = counting(_PROJECT, _GOOD, steps=_STEPS, reward=_GOOD_REWARD)
     (bundle / "cell.ef").write_text(files["cell.ef"])
-    if is_good:
-        (bundle / f"{_GOOD}.sd").write_text(files[f"{_GOOD}.sd"])
-        (bundle / f"{_GOOD}.am").write_text(files[f"{_GOOD}.am"] + _RESULT.replace("CODE", _HARMLESS))
+    (bundle / f"{_GOOD}.sd").write_text(files[f"{_GOOD}.sd"])
+    (bundle / f"{_GOOD}.am").write_text(files[f"{_GOOD}.am"] + _RESULT.replace("CODE", _HARMLESS))
     return bundle
 
 

@@ -46,7 +46,6 @@ class Log:
         return any((line.round, line.kind, line.name, line.way) == wanted for line in self.lines)
 
     def add(self, number: int, attempt: Attempt) -> None:
-        """Keeps an attempt, and prints it."""
         told_s = None if attempt.told_s is None else round(attempt.told_s, 2)
         at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
         case = (attempt.kind, attempt.name, attempt.way)

@@ -73,7 +73,6 @@ class Command:
 
     @property
     def said(self) -> str:
-        """Everything that it has said."""
         return self._said.read_bytes().decode(errors="replace")
 
     @property

@@ -61,7 +61,6 @@ class Machine:
         return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 
     def shown(self, name: str) -> str:
-        """A property of the unit."""
         return self.inside("systemctl", "show", "--value", "-p", name, _UNIT).strip()
 
     def until(self, *, state: str = "", said: str = "") -> bool:

@@ -57,7 +57,6 @@ class Project:
         return {name: text.encode() for name, text in texts.items()}
 
     def change(self, kind: str) -> Change:
-        """The next change, of this kind where it is possible."""
         self._number += 1
         changes: dict[str, Callable[[], Change]] = {
             "added": self._added,

@@ -39,5 +39,4 @@ def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
 
 @pytest.fixture
 async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
-    """The tiger problem, compiled."""
     return await built_bundle(bundles / "bench" / "tiger", cache_dir)

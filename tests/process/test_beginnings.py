@@ -10,7 +10,6 @@ from scripted_models import text_project
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
-from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.beginning import begin_with
@@ -63,8 +62,8 @@ __reward = -1;
 
 async def distribution(engine: Engine) -> dict[str, float]:
     """The states of the belief as text, the flags of special states among it, with their weights."""
-    belief: ExportedBelief = await engine.export_belief()
-    assert belief.is_exact
+    belief = await engine.export_belief()
+    assert belief.error_bound == 0
     return {state: weight for weight, state in belief.particles}
 
 

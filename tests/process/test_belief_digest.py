@@ -5,8 +5,8 @@ import pytest
 from models import built_text, engine_of
 from processes import kill_engine
 
+from aos_protocol.messages import WeightedStates
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers.beliefs import ExportedBelief
 from aos_solver.child.engine import Engine
 
 STEPS = 12
@@ -84,5 +84,5 @@ async def test_the_digest_does_not_depend_on_the_order_of_the_states(cache_dir: 
         assert (await other.import_belief(replaced(belief, changed))).digest != digest
 
 
-def replaced(belief: ExportedBelief, particles: list[tuple[float, str]]) -> ExportedBelief:
+def replaced(belief: WeightedStates, particles: list[tuple[float, str]]) -> WeightedStates:
     return msgspec.structs.replace(belief, particles=tuple(particles))

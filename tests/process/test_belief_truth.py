@@ -52,7 +52,6 @@ class RandomModel:
         return files
 
     def updated(self, belief: list[float], action: int, response: int) -> tuple[list[float], float]:
-        """The posterior and the probability of the response."""
         joint = [
             sum(belief[before] * self.moves[action][before][after] for before in range(STATES))
             * self.sights[action][after][response]

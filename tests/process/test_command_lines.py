@@ -6,7 +6,8 @@ from pathlib import Path
 from models import built_text
 from processes import HANG_S
 
-from aos_solver.child.answers.beliefs import ExportedBelief
+from aos_protocol.messages import WeightedStates
+from aos_solver.child.answers.beliefs import import_command
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.lines.command_line import command_line
 
@@ -83,8 +84,8 @@ async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path,
 
 
 def test_a_belief_is_a_command_with_a_list():
-    belief = ExportedBelief(0.5, True, 1, {"room": "3 4"}, "words", ((1.0, "1 0"),))
-    assert belief.command.split("\t") == [
+    belief = WeightedStates(((1.0, "1 0"),), {"room": "3 4"}, 0.5, True, "words")
+    assert import_command(belief).split("\t") == [
         "import_belief", "error_bound=0.5", "is_drawn=1", "history=words", "constants=1",
         "", "room", "3 4", "1.0", "1 0",
     ]  # fmt: skip

@@ -180,7 +180,6 @@ async def test_words_are_coloured_explained_and_completed_and_sections_listed(ed
 
 
 def at(path: Path, text: str, word: str, *, nth: int = 0) -> types.TextDocumentPositionParams:
-    """The position in the middle of a word of a text."""
     offset = -1
     for _ in range(nth + 1):
         offset = text.index(word, offset + 1)

@@ -48,7 +48,6 @@ async def evaluator(tmp_path: Path) -> AsyncIterator[Start]:
 
 
 async def fault_of(evaluator: Evaluator, result: dict[str, object] | None = None) -> MappingFault:
-    """The fault with which an activation ends."""
     try:
         await evaluator.begin({})
         await evaluator.finish(result or {})

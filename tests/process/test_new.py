@@ -16,7 +16,6 @@ from aos_language.load import load_bundle
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The folder that commands run in."""
     monkeypatch.chdir(tmp_path)
 
 

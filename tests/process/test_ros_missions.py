@@ -58,7 +58,6 @@ runs: runs
 
 @pytest.fixture
 def master(tmp_path: Path) -> Iterator[str]:
-    """The URI of a roscore."""
     skip_without_ros1()
     (tmp_path / "ros").mkdir()
     with roscore(tmp_path / "ros") as uri:

@@ -88,18 +88,18 @@ def random_model(seed: int) -> ExplicitModel:
     )
 
 
-def value_on_a_grid(model: ExplicitModel, points: int = 801) -> float:
+def value_on_a_grid(model: ExplicitModel) -> float:
     """The value of the start by value iteration over beliefs in two states, linear between the points."""
     actions, observations = len(model.actions), len(model.observations)
     transitions = model.outcomes.probabilities.reshape(2, actions, 2)
     sensing = model.likelihoods.probabilities.reshape(2, actions, 2, observations)
-    grid = np.linspace(0, 1, points)
+    grid = np.linspace(0, 1, 801)
     beliefs = np.stack([1 - grid, grid], axis=1)
     joint = transitions[..., None] * sensing
     weights = np.einsum("ps,sato->paot", beliefs, joint)
     chances = weights.sum(axis=-1)
     following = np.divide(weights[..., 1], chances, out=np.zeros_like(chances), where=chances > 0)
-    values = np.zeros(points)
+    values = np.zeros(len(grid))
     for _ in range(int(np.log(1e-7) / np.log(model.discount))):
         later = (chances * np.interp(following, grid, values)).sum(axis=-1)
         values = (beliefs @ model.rewards + model.discount * later).max(axis=1)

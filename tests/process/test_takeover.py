@@ -55,8 +55,6 @@ return __input.is_ringing
 
 
 class SlowClock(SystemClock):
-    """A clock that goes on with each look at it."""
-
     def __init__(self, step_s: float = 4.0) -> None:
         self._now_s, self._step_s = 0.0, step_s
 

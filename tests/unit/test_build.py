@@ -46,9 +46,9 @@ def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
     return lowered(text_project({"home.ef": home, "act.sd": act, "act.am": mapping_of_model(act)}))[0]
 
 
-async def build_error(emitted: EmittedModel, cache_dir: Path, deadline_s: float | None = None) -> ModelError:
+async def build_error(emitted: EmittedModel, cache_dir: Path) -> ModelError:
     with pytest.raises(ModelError) as raised:
-        await build(emitted, cache_dir=cache_dir, deadline_s=deadline_s)
+        await build(emitted, cache_dir=cache_dir)
     return raised.value
 
 

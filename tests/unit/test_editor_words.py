@@ -77,7 +77,6 @@ def colours(root: Path) -> dict[str, Any]:
 
 
 def rule_at(rules: list[dict[str, Any]], line: str) -> dict[str, Any]:
-    """The rule of a grammar that opens at a line."""
     return next(rule for rule in rules if re.search(rule.get("begin", rule.get("match", "")), line))
 
 

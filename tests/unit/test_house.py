@@ -41,7 +41,6 @@ def lines_of(function: Function) -> int:
 
 
 def parameters_of(function: Function) -> list[ast.arg]:
-    """The parameters that a caller gives."""
     arguments = function.args
     named = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
     return [parameter for parameter in named if parameter.arg not in ("self", "cls")]

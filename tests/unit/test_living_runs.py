@@ -10,7 +10,6 @@ from aos_protocol.errors import BusError
 
 
 def run_in(folder: Path) -> Path:
-    """The directory of a run that is over."""
     run = RunDirectory.create(folder, "r", 0)
     run.write_record(RunRecord(robot="r", endpoint="", deploy_file="", seed=1, started="", pid=1))
     run.close()

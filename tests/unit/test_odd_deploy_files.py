@@ -10,7 +10,6 @@ from aos_protocol.errors import DeployError
 
 
 def lines_of(folder: Path, text: str) -> list[int]:
-    """The lines at which something is wrong."""
     return [int(found.partition(":")[0]) for found in findings(folder, HEAD + text)]
 
 

@@ -11,10 +11,11 @@ import msgspec
 import pytest
 from packaging.requirements import Requirement
 
-from aos_deploy.deployment.parts import BusPart, DeployFile, MissionPart, SkillPart, SolverPart
+from aos_deploy.deployment.parts import BusPart, DeployFile, MissionPart, SolverPart
 from aos_protocol import __version__, keys, messages
 from aos_protocol.errors import CODES
 from aos_protocol.keys import FixedKey, Keys, Lack, Serving
+from aos_solver.mission.rules.failures import SkillRule
 
 LOCKS = ("build", "runtime", "dev", "compiler")
 FIRST_SCREEN_LINES = 30
@@ -106,7 +107,7 @@ def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch):
             table.value_at(place)
 
 
-@pytest.mark.parametrize("part", [DeployFile, BusPart, MissionPart, SolverPart, SkillPart])
+@pytest.mark.parametrize("part", [DeployFile, BusPart, MissionPart, SolverPart, SkillRule])
 def test_the_page_of_the_deploy_file_has_every_key_with_its_default(root: Path, part):
     page = (root / "docs" / "deploy-file.md").read_text(encoding="utf-8")
     rows = [line for line in page.splitlines() if line.startswith(("| ", "## "))]

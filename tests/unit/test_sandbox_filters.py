@@ -47,8 +47,6 @@ def answer(program: bytes, number: int, arguments: tuple[int, ...] = (), archite
 
 
 class Filter:
-    """The filter of a profile on a machine."""
-
     def __init__(self, profile: str, machine: str) -> None:
         self.program = program_of(profile, machine, PID, START)
         self.numbers = numbers_of(machine)

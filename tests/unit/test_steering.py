@@ -124,8 +124,6 @@ def test_a_hold_for_a_skill_is_over_once_somebody_has_resumed_the_mission():
 
 
 class Journal(QuietPorts):
-    """Remembers the rows."""
-
     def __init__(self) -> None:
         self.rows: list[tuple[str, Message]] = []
 

@@ -37,7 +37,6 @@ class Played:
     first: Plan | None = None
 
     def take(self, plan: Plan) -> None:
-        """Adds a decision."""
         self.first = self.first or plan
         self.decisions.append(Decision(plan.planner, plan.search_s, plan.preparation_s))
 

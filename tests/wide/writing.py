@@ -6,8 +6,6 @@ Bundle = dict[str, str]  # file name to text
 
 
 class BundleWriter:
-    """Collects the documents of a bundle."""
-
     def __init__(self, project: str, environment: str) -> None:
         self.project = project
         self.files: Bundle = {"e.ef": f"project: {project}\n{environment}"}

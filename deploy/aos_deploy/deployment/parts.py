@@ -9,6 +9,7 @@ import msgspec
 
 from aos_deploy.deployment.own_programs import ProgramPart
 from aos_protocol.documents import MAX_HORIZON
+from aos_solver.mission.rules.failures import SkillRule
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
@@ -58,25 +59,6 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     hold_s: Seconds = 600.0
     constraints: tuple[ConstraintPart, ...] = ()
     set: dict[str, Any] = {}
-
-
-class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
-    """The consequences of a skill's failure. `timeout_s` is the mission's `activation_timeout_s` if not
-    given.
-
-    The same action is tried again up to `retries` times, by default once for `retry` and else never. Then
-    `observe` goes on, `hold` waits for `aos resume`, and `end` ends the mission. `ran_probability` is how
-    probable it is that the skill ran nevertheless, also where it reports a failure; without it, 0 where it
-    reports one and 0.5 where nobody knows. `set_aside_after` and `set_aside_s` are the mission's if not
-    given.
-    """
-
-    retries: Annotated[int, msgspec.Meta(ge=0)] | None = None
-    timeout_s: Seconds | None = None
-    ran_probability: Annotated[float, msgspec.Meta(ge=0, le=1)] | None = None
-    set_aside_after: Count | None = None
-    set_aside_s: Seconds | None = None
-    on_failure: Literal["observe", "retry", "hold", "end"] = "observe"
 
 
 class SolverPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -129,7 +111,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     mission: MissionPart = MissionPart()
     solver: SolverPart = SolverPart()
     world: str | None = None
-    skills: dict[str, SkillPart] = {}
+    skills: dict[str, SkillRule] = {}
     adapters: dict[str, Any] = {}
     bind: dict[str, Any] = {}
     serve: dict[str, Any] = {}

@@ -13,8 +13,7 @@ import numpy.typing as npt
 
 from aos_lab.calibration.records import RecordedMission, RecordedStep
 from aos_protocol.errors import AosError, IntractableError
-from aos_protocol.messages import BeliefSummary
-from aos_solver.child.answers.beliefs import ExportedBelief
+from aos_protocol.messages import BeliefSummary, WeightedStates
 from aos_solver.child.engine import Engine
 
 Numbers = npt.NDArray[np.float64]
@@ -56,7 +55,7 @@ class Layers:
         self._variables = tuple(variables)
         self._known: dict[tuple[str, str, str, str], list[tuple[str, float]]] = {}
         self._states: dict[str, _State] = {}
-        self._initial: ExportedBelief
+        self._initial: WeightedStates
 
     async def begin(self) -> list[tuple[str, float]]:
         """The initial states with their probabilities."""
@@ -68,7 +67,7 @@ class Layers:
         """The states that may follow with that response, each with its probability together with it."""
         key = (state, step.action, step.response, repr(step.numbers))
         if key not in self._known:
-            single = msgspec.structs.replace(self._initial, states=1, particles=((1.0, state),))
+            single = msgspec.structs.replace(self._initial, particles=((1.0, state),))
             await self._engine.import_belief(single)
             update = await self._engine.update(step.action, step.response, numbers=step.numbers)
             found: list[tuple[str, float]] = []
@@ -81,15 +80,15 @@ class Layers:
     async def state(self, text: str) -> _State:
         """Returns the values of a state's variables."""
         if text not in self._states:
-            single = msgspec.structs.replace(self._initial, states=1, particles=((1.0, text),))
+            single = msgspec.structs.replace(self._initial, particles=((1.0, text),))
             values = _values(await self._engine.import_belief(single))
             drawn = tuple(int(values.get(variable, "0")) for variable in self._variables)
             self._states[text] = _State(values, drawn)
         return self._states[text]
 
-    async def _exported(self) -> ExportedBelief:
+    async def _exported(self) -> WeightedStates:
         belief = await self._engine.export_belief()
-        if not belief.is_exact:
+        if belief.error_bound > 0:
             raise IntractableError(
                 "these documents cannot be calibrated: their steps have outcomes that cannot be counted",
                 hint="Draws of numbers, and loops that draw, have to be estimated by hand",

@@ -105,7 +105,6 @@ class Cell:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The mission's `summary.json`."""
         summary: dict[str, Any] = json.loads((self.run / "summary.json").read_text())
         return summary
 

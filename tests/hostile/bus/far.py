@@ -135,7 +135,6 @@ class FarMission:
 
     @property
     def moved(self) -> list[str]:
-        """The ids of the motions."""
         return (self._folder / "moved").read_text().split()
 
     def _until(self, is_it: Any, since_s: float, timeout_s: float = _PATIENCE_S) -> float | None:

@@ -128,7 +128,6 @@ def _asked(actor: zenoh.Session, partner: zenoh.Session, key: str) -> bool:
 
 
 def _told(actor: zenoh.Session, partner: zenoh.Session, key: str) -> bool:
-    """The actor tells, the partner listens."""
     heard: list[Any] = []
     subscriber = partner.declare_subscriber(key, Callback(heard.append, indirect=False))
     try:

@@ -24,12 +24,12 @@ _LONGEST_PACKET = 65536
 class Wire:
     """The fate of packets. `delay_s` is that of a round trip, `loss` the share lost on each way."""
 
-    def __init__(self, ends: tuple[int, int], seed: int = 1) -> None:
+    def __init__(self, ends: tuple[int, int]) -> None:
         self.delay_s = 0.0
         self.loss = 0.0
         self.is_cut = False
         self._ends = ends
-        self._chance = random.Random(seed)
+        self._chance = random.Random(1)
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._carry)
         self._thread.start()

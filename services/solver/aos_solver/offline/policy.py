@@ -17,8 +17,7 @@ import numpy as np
 
 from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import PlanningError
-from aos_protocol.messages import ActionValue, ChosenBy
-from aos_solver.child.answers.beliefs import ExportedBelief
+from aos_protocol.messages import ActionValue, ChosenBy, WeightedStates
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
 from aos_solver.child.questions.missions import UNRESTRICTED, Restriction
@@ -106,7 +105,7 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
                 hint=f"Solve it with aos solve {_options(mission_parameters, names)}",
             )
 
-    def choose(self, belief: ExportedBelief) -> Choice:
+    def choose(self, belief: WeightedStates) -> Choice:
         """The choice at an engine's belief, exported without what does not matter.
 
         PlanningError AOS322 if no state of it is known.

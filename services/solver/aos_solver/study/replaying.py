@@ -16,6 +16,7 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import StudyError
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers.beliefs import ExportedBeliefs
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.search import Search
@@ -23,7 +24,6 @@ from aos_solver.earlier_models import built_for
 from aos_solver.mission.models.past import Evidence, Past, evidence_of, updated
 from aos_solver.mission.models.retracing import Earlier, retraced
 from aos_solver.mission.models.takeover import RunningModel, Successor
-from aos_solver.mission.records.belief_rows import exported_of
 from aos_solver.mission.records.stretches import Stretch, after, models_before
 from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.rules.failures import FailureRules, Failures
@@ -226,7 +226,7 @@ class ReplayedMission:
             )
         if any(states.is_drawn for states in row.beliefs):
             raise StudyError("the mission began with particles of the mission before, whose draws go on")
-        await self.engine.import_beliefs(exported_of(row))
+        await self.engine.import_beliefs(ExportedBeliefs(row.words, row.beliefs))
 
     async def _adopt(self, adopted: messages.ModelAdopted) -> messages.BeliefSummary:
         assert self._running is not None

@@ -1,10 +1,11 @@
 """The answers of an engine child about beliefs, as typed data."""
 
 import math
+from collections.abc import Iterable
 
 import msgspec
 
-from aos_protocol.messages import BeliefSummary, PredictedObservation
+from aos_protocol.messages import BeliefSummary, PredictedObservation, WeightedStates
 from aos_solver.child.answers.models import EngineFault
 from aos_solver.child.lines.command_line import command_line
 
@@ -57,56 +58,44 @@ class Prediction(msgspec.Struct, frozen=True):
     predicted: tuple[PredictedObservation, ...]
 
 
-class ExportedBelief(msgspec.Struct, frozen=True):
-    """A belief that another engine with the same state layout can take: weights, and states as text.
+class BeliefPiece(WeightedStates, frozen=True):
+    """A belief, of whose states only some may be told; `states` is how many there are."""
 
-    `constants` are the variables that no code of the model changes, as text; states hold the others.
-    `history` tells how the states of a drawn belief came to be; it is empty where the engine does not know.
-    """
+    states: int = 0
 
-    error_bound: float
-    is_drawn: bool
-    states: int
-    constants: dict[str, str]
-    history: str
-    particles: tuple[tuple[float, str], ...]
+    def with_states(self, particles: Iterable[tuple[float, str]]) -> WeightedStates:
+        """The belief with all its states."""
+        rest = self.constants, self.error_bound, self.is_drawn, self.history
+        return WeightedStates(tuple(particles), *rest)
 
-    @property
-    def is_exact(self) -> bool:
-        return self.error_bound == 0
 
-    @property
-    def command(self) -> str:
-        """The command by which an engine takes it over."""
-        return self.command_with()
-
-    def command_with(self, **fields: object) -> str:
-        """The same with further fields."""
-        items = [item for pair in (*self.constants.items(), *self.particles) for item in pair]
-        return command_line(
-            "import_belief",
-            items,
-            error_bound=self.error_bound,
-            is_drawn=self.is_drawn,
-            history=self.history,
-            constants=len(self.constants),
-            **fields,
-        )
+def import_command(belief: WeightedStates, **fields: object) -> str:
+    """The command by which an engine with the same state layout takes a belief over."""
+    items = [item for pair in (*belief.constants.items(), *belief.particles) for item in pair]
+    return command_line(
+        "import_belief",
+        items,
+        error_bound=belief.error_bound,
+        is_drawn=belief.is_drawn,
+        history=belief.history,
+        constants=len(belief.constants),
+        **fields,
+    )
 
 
 class ExportedBeliefs(msgspec.Struct, frozen=True):
     """All that an engine believes: each hypothesis' belief, and the cautious one. `words` tell them apart."""
 
     words: str
-    beliefs: tuple[ExportedBelief, ...]
+    beliefs: tuple[WeightedStates, ...]
 
     @property
     def commands(self) -> list[str]:
         """The commands by which an engine takes them over; the last one changes what it believes."""
         count = len(self.beliefs)
         return [
-            belief.command_with(
-                is_first=number == 0, left=count - number - 1, beliefs=count, words=self.words
+            import_command(
+                belief, is_first=number == 0, left=count - number - 1, beliefs=count, words=self.words
             )
             for number, belief in enumerate(self.beliefs)
         ]

@@ -7,14 +7,15 @@ from typing import Any
 import msgspec
 
 from aos_protocol.errors import AosError
-from aos_protocol.messages import BeliefSummary
+from aos_protocol.messages import BeliefSummary, WeightedStates
 from aos_solver.child.answers.beliefs import (
     BeliefCount,
+    BeliefPiece,
     BeliefUpdate,
     Conditioned,
-    ExportedBelief,
     ExportedBeliefs,
     Prediction,
+    import_command,
 )
 from aos_solver.child.answers.models import EngineFault
 from aos_solver.child.lines.command_line import command_line, with_change
@@ -176,19 +177,19 @@ class BeliefQuestions(Asking):
 
     async def export_belief(
         self, *, is_whole: bool = True, cautious: bool = False, number: int | None = None
-    ) -> ExportedBelief:
+    ) -> WeightedStates:
         """The whole belief, however many pieces it takes; nobody changes it meanwhile.
 
         Without `is_whole` states are told without what does not matter. A `number` is that of one of all
         beliefs, see `export_beliefs`.
         """
         fields = {"is_whole": is_whole, "cautious": cautious or None, "number": number}
-        belief = await self._ask(command_line("export_belief", first=0, **fields), ExportedBelief)
+        belief = await self._ask(command_line("export_belief", first=0, **fields), BeliefPiece)
         particles = list(belief.particles)
         while len(particles) < belief.states:
             command = command_line("export_belief", first=len(particles), **fields)
-            particles += (await self._ask(command, ExportedBelief)).particles
-        return msgspec.structs.replace(belief, particles=tuple(particles))
+            particles += (await self._ask(command, BeliefPiece)).particles
+        return belief.with_states(particles)
 
     async def export_beliefs(self) -> ExportedBeliefs:
         """All that is believed: the belief of each hypothesis, and the cautious one; see hypotheses.hpp."""
@@ -199,18 +200,18 @@ class BeliefQuestions(Asking):
     async def export_beliefs_within(self, max_bytes: int) -> ExportedBeliefs | None:
         """All that is believed if it takes about `max_bytes` at most; else None, soon."""
         count = await self._ask("describe_beliefs", BeliefCount)
-        beliefs: list[ExportedBelief] = []
+        beliefs: list[WeightedStates] = []
         for number in range(count.beliefs):
             fields = {"is_whole": True, "number": number, "max_bytes": max_bytes // count.beliefs}
-            found = await self._ask(command_line("export_belief", first=0, **fields), ExportedBelief)
+            found = await self._ask(command_line("export_belief", first=0, **fields), BeliefPiece)
             if len(found.particles) < found.states:
                 return None
-            beliefs.append(found)
+            beliefs.append(found.with_states(found.particles))
         return ExportedBeliefs(count.words, tuple(beliefs))
 
-    async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
+    async def import_belief(self, belief: WeightedStates) -> BeliefSummary:
         """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
-        return await self._change_belief(belief.command, BeliefSummary)
+        return await self._change_belief(import_command(belief), BeliefSummary)
 
     async def import_beliefs(self, beliefs: ExportedBeliefs) -> BeliefSummary:
         """Takes over all that an engine believes whose model has the same state layout."""

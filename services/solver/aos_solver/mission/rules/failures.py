@@ -4,7 +4,7 @@ docs/when-a-skill-fails.md has all rules.
 """
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Annotated, Literal
 
 import msgspec
 
@@ -13,25 +13,28 @@ from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.mission.rules.setting_aside import SettingAside
 
 OnFailure = Literal["observe", "retry", "hold", "end"]
+_Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 
 RAN_PROBABILITY = 0.5
 """A skill of which nobody knows ran with this probability, unless the deploy file says otherwise."""
 
 
 class SkillRule(msgspec.Struct, frozen=True, kw_only=True):
-    """The deploy file's rule for one skill; see docs/deploy-file.md.
+    """The consequences of a skill's failure, as the deploy file has them.
 
-    Where `timeout_s`, `set_aside_after` or `set_aside_s` is None the mission's counts. Where `retries` is
-    None the action is tried again once with `retry`, and else not. `ran_probability` None is 0 for failures
-    that the robot reports, and 0.5 where nobody knows.
+    The same action is tried again up to `retries` times, by default once for `retry` and else never. Then
+    `observe` goes on, `hold` waits for `aos resume`, and `end` ends the mission. `ran_probability` is how
+    probable it is that the skill ran nevertheless, also where it reports a failure; without it, 0 where it
+    reports one and 0.5 where nobody knows. `timeout_s` is the mission's `activation_timeout_s` if not given,
+    `set_aside_after` and `set_aside_s` are the mission's.
     """
 
-    retries: int | None = None
-    timeout_s: float | None = None
+    retries: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    timeout_s: _Seconds | None = None
+    ran_probability: Annotated[float, msgspec.Meta(ge=0, le=1)] | None = None
+    set_aside_after: Annotated[int, msgspec.Meta(ge=1, le=2**31 - 1)] | None = None
+    set_aside_s: _Seconds | None = None
     on_failure: OnFailure = "observe"
-    ran_probability: float | None = None
-    set_aside_after: int | None = None
-    set_aside_s: float | None = None
 
     @property
     def tries_again(self) -> int:
