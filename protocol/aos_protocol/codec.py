@@ -46,7 +46,8 @@ def encode(message: Message, *, sender: str, stamp_ns: int) -> bytes:
 def open_envelope(payload: bytes) -> Envelope:
     """The envelope, its body still encoded."""
     if len(payload) > MAX_BYTES:
-        raise BusError(f"a message of {len(payload)} bytes is too large, and {MAX_BYTES} go", code="AOS602")
+        text = f"a message of {len(payload)} bytes is too large: the bus carries {MAX_BYTES}"
+        raise BusError(text, code="AOS602")
     envelope = _checked_decode(payload, Envelope)
     if envelope.version.split(".")[0] != PROTOCOL_VERSION.split(".")[0]:
         message = f"{envelope.sender} speaks protocol {envelope.version}, this is {PROTOCOL_VERSION}"

@@ -292,10 +292,12 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
             "script.py:go",
             "script.py, which cannot be loaded: SystemExit: 3. What it does as a program stands",
         ),
+        ("camera.py:go", "cannot be loaded: OSError: no camera. It was raised at camera.py:2"),
     ],
 )
 async def test_what_cannot_be_bound_ends_the_process_with_one_message(robot: Robot, target: str, text: str):
     (robot.folder / "script.py").write_text("raise SystemExit(3)\n")
+    (robot.folder / "camera.py").write_text("import os\nraise OSError('no camera')\n")
     child = await robot.launch(skill=target)
     async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1

@@ -27,6 +27,8 @@ from aos_runtime.code_places import place_of
 _log = logging.getLogger("aos.adapter")
 
 _END_S = 1.0
+_LONG_S = 5.0
+"""A start that takes longer is told with its place."""
 _TOLD_S = 1.0
 """A function that goes on for so long after its cancellation is told with its place."""
 _POSITIONAL = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
@@ -51,8 +53,11 @@ class PythonAdapter:
     async def start(self) -> None:
         """Loads every function; DeployError AOS801 names what cannot be found."""
         self._thread.start()
-        loading = asyncio.run_coroutine_threadsafe(self._load_all(), self._loop)
-        await asyncio.wrap_future(loading)
+        self._working = self._thread.ident
+        loading = asyncio.wrap_future(asyncio.run_coroutine_threadsafe(self._load_all(), self._loop))
+        if not (await asyncio.wait({loading}, timeout=_LONG_S))[0]:
+            _log.warning("the start takes long, and stands at %s", self._place())
+        await loading
         await self._host.serve(*self._functions)
 
     async def call(self, call: Call) -> Answer:
@@ -135,7 +140,10 @@ class PythonAdapter:
             else:
                 module = importlib.import_module(place)
         except (Exception, SystemExit) as error:
+            frames = traceback.extract_tb(error.__traceback__)
+            lines = [frame.lineno for frame in frames if frame.filename.endswith(place)]
             hint = f"A file is found from the deploy file's folder, {self._host.folder}; see the log too"
+            hint = f"It was raised at {place}:{lines[-1]}" if lines else hint
             if isinstance(error, SystemExit):
                 hint = "What it does as a program stands behind `if __name__ == '__main__':`"
             message = f"{path} is bound to {place}, which cannot be loaded: {type(error).__name__}: {error}"
