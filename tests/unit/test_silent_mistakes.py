@@ -48,6 +48,11 @@ def test_a_number_in_the_place_of_a_response_is_told_with_the_names():
     assert finding_texts(skill=SKILL.replace("= walked;", "= steps > 1 ? walked : 0;")) == [told]
 
 
+def test_an_unknown_name_in_the_condition_of_a_response_is_taken_for_none():
+    told = "10 AOS110 unknown name `stepz`. Did you mean `steps`?"
+    assert finding_texts(skill=SKILL.replace("= walked;", "= stepz > 1 ? walked : walked;")) == [told]
+
+
 @pytest.mark.parametrize(("call", "given"), [("far(1)", "1 value"), ("far(1, true, 2, 3)", "4 values")])
 def test_a_call_of_a_shared_function_with_other_values_is_told_with_what_it_takes(call, given):
     told = f"9 AOS110 `far` is called with {given}. Shared code has `far(int a, bool b, int c = 2)`"

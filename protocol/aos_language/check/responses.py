@@ -8,6 +8,7 @@ from aos_language.check.response_values import check_response_values
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import SPECIAL_NAMES
 from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Mention
+from aos_language.cpp.values import values
 from aos_language.derived_mapping import sets_response
 from aos_language.findings import Findings
 from aos_protocol.documents import AbstractionMapping, SkillModel
@@ -35,7 +36,7 @@ def check_responses(
     given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
     check_response_values(given, read, scope, findings)
     enum_values, others = _own_names(model, read)
-    for block, mention in _assigned_names(read):
+    for block, mention, may_be_one in _assigned_names(read):
         name = mention.path[0]
         span = block.snippet.locate(mention.root.line, mention.root.column)
         if name in given and name in enum_values | others:
@@ -44,7 +45,7 @@ def check_responses(
             report("AOS126", message, span, "Choose another name for one of them")
         if name in given or name in known:
             continue
-        if mapping.is_derived:
+        if mapping.is_derived or not may_be_one:
             names = sorted(known | set(given))
             findings.unknown(name, names, f"unknown name `{name}`", span, "It stands in a condition")
             continue
@@ -125,19 +126,24 @@ def _check_text_response(
         findings.warning("AOS117", message, mapping.response_variable_span or mapping.span)
 
 
-def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Mention]]:
-    """The lone names in what is assigned to `__moduleResponse`."""
+def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Mention, bool]]:
+    """The lone names in what is assigned to `__moduleResponse`, and whether each may be a response: where all
+    that it can be is names, the others are in conditions."""
     for block, cpp in read:
         extents = [
             mention.assigned
             for mention in cpp.mentions
             if mention.path == ("__moduleResponse",) and mention.assigned is not None
         ]
-        for mention in cpp.mentions:
-            is_name = len(mention.path) == 1 and mention.access is Access.READ
-            at = mention.extent.start
-            if is_name and any(extent.start <= at < extent.end for extent in extents):
-                yield block, mention
+        for extent in extents:
+            can_be = [each for each in values(cpp.code[extent.start : extent.end]) if each[2] >= 0]
+            places = {extent.start + offset for _, _, offset in can_be}
+            is_told = all(kind == "identifier" for kind, _, _ in can_be)
+            for mention in cpp.mentions:
+                is_name = len(mention.path) == 1 and mention.access is Access.READ
+                at = mention.extent.start
+                if is_name and extent.start <= at < extent.end:
+                    yield block, mention, at in places or not is_told
 
 
 def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[str], set[str]]:
@@ -145,13 +151,13 @@ def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[st
     temporaries = [
         assignment.temporary for assignment in model.dynamic_model if assignment.temporary is not None
     ]
-    values = {value for temporary in temporaries for value in temporary.enum_values}
+    of_enums = {value for temporary in temporaries for value in temporary.enum_values}
     variables = {temporary.name for temporary in temporaries}
     for _, cpp in read:
         for declaration in cpp.declarations:
             is_value = declaration.kind is DeclarationKind.ENUMERATOR
-            (values if is_value else variables).add(declaration.name)
-    return values, variables
+            (of_enums if is_value else variables).add(declaration.name)
+    return of_enums, variables
 
 
 def _known_names(model: SkillModel, scope: Scope, read: list[tuple[Block, Cpp]]) -> set[str]:
