@@ -108,6 +108,9 @@ def _check_projects(documents: Mapping[str, Document], findings: Findings) -> No
     """All documents are of the environment's project, or else of that of the first file."""
     named = [document for document in documents.values() if document.project]
     leading = next((d for d in named if d.kind is DocumentKind.ENVIRONMENT), next(iter(named), None))
+    others = [d for d in named if d is not leading]
+    if len(others) > 1 and len({d.project for d in others}) == 1:
+        leading = others[0]  # One name that all others do not have is the wrong one.
     for document in named:
         if leading is not None and document.project != leading.project:
             message = f"this document is of project {document.project}, not of {leading.project}"

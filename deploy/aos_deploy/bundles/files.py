@@ -11,6 +11,7 @@ from aos_deploy.deployment.mission_values import with_values
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
 from aos_deploy.deployment.told_mistakes import findings_of, refuse_errors
 from aos_deploy.printing import from_here
+from aos_language.follow_ups import told_once
 from aos_language.load import load_files, read_bundle_files
 from aos_language.merge import merge, pushed_project
 from aos_language.mission_parameters import declared_values, parameter_leaves
@@ -127,7 +128,7 @@ def project_at(path: Path, *, hint: str = MEND) -> tuple[Planned, Project, tuple
 
 def refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...], hint: str = MEND) -> DocumentError:
     """Returns the error that is raised for a bundle with errors."""
-    return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=diagnostics)
+    return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=told_once(diagnostics))
 
 
 def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
@@ -145,7 +146,7 @@ def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
             f"the bundles {named} are refused" if "," in named else f"the bundle {named} is refused",
             code="AOS120",
             hint=MEND,
-            diagnostics=tuple(together.located(diagnostic) for diagnostic in loaded.diagnostics),
+            diagnostics=tuple(map(together.located, told_once(loaded.diagnostics))),
         )
     values = deployment.mission_values
     if plays_world:

@@ -14,6 +14,7 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
+from aos_language.follow_ups import told_once
 from aos_language.load import load_files, with_excerpts
 from aos_language.outline import outline
 from aos_language.reading.picture_file import PICTURE
@@ -79,6 +80,7 @@ def lint(
         told = {(finding.span.file, finding.span.line) for finding in found if finding.is_error}
         more = _compiler_errors(files, loaded.draft)
         found = (*found, *(error for error in more if (error.span.file, error.span.line) not in told))
+    found = told_once(found)
     counts = Counter(diagnostic.severity for diagnostic in found)
     if as_json or form is Format.JSON:
         print_json(

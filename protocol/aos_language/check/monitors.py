@@ -36,7 +36,7 @@ def check_monitors(assembly: Assembly, scope: Scope, findings: Findings, *, is_w
         if is_whole and mapping.stop_when is not None:
             _check_stopped(mapping.stop_when, assembly, findings)
     for name in models if is_whole else ():
-        if name not in first:
+        if name not in first and first.keys() <= models.keys():  # Else it was meant by another name.
             hint = f"Add {name}.am with `monitor: {name}`, or take the model out"
             message = f"the monitor {name} has no abstraction mapping"
             findings.error("AOS114", message, models[name].span, hint)

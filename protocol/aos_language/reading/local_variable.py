@@ -23,6 +23,7 @@ class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
     code: Snippet | None = None
     imports: tuple[Import, ...] = ()
     is_heavy: bool = False
+    service_span: Span | None = None
 
 
 def build_local_variable(parts: LocalVariableParts, findings: Findings) -> LocalVariable | None:
@@ -69,5 +70,8 @@ def _source(parts: LocalVariableParts, findings: Findings) -> LocalSource | None
         hint = "Take it from a skill parameter, from the service's response or from a topic"
         findings.error("AOS105", "this local variable has no source", span, hint)
     else:
-        findings.error("AOS106", "this local variable has more than one source", span, "Keep one of them")
+        given_at = [text.span for text in (parts.parameter_path, parts.topic) if text is not None]
+        given_at += [parts.service_span] if parts.service_span is not None else []
+        hint = "Keep one of them, or begin another local variable above this one"
+        findings.error("AOS106", "this local variable has more than one source", max(given_at), hint)
     return None

@@ -189,14 +189,14 @@ def _local_variable(section: Section, findings: Findings) -> documents.LocalVari
 
     kind = value("type")
     initial, code = section.last("initial_value", findings), section.last("code", findings)
+    from_service = section.last("from_ros_service_response", findings)
     parts = LocalVariableParts(
         name=section.value if section.value.text else None,
         span=section.span,
         type=normal_type(kind, findings) if kind else "",
         parameter_path=value("action_parameter"),
-        is_from_service=read_truth(
-            section.last("from_ros_service_response", findings), findings, otherwise=True
-        ),
+        is_from_service=read_truth(from_service, findings, otherwise=True),
+        service_span=from_service.span if from_service is not None else None,
         topic=value("topic"),
         message_type=value("message_type"),
         initial_value=initial.expression() if initial is not None else None,

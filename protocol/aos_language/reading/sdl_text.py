@@ -170,6 +170,7 @@ class _Scanner:
         self._current: Part | None = None
         self._comment: Span | None = None
         self._stray_line = -1
+        self._misplaced: set[str] = set()
         self._has_cpp = any(entry.body is Body.CPP for entry in grammar.values())
 
     def sections(self) -> list[Section]:
@@ -261,6 +262,7 @@ class _Scanner:
             section = Section(canonical, entry.body, at.span, value, [], parts=[])
             self._current = section
             self._sections.append(section)
+            self._misplaced = set()
         return True
 
     def _match(self, name: str, words: Grammar, at: Text) -> str:
@@ -276,7 +278,7 @@ class _Scanner:
         """The word a line that opens nothing was surely meant to be."""
         if name in _CODE_LABELS:
             return "", False
-        if (name.lower() in self._elsewhere or name in self._below) and not self._is_in_code():
+        if (name.lower() in self._elsewhere or name in self._below) and self._is_word(name):
             return "", False
         close = nearest(name, (*inner, *self._grammar))
         if not close or (self._is_in_code() and "_" not in close and len(close) < 8):
@@ -289,6 +291,10 @@ class _Scanner:
     def _is_in_code(self) -> bool:
         return self._current is not None and self._current.body is not Body.NONE
 
+    def _is_word(self, name: str) -> bool:
+        """Returns whether a word of the grammar is meant as such: in code one with an underscore is."""
+        return not self._is_in_code() or (name in self._below and ("_" in name or bool(self._misplaced)))
+
     def _is_in_rule(self) -> bool:
         """Returns whether the lines are a Python expression, in which `word:` begins no line."""
         current = self._current
@@ -297,12 +303,15 @@ class _Scanner:
     def _reports_elsewhere(self, name: str, at: Text) -> bool:
         """Complains about a section of another kind of file, or of none; its lines are left out."""
         place = self._elsewhere.get(name)
-        if place is None and (not self._is_in_code() or self._is_in_rule()):
+        if place is None and (self._is_word(name) or self._is_in_rule()):
             place = self._below.get(name)
         if place is None and self._is_in_code():
             return False
         hint = f"It belongs {place}" if place else f"The sections are {', '.join(self._grammar)}"
-        self._findings.error("AOS102", f"`{name}:` has no place here", at.span, hint)
+        words = set(re.findall(r"`\w+:`", hint))
+        if not words & self._misplaced:  # What belongs to one missing word is told once.
+            self._findings.error("AOS102", f"`{name}:` has no place here", at.span, hint)
+        self._misplaced = words
         self._current = Part(name, Body.CPP, at.span, Text("", at.span), [])
         return True
 
@@ -317,7 +326,9 @@ class _Scanner:
             where = f"after `{self._current.word}:`" if self._current else "before the first section"
             if line.span.line != self._stray_line + 1:
                 message, word = f"text {where} that belongs to no section", "_".join(line.text.split())
-                hint = f"Did you mean `{word}`?" if word[:-1] in self._grammar else ""
+                inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
+                of_code = "Write `code:` above it" if "code" in inner else ""
+                hint = f"Did you mean `{word}`?" if word[:-1] in self._grammar else of_code
                 self._findings.error("AOS104", message, line.strip().span, hint)
             self._stray_line = line.span.line
 

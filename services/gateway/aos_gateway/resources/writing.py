@@ -12,6 +12,7 @@ from aos_gateway.runs.run import Run
 from aos_gateway.runs.starting import StartedRun, start_system
 from aos_gateway.runs.uploads import ProjectEntry, files_of_upload, keep_project, kept_projects
 from aos_gateway.shared import Gateway
+from aos_language.follow_ups import told_once
 from aos_language.load import LoadedBundle, load_files, with_excerpts
 from aos_protocol.access import OPERATOR
 from aos_protocol.diagnostics import Diagnostic, has_errors
@@ -87,7 +88,7 @@ async def upload(gateway: Gateway, query: Named, body: bytes) -> ProjectEntry:
     """
     files, loaded = await _loaded(query.name, body)
     if loaded.project is None:
-        raise _refused(query.name, with_excerpts(loaded.diagnostics, files))
+        raise _refused(query.name, told_once(with_excerpts(loaded.diagnostics, files)))
     return await asyncio.to_thread(keep_project, gateway.folder, loaded.project.name, files)
 
 
@@ -95,7 +96,7 @@ async def check(gateway: Gateway, query: Named, body: bytes) -> Report:
     """Check a bundle, as `aos lint --no-compile` does. The body is an archive of documents, or one
     document."""
     files, loaded = await _loaded(query.name, body)
-    found = with_excerpts(loaded.diagnostics, files)
+    found = told_once(with_excerpts(loaded.diagnostics, files))
     project = loaded.project
     skills = tuple(skill.name for skill in project.skills) if project is not None else ()
     name = project.name if project is not None else ""

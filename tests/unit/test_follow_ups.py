@@ -1,0 +1,74 @@
+"""One mistake in documents is one finding of `aos lint`, and two mistakes are two."""
+
+import pytest
+from lint_texts import ENVIRONMENT, MAPPING, SKILL, found
+
+from aos_language.follow_ups import told_once
+
+TEXTS = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}
+SENSES = MAPPING.replace(
+    "response_rule: True", "response_rule: far_m > 2\nresponse: stayed\nresponse_rule: True"
+)
+SENSES += """
+local_variable: far_m
+from_ros_service_response: true
+code:
+far_m = __input.far
+"""
+TWO_RESPONSES = {
+    "mapping": SENSES,
+    "skill": SKILL.replace("= walked", "= AOS.Bernoulli(0.5) ? walked : stayed"),
+}
+
+
+def told(*changes: tuple[str, str, str], texts: dict[str, str] = TEXTS) -> list[str]:
+    """The findings once these texts have become others, each as its file, line, code and hint."""
+    changed = TEXTS | texts
+    for document, before, after in changes:
+        assert before in changed[document]
+        changed[document] = changed[document].replace(before, after, 1)
+    findings = told_once(found(**changed))
+    return [f"{one.span.file}:{one.span.line} {one.code} {one.hint}".rstrip() for one in findings]
+
+
+@pytest.mark.parametrize(
+    ("change", "place"),
+    [
+        (("mapping", "local_variable: far_m\n", ""), "walk.am:16 AOS106"),
+        (("mapping", "from_ros_service_response: true\n", ""), "walk.am:16 AOS105"),
+        (("mapping", "far_m = __input.far\n", ""), "walk.am:16 AOS105"),
+        (("mapping", "code:\nfar_m", "far_m"), "walk.am:18 AOS104"),
+        (("mapping", "local_variable: far_m", "local_variable: far"), "walk.am:19 AOS121"),
+        (("mapping", "parameter: steps\ncode:\n", "parameter: steps\n"), "walk.am:10 AOS104"),
+        (("mapping", "module_activation: skill\n", ""), "walk.am:7 AOS102"),
+        (("mapping", "response: walked\n", ""), "walk.am:2 AOS102"),
+        (("mapping", "response: walked\n", "response: walkd\n"), "walk.sd:10 AOS116"),
+        (("mapping", "response: stayed\n", "response: stayed\n" * 2), "walk.am:4 AOS105"),
+        (("skill", "dynamic_model:\n", ""), "walk.sd:8 AOS105"),
+        (("skill", "= AOS.Bernoulli(0.5)", "AOS.Bernoulli(0.5))"), "walk.sd:10 AOS108"),
+        (("environment", "project: hall", "project: hal"), "hall.ef:1 AOS113"),
+        (("environment", "action_parameter: int near\n", ""), "hall.ef:12 AOS103"),
+        (("environment", "define_type: Cell\n", ""), "hall.ef:4 AOS102"),
+        (("environment", "variable: int x 0", "variable: int y 0"), "hall.ef:9 AOS110"),
+    ],
+)
+def test_a_mistake_is_told_without_what_follows_from_it(change, place):
+    texts = TWO_RESPONSES
+    (only,) = told(change, texts=texts)
+    assert only.startswith(place)
+
+
+def test_a_name_that_nothing_declares_is_told_once_with_its_places():
+    (only,) = told(("environment", "state_variable: Cell second", "state_variable: Cell secnd"))
+    assert only.startswith("hall.ef:13 AOS110")
+    assert only.endswith("Also: line 23, walk.sd:9")
+
+
+def test_mistakes_that_have_nothing_to_do_with_each_other_are_told_together():
+    codes = told(
+        ("environment", "horizon: 4", "horizon: ten"),
+        ("skill", "state.first.x > 0", "state.third.y > 0"),
+        ("mapping", "from_ros_service_response: true\n", ""),
+        texts=TWO_RESPONSES,
+    )
+    assert [one.split()[1] for one in codes] == ["AOS106", "AOS105", "AOS110"]
