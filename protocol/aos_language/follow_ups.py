@@ -23,7 +23,7 @@ _OF_DECLARATIONS = re.compile(
 )
 _BESIDE = (
     *("AOS102", "AOS103", "AOS104", "AOS105", "AOS108", "AOS119", "AOS121", "AOS125", "AOS127", "AOS141"),
-    *("AOS149", "AOS201"),
+    *("AOS137", "AOS139", "AOS149", "AOS201"),
 )
 
 
@@ -48,6 +48,8 @@ def _name_key(one: Diagnostic) -> Hashable | None:
     names = _NAME.findall(one.message)
     if one.code not in _OF_NAMES or len(names) != 1:
         return None
+    if one.message.startswith("there is no `"):
+        return one.message.partition(" in ")[2], one.span.file
     if str(names[0]).startswith("___"):
         return str(names[0])
     is_local = one.code == "AOS123" or "local variable" in one.message
@@ -76,6 +78,7 @@ class _Causes:
         named = [one for one in errors if one.code in ("AOS110", "AOS116", "AOS126")]
         self._unknown = {name for one in named for name in _NAME.findall(one.message)}
         self._meant = {name for one in named for name in _MEANT.findall(one.hint)}
+        self._named_lines = {(one.span.file, one.span.line) for one in errors if one.code == "AOS110"}
         # What has a mend is read all the same.
         self._unread = [
             one
@@ -86,6 +89,13 @@ class _Causes:
         lost = [one for one in self._unread if _loses_a_declaration(one) or one.code == "AOS121"]
         self._has_lost = any(one.code != "AOS121" for one in lost)
         self._lost_words = {word for one in lost for word in _WORD.findall(one.excerpt)}
+        self._lost_words |= {
+            name
+            for one in errors
+            if one.message.startswith("unknown state variable")
+            and any(_is_near(two, one) for two in lost if two.code == "AOS103")
+            for name in _NAME.findall(one.message)
+        }
         self._of_file: dict[str, list[Diagnostic]] = {}
         for one in found:
             if one.is_error or one.code == "AOS108":
@@ -96,12 +106,15 @@ class _Causes:
         text = next(filter(_is_stray, self._of_file.get(one.span.file, [])), None)
         if text is None or not _lacks_a_model(one):
             return one
-        return msgspec.structs.replace(one, span=text.span, excerpt=text.excerpt)
+        hint = text.hint or "Write it above this text"
+        return msgspec.structs.replace(one, span=text.span, excerpt=text.excerpt, hint=hint)
 
     def explain(self, one: Diagnostic) -> bool:
         """Returns whether a finding follows from another."""
         others = self._of_file.get(one.span.file, [])
         if one.code == "AOS149" and self._unknown & set(_TEXT.findall(one.message)):
+            return True
+        if one.code == "AOS201" and self._unknown & set(_WORD.findall(one.message)):
             return True
         if one.code == "AOS119" and self._has_lost:
             return True
@@ -112,8 +125,10 @@ class _Causes:
                 return self._explains_unused(one)
             case "AOS118":
                 return any("has no rule" in other.message for other in others)
+            case "AOS114" if "has no monitor" in one.message:
+                return any("monitor" in other.message for other in self._unread)
             case "AOS114":
-                return "has no monitor" in one.message and any("monitor" in o.message for o in self._unread)
+                return ", and the mapping" in one.message
             case "AOS140":
                 return any(_is_of_locals(other) for other in self._unread)
             case "AOS110" | "AOS116" | "AOS123":
@@ -123,6 +138,8 @@ class _Causes:
     def _explains_unused(self, one: Diagnostic) -> bool:
         if "never sets" in one.message:
             return False
+        if (one.span.file, one.span.line) in self._named_lines:
+            return True
         is_unread = any(other.code == "AOS108" or _is_stray(other) for other in self._unread)
         words = {
             one.message.split()[-1],
@@ -144,15 +161,14 @@ class _Causes:
             _is_of_locals(o) or (o.code == "AOS121" and names & set(_NAME.findall(o.hint))) for o in others
         ):
             return True
+        skill = one.message.partition(" of ")[2].partition(" has ")[0] if one.code == "AOS116" else ""
+        if skill and any(o.span.file.startswith(skill) and "response" in o.message for o in self._unread):
+            return True
         if _MEANT.search(one.hint):
             return False
         if "local variable" in one.message:
             return any(other.code == "AOS121" and other.span.file.endswith(".ef") for other in self._unread)
-        skill = one.message.partition(" of ")[2].partition(" has ")[0] if one.code == "AOS116" else ""
-        return self._has_lost or any(
-            bool(skill) and other.span.file.startswith(skill) and "response" in other.message
-            for other in self._unread
-        )
+        return self._has_lost
 
 
 def _is_before(other: Diagnostic, one: Diagnostic) -> bool:
@@ -162,19 +178,27 @@ def _is_before(other: Diagnostic, one: Diagnostic) -> bool:
     is_earlier_place = is_earlier or (lines == 0 and other.span.column < one.span.column)
     match one.code:
         case "AOS102":
-            return is_earlier and "has no code" in other.message
+            return (is_earlier and "has no code" in other.message) or (lines < 0 and _is_stray(other))
         case "AOS103" | "AOS125":
             is_twice = "is given more than once" in one.message and "is given more than once" in other.message
             return "more than one source" in other.message or (is_twice and is_earlier)
+        case "AOS104" if "belongs to no `parameter:`" in one.message:
+            return other.code == "AOS102" and is_earlier
         case "AOS104" if _is_stray(one):
             return _lacks_a_model(other)
+        case "AOS137" | "AOS139":
+            return other.code == "AOS108" or (other.code == "AOS110" and "`__" in other.message)
         case "AOS104":
             is_comma = one.message.startswith("a comma is missing")
-            return is_comma and other.code == "AOS104" and other.message != one.message and lines in (0, 1)
+            is_bracket = other.code == "AOS104" and other.message != one.message
+            is_twice = other.message.startswith("the key") and lines == 1
+            is_next = lines in (0, 1) or "never closed" in other.message
+            return is_comma and (is_twice or (is_bracket and is_next))
         case "AOS108":
-            is_compiled = other.code == "AOS201" and lines == 0
+            is_compiled = other.code in ("AOS110", "AOS201") and lines == 0
             is_first = other.code == "AOS108" and is_earlier_place
-            return is_compiled or (is_first and not one.message.startswith("this "))
+            is_warning = not one.is_error
+            return (is_warning and is_compiled) or (is_first and not one.message.startswith("this "))
         case "AOS201":
             return other.code == "AOS201" and is_earlier_place and one.message.startswith("expected ")
         case "AOS121":
@@ -192,6 +216,10 @@ def _is_before(other: Diagnostic, one: Diagnostic) -> bool:
         case "AOS105" if other.span == one.span:
             return other.code == "AOS105" and other.message < one.message
     return _is_stray(other) and 0 < lines <= _NEAR_LINES
+
+
+def _is_near(other: Diagnostic, one: Diagnostic) -> bool:
+    return other.span.file == one.span.file and 0 < one.span.line - other.span.line <= _NEAR_LINES
 
 
 def _is_stray(one: Diagnostic) -> bool:
