@@ -1,5 +1,3 @@
-"""A question whose router is gone is lost, though the next router is there and its key is served again."""
-
 import asyncio
 import os
 import subprocess

@@ -1,5 +1,3 @@
-"""Following decisions: history first, then live, each record once and in order, to the end of the mission."""
-
 import asyncio
 from collections.abc import AsyncIterator
 

@@ -1,5 +1,3 @@
-"""ROS 2 over Zenoh: topics, services and actions, between nodes of ours and with others' implementation."""
-
 import asyncio
 import importlib.util
 import os

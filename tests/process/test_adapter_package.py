@@ -1,5 +1,3 @@
-"""The distribution `aos-adapter` from its wheel, in an environment with what it needs and nothing else."""
-
 import json
 import os
 import shutil

@@ -1,5 +1,3 @@
-"""The belief with which a mission begins: kept, some time later, given what is known; against enumeration."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Continuous draws behind thresholds: states are listed with estimated probabilities; nothing is proven."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Loops that draw are exact: closed forms, in beliefs, steps, sensors, corrections and `aos plan --exact`."""
-
 import json
 from fractions import Fraction
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""The beliefs of an engine where skills ended unobserved: one cause for each row, and the cautious belief."""
-
 import os
 import signal
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""The words of `aos lint` and `aos plan` on a model that compiles: faults, and what no action leads to."""
-
 import asyncio
 import json
 from collections import Counter

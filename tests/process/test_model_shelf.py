@@ -1,5 +1,3 @@
-"""Models that become ready while the mission takes one: which it gets, with which belief, who closes what."""
-
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

@@ -1,5 +1,3 @@
-"""The page in a browser: missions that are over and that run, all views, narrow screens, lost connections."""
-
 import json
 import os
 import re

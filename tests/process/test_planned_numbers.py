@@ -1,5 +1,3 @@
-"""Decisions over observations that are numbers, held against the best value, which is computed on a grid."""
-
 import re
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""SARSOP at every decision: true bounds, repeatable, kept over a mission; refused where there are none."""
-
 from pathlib import Path
 
 import pytest

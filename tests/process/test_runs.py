@@ -1,5 +1,3 @@
-"""Runs of aos-up beside one another: who gets the port, what `latest` is, and who finds a living mission."""
-
 import json
 import os
 import queue

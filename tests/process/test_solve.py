@@ -1,5 +1,3 @@
-"""Solving before the mission: bounds that are true, policies that keep them, and C that follows policies."""
-
 import asyncio
 import re
 import subprocess

@@ -1,5 +1,3 @@
-"""`aos solve` as a person calls it, and what the other commands and the deploy file do with its policy."""
-
 import json
 import os
 from pathlib import Path

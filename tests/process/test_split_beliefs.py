@@ -1,5 +1,3 @@
-"""Beliefs whose steps have too many outcomes to list: close to the exact ones, and the same after a kill."""
-
 import random
 from pathlib import Path
 

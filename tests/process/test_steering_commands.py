@@ -1,5 +1,3 @@
-"""The commands with which an operator steers a system that runs, and one whose solver is killed meanwhile."""
-
 import asyncio
 import json
 import subprocess

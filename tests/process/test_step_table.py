@@ -1,5 +1,3 @@
-"""A model with few states is stepped by a table, with the odds of its documents; any other by their code."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""The belief of a model that takes over a mission: import, replay or projection, and what is told of it."""
-
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path

@@ -1,5 +1,3 @@
-"""Variables of C++ that are read before they have a value: which are told, and which code is left alone."""
-
 import pytest
 from lint_texts import SKILL, finding_texts
 

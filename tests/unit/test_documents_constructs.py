@@ -1,5 +1,3 @@
-"""Every construct of the JSON dialects in the typed model: the language page's example, and what it lacks."""
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,5 +1,3 @@
-"""Model against reality: what the sequential tests find, how fast, and their silence for a right model."""
-
 import math
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The endings of a mission: by what special states say of it, in all dialects, and by what a belief holds."""
-
 from pathlib import Path
 
 import msgspec

@@ -1,5 +1,3 @@
-"""One mistake in documents is one finding of `aos lint`, and two mistakes are two."""
-
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, found
 

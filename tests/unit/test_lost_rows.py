@@ -1,5 +1,3 @@
-"""A run whose journal has lost its last rows, as a write-ahead log that was cut off: it is not taken up."""
-
 import random
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Deploy files that nobody writes on purpose: without end, with numbers and characters that nothing has."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""Problem files of other planners: read, refused at the right place, and written so that they read back."""
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Numbers beside a response in the documents: how they are read, emitted, and taken from local variables."""
-
 import pytest
 from mappings import mapping_text
 from scripted_models import json_text, lowered, text_project

@@ -1,5 +1,3 @@
-"""The words of documents on what a real run tells: local variables in model code, low-level assignments."""
-
 import pytest
 from texts import encoded
 

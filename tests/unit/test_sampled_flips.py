@@ -1,5 +1,3 @@
-"""The interval in which a choice changes, as far as margins with errors tell, and the error of a value."""
-
 import pytest
 
 from aos_solver.study.flips import places_beside, sampled_flip

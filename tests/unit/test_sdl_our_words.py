@@ -1,5 +1,3 @@
-"""The words that SDL has here and AOS 2.0 has not: read where they are right, refused in place where not."""
-
 import pytest
 
 from aos_language.findings import Findings

@@ -1,5 +1,3 @@
-"""Templates that were compiled are kept beside Python's compiled modules, and used while they are current."""
-
 import sys
 from pathlib import Path
 
