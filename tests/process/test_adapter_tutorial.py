@@ -59,8 +59,8 @@ def test_a_new_external_adapter_runs_as_it_is():
     arguments = ["fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]
     with subprocess.Popen([BIN / "aos-up", *arguments], stdout=subprocess.PIPE, text=True) as up:
         assert up.stdout is not None
-        while not Path("runs/latest/run.json").exists():
-            assert up.stdout.readline()
+        waits = "waiting, 30 s at most: look, take: no adapter answers calls of /look, /take\n"
+        assert any(line == waits for line in up.stdout)
         endpoint = re.search(r'"endpoint": "(\S+)"', Path("runs/latest/run.json").read_text())
         assert endpoint is not None
         variables = {

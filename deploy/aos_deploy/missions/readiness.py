@@ -55,14 +55,19 @@ async def until_skills_can_run(
 
     def not_all(state: MappingState, why: str) -> DeployError:
         message = f"not every skill can be run{why}: {_reasons(state, state.unavailable)}"
-        return DeployError(message, code="AOS807", hint=_hint(supervisor, deployment))
+        skills = project.project.skills
+        away = {skill.mapping.activation.path for skill in skills if skill.name in state.unavailable}
+        return DeployError(message, code="AOS807", hint=_hint(supervisor, deployment, away))
 
     settled_s = min(longest_s, _SETTLED_S)
     try:
         try:
             await decided_within(settled_s)
         except BusError:
-            for text in (*await _served_by_several(supervisor), *await _lacking(supervisor)):
+            remarks = [*await _served_by_several(supervisor), *await _lacking(supervisor)]
+            if newest is not None and not remarks and settled_s < longest_s:
+                remarks = [f"waiting, {longest_s:g} s at most: {_reasons(newest, newest.unavailable)}"]
+            for text in remarks:
                 report(Told(text))
             if settled_s == longest_s:
                 raise
@@ -154,15 +159,17 @@ def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str
     return tuple(remarks)
 
 
-def _hint(supervisor: Supervisor, deployment: Deployment) -> str:
+def _hint(supervisor: Supervisor, deployment: Deployment, away: Collection[str]) -> str:
+    """The bindings, and what is to be seen of the adapters that are to serve the paths that are away."""
     bound = [f"{path} to {plan.name}" for plan in deployment.adapters for path in plan.bind]
     bound += [f"all others to {plan.name}" for plan in deployment.adapters if plan.serves_others]
+    meant = [plan for plan in deployment.adapters if plan.serves_others or set(plan.bind) & set(away)]
     lines = [
         f"The deploy file binds {', '.join(bound)}"
         if bound
         else "The deploy file binds nothing: see `bind:`",
-        *(f"{plan.name} is external: start it" for plan in deployment.adapters if not plan.is_process),
-        *(supervisor.look_at_log(plan.name) for plan in deployment.adapters if plan.is_process),
+        *(f"{plan.name} is external: start it" for plan in meant if not plan.is_process),
+        *(supervisor.look_at_log(plan.name) for plan in meant if plan.is_process),
         "Or play without a robot: aos-up --model",
     ]
     return "\n    ".join(lines)
