@@ -21,6 +21,7 @@ from aos_protocol.messages import (
 from aos_runtime.disk.journal import Journal
 
 SKILLS = ("look", "go(to=hall)", "go(to=lab)", "pick", "put", "wait")
+PREDICTED = (PredictedObservation("seen", 0.8), PredictedObservation("unseen", 0.2))
 PLACES = ("hall", "lab", "yard", "office")
 
 
@@ -47,7 +48,7 @@ def write_long_run(runs: Path, steps: int, *also: Marginal, has_ended: bool = Tr
                     ActionValue(each, draws.gauss(4, 3), draws.randrange(2000), 0.1 * draws.random())
                     for each in SKILLS
                 ),
-                "predicted": (PredictedObservation("seen", 0.8), PredictedObservation("unseen", 0.2)),
+                "predicted": PREDICTED,
                 "planner": "pomcp",
                 "searches": (SearchMade("pomcp", (2000,), 0, {"put": "the arm is off"}),),
                 "set_aside": {"wait": "wait is left out by ana"},

@@ -14,7 +14,7 @@ from page_sources import installed_sources
 from playwright.sync_api import Browser, Page, Route, expect, sync_playwright
 from processes import HANG_S
 
-from aos_protocol.messages import Marginal
+from aos_protocol.messages import Marginal, PredictedObservation
 
 ROOT = Path(__file__).resolve().parents[2]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -316,6 +316,8 @@ def test_long_names_are_told_whole_and_widen_no_screen(
         f"inspect_the_shelf(target=shelf_in_the_north_eastern_corridor_{n:03d})" for n in range(200)
     )
     monkeypatch.setattr(long_run, "SKILLS", actions)
+    texts = tuple(PredictedObservation(f"{long}_{number}", 0.001) for number in range(1000))
+    monkeypatch.setattr(long_run, "PREDICTED", texts)
     certain = (Marginal(f"{long}_{number}", {f"value_of_{long}": 1.0}) for number in range(30))
     name = write_long_run(served.folder / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
     page = opened(browser, served, 390)
@@ -325,6 +327,9 @@ def test_long_names_are_told_whole_and_widen_no_screen(
         for screen in screens(page):
             wait_for_width(page)
             kept(page, f"long-{screen}{view.replace('/', '-')}")
+        if view == "/model":
+            expect(page.locator(".expected li")).to_have_count(12)
+            expect(page.locator(".expected li").last).to_have_text("all others120/120")
     is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
     for _ in screens(page):
         expect(page.locator(".value-name")).to_have_count(9)

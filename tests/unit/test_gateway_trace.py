@@ -1,5 +1,6 @@
 from typing import Any
 
+import pytest
 from decision_records import decision_record
 
 from aos_gateway.runs.trace import Step, Steps, steps_of
@@ -68,6 +69,14 @@ def test_a_row_has_what_was_expected_and_what_was_seen():
     row = row_of(decided(1, predicted=predicted), observed(1, "no", predicted=predicted, surprise=1.386))
     assert (row.predicted, row.seen, row.expected) == ({"yes": 0.75, "no": 0.25}, "no", 0.25)
     assert (row.status, row.surprise) == ("observed", 1.386)
+
+
+def test_of_thousands_of_responses_the_likeliest_are_listed_and_all_others_are_one():
+    predicted = tuple(PredictedObservation(f"text {n}", n / 4950) for n in range(100))
+    row = row_of(decided(1, predicted=predicted), observed(1, "text 2", predicted=predicted))
+    assert list(row.predicted) == [*(f"text {n}" for n in range(99, 49, -1)), "…"]
+    assert sum(row.predicted.values()) == pytest.approx(1, abs=0.005)
+    assert row.expected == 0.0004
 
 
 def test_a_skill_that_failed_has_a_status_and_nothing_seen():

@@ -13,6 +13,7 @@ from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, Ma
 
 _DIGITS = 4
 _SHOWN_VALUES = 8
+_SHOWN_RESPONSES = 50
 _CERTAIN = 1e-9
 _KEPT_TRACES = 8
 
@@ -34,8 +35,8 @@ class Step(msgspec.Struct, omit_defaults=True):
 
     `sequence` is that of the newest record about it. `value` and `error` are of the chosen action, `second`
     is the best of the others, `margin` is how much better the chosen one is, and `is_proven` says that it is
-    proven to be no worse. `predicted` are the responses
-    with their probabilities, `seen` is the response, `expected` its probability. `belief` are the variables
+    proven to be no worse. `predicted` are the likeliest responses with their probabilities, and `…` stands
+    for all others; `seen` is the response, `expected` its probability. `belief` are the variables
     whose distribution is another one than before this decision, `after` those that the outcome has changed:
     value to probability, with `…` for all values that are not listed, or the quantiles of a number, as in
     Marginal. `drift` are the alarms that stand of
@@ -127,7 +128,7 @@ class Steps:
             planning_s=_short(record.planning_s) or 0.0,
             revision=record.revision,
             chosen_by="" if record.chosen_by == "planner" else record.chosen_by,
-            predicted={seen.response: _probability(seen.probability) for seen in record.predicted},
+            predicted=_likeliest(record),
         )
         if chosen is not None:
             row.value, row.error = _short(chosen.q), _short(chosen.stderr)
@@ -150,7 +151,9 @@ class Steps:
         assert outcome is not None
         row.sequence = record.sequence
         row.status, row.seen = outcome.status, outcome.response
-        row.expected = row.predicted.get(outcome.response) if outcome.response else None
+        predicted = {each.response: each.probability for each in record.predicted}
+        if outcome.response in predicted:
+            row.expected = _probability(predicted[outcome.response])
         row.surprise, row.impossible = _short(record.surprise) or 0.0, record.is_impossible
         row.stopped_by, row.remark, row.drift = outcome.stopped_by, record.remark, record.drift
         row.fault = outcome.fault.message if outcome.fault is not None else ""
@@ -203,6 +206,14 @@ def _is_proven(chosen: ActionValue, second: ActionValue) -> bool:
     """Returns whether what is proven of both actions tells that the chosen one is no worse."""
     least, most = chosen.at_least, second.at_most
     return least is not None and most is not None and least >= most
+
+
+def _likeliest(record: DecisionRecord) -> dict[str, float]:
+    likely = sorted(record.predicted, key=lambda each: -each.probability)
+    found = {each.response: _probability(each.probability) for each in likely[:_SHOWN_RESPONSES]}
+    if rest := likely[_SHOWN_RESPONSES:]:
+        found["…"] = _probability(sum(each.probability for each in rest))
+    return found
 
 
 def _told(marginal: Marginal) -> Told:

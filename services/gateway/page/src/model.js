@@ -4,6 +4,8 @@ import { briefAction, chance, percent, plain } from "./format.js";
 import { alarms, at, points, selectStep, steps } from "./store.js";
 import { summarised } from "./ribbons.js";
 
+const SHOWN = 12;
+
 export const Model = () => html`<div class="columns even">
   <${Alarms} />
   <${Card} id="expected" title="Expected against seen" note="The ring is how often the model expected a response, the dot how often it came; the bar holds the true frequency with 95 %.">
@@ -37,15 +39,25 @@ function counted() {
     if (!skills.has(step.skill)) skills.set(step.skill, { uses: 0, responses: new Map() });
     const skill = skills.get(step.skill);
     skill.uses++;
-    const names = new Set([...Object.keys(step.predicted ?? {}), step.seen]);
-    for (const name of names) {
+    const predicted = step.predicted ?? {};
+    const came = "…" in predicted && !(step.seen in predicted) ? "…" : step.seen;
+    for (const name of new Set([...Object.keys(predicted), came])) {
       const both = skill.responses.get(name) ?? { expected: 0, seen: 0 };
-      both.expected += step.predicted?.[name] ?? 0;
-      if (name === step.seen) both.seen++;
+      both.expected += predicted[name] ?? 0;
+      if (name === came) both.seen++;
       skill.responses.set(name, both);
     }
   }
   return skills;
+}
+
+// The responses that were expected most. Which are shown does not depend on what came: else each rare one that came would look wrong.
+function shown(responses) {
+  const sorted = [...responses].sort((a, b) => (a[0] === "…") - (b[0] === "…") || b[1].expected - a[1].expected);
+  if (sorted.length <= SHOWN) return sorted;
+  const others = sorted.splice(SHOWN - 1).map(([, each]) => each);
+  const sum = (of) => others.reduce((all, each) => all + each[of], 0);
+  return [...sorted, ["all others", { expected: sum("expected"), seen: sum("seen") }]];
 }
 
 // Wilson's interval of a frequency.
@@ -66,7 +78,7 @@ function Expected() {
     ${!skills.size && html`<p class="empty">Nothing has been observed yet.</p>`}
     ${[...skills].map(([name, { uses, responses }]) => html`<div class="skill" key=${name}>
       <h3>${name} <span class="muted">${uses} ${uses === 1 ? "use" : "uses"}</span></h3>
-      <ul>${[...responses].sort((a, b) => b[1].seen - a[1].seen).map(([response, { expected, seen }]) => {
+      <ul>${shown(responses).map(([response, { expected, seen }]) => {
         const [low, high] = interval(seen, uses);
         const share = expected / uses;
         const isOff = share < low || share > high;

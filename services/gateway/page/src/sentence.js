@@ -32,7 +32,7 @@ function worth(step) {
 }
 
 function came(step) {
-  const likely = Object.entries(step.predicted ?? {}).sort((a, b) => b[1] - a[1]).slice(0, 3);
+  const likely = Object.entries(step.predicted ?? {}).filter(([response]) => response !== "…").sort((a, b) => b[1] - a[1]).slice(0, 3);
   const expected = likely.map(([response, share], i) => html`${i ? ", " : ""}<span class="response">${response}</span> ${percent(share)}`);
   if (!step.status) {
     const how = progress.value;
