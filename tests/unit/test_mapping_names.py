@@ -123,6 +123,7 @@ def test_what_python_allows_is_not_told(texts):
         ({"field": "itm"}, "sell.am:12:1", "`itm`. Did you mean `item`?"),
         ({"code": "answer = np.mean(__input.answer)"}, "sell.am:20:10", "`np`."),
         ({"code": "if __input.ok:\n    answer = reply"}, "sell.am:21:14", "`reply`."),
+        ({"code": "try:\n    answer = reply\nexcept KeyError:\n    pass"}, "sell.am:21:14", "`reply`."),
         ({"initial": "heard"}, "sell.am:24:16", "`heard`."),
         ({"topic": "return input_.text"}, "sell.am:26:8", "`input_`. Did you mean `__input`?"),
                 ({"low_level": LOW_LEVEL.replace("import math\n", "")},
@@ -175,3 +176,12 @@ def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning():
 def test_the_function_input_in_the_place_of_the_message_is_told():
     (only,) = finding_texts(topic="return input.text")
     assert "`input` is a function of Python, which has no message. Write `__input`" in only
+
+
+def test_what_a_module_of_python_does_not_have_is_told():
+    (of_rule,) = finding_texts(rule="json.loas(answer)")
+    assert of_rule == "sell.am:3:21: warning: the module json has no `loas`. Did you mean `loads`?"
+    code = "import math\ntry:\n    answer = math.sqr(2)\nexcept KeyError:\n    answer = 2"
+    (of_code,) = finding_texts(code=code)
+    assert of_code.startswith("sell.am:22:19: warning: the module math has no `sqr`.")
+    assert not finding_texts(code=code.replace("KeyError", "AttributeError"))

@@ -1,7 +1,8 @@
 """The names that the Python of a mapping uses: is there something behind each when it runs?
 
 A name that nothing gives is an error, for it is a NameError in every run that comes to it. What an `import *`
-brings nobody knows here, so there only names that are nearly known are told. Code in a `try` is ready for it.
+brings nobody knows here, so there only names that are nearly known are told. Code in a `try` that catches
+NameErrors is ready for them.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
+from importlib import import_module
 
 import msgspec
 
@@ -34,6 +36,8 @@ _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """The names by which rules read how a skill has failed."""
 _OF_MESSAGES = (".msg", ".srv", ".action")
 _INPUT, _PARAMETERS = "__input", "parameters"
+_LOOKED_INTO = frozenset({"math", "json", "random", "re", "statistics", "time"})
+"""Modules that are imported to see what they have: they do nothing when they are."""
 _BUILT_IN_NAMES = frozenset(dir(builtins))
 _NEARLY = 0.85
 """A share of a name, from 0 to 1: with so much of a known one it is that one, mistyped."""
@@ -46,8 +50,8 @@ class PythonNames(msgspec.Struct, frozen=True):
 
     `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
     those of the skill. `is_open` where an `import *` brings names that nobody knows here. `of_end` are those
-    that say how the skill has ended, `messages` the classes that are imported from modules of messages, and
-    `enum_values` those of the model, each with its enum.
+    that say how the skill has ended, `messages` the classes that are imported from modules of messages,
+    `enum_values` those of the model, each with its enum, and `modules` what is imported as a whole.
     """
 
     known: frozenset[str]
@@ -57,6 +61,7 @@ class PythonNames(msgspec.Struct, frozen=True):
     of_end: frozenset[str] = frozenset()
     messages: frozenset[str] = frozenset()
     enum_values: Mapping[str, str] = {}
+    modules: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, mapping: AbstractionMapping, model: SkillModel | None, scope: Scope) -> PythonNames:
@@ -79,6 +84,9 @@ class PythonNames(msgspec.Struct, frozen=True):
             of_end=of_end,
             messages=frozenset(messages),
             enum_values=scope.enum_values,
+            modules=frozenset(name for item in imports if not item.module for name in item.names).difference(
+                local_names
+            ),
         )
 
     @classmethod
@@ -164,9 +172,10 @@ def check_names(
                 mend = Mend(span, len("input"), _INPUT)
                 message = "`input` is a function of Python, which has no message"
                 findings.error("AOS121", message, span, f"Write `{_INPUT}`", mend)
+    _check_modules(snippet, tree, names, findings)
     known = names.known | bound
     is_open = names.is_open or "*" in known
-    for node in nodes_read(tree):
+    for node in nodes_read(tree, "NameError"):
         if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load) or node.id in known:
             continue
         span = place_in(snippet, node)
@@ -180,6 +189,23 @@ def check_names(
         candidates, hint = (() if hint else known_here), hint or _local_variables(names)
         message = f"no local variable gives `{node.id}`"
         findings.unknown(node.id, candidates, message, span, hint, severity=severity)
+
+
+def _check_modules(snippet: Snippet, tree: ast.AST, names: PythonNames, findings: Findings) -> None:
+    """Warns (AOS110) of what a module of Python's own does not have."""
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.Import)]
+    own = {alias.name for node in imports for alias in node.names if alias.asname is None}
+    for node in nodes_read(tree, "AttributeError"):
+        match node:
+            case ast.Attribute(value=ast.Name(id=module) as owner, attr=name) if (
+                module in own | names.modules
+            ):
+                has = dir(import_module(module)) if module in _LOOKED_INTO else [name]
+                if name not in has:
+                    at = place_in(snippet, owner)
+                    span = msgspec.structs.replace(at, column=at.column + len(module) + 1)
+                    message = f"the module {module} has no `{name}`"
+                    findings.unknown(name, has, message, span, severity=Severity.WARNING)
 
 
 def check_fields_set(
@@ -213,16 +239,24 @@ def _bound_names(tree: ast.AST) -> frozenset[str]:
     return frozenset(bound)
 
 
-def nodes_read(tree: ast.AST) -> Iterator[ast.AST]:
-    """The nodes of code, but for those in a `try` that catches: that is ready for their errors."""
+def nodes_read(tree: ast.AST, error: str = "") -> Iterator[ast.AST]:
+    """The nodes of code, but for those in a `try` that catches such errors, or any: it is ready for them."""
     waiting = [tree]
     while waiting:
         node = waiting.pop()
         yield node
         skipped: list[ast.stmt] = []
-        if isinstance(node, ast.Try | ast.TryStar) and node.handlers:
+        if isinstance(node, ast.Try | ast.TryStar) and any(_catches(each, error) for each in node.handlers):
             skipped = node.body
         waiting += [child for child in ast.iter_child_nodes(node) if child not in skipped]
+
+
+def _catches(handler: ast.ExceptHandler, error: str) -> bool:
+    """Returns whether an error, or any, is caught. What has no name of Python's own may catch it."""
+    if handler.type is None or not error:
+        return True
+    named = {node.id for node in ast.walk(handler.type) if isinstance(node, ast.Name)}
+    return not named <= _BUILT_IN_NAMES or bool(named & {error, "Exception", "BaseException"})
 
 
 def _hint(name: str, names: PythonNames) -> str:
