@@ -221,7 +221,6 @@ def _is_bundle(path: Path) -> bool:
 
 
 def _texts(node: YamlMap, key: str) -> Iterator[tuple[str, Span]]:
-    """The texts of a list and where each stands."""
     listed = node.entries.get(key)
     for item in listed.items if isinstance(listed, YamlList) else ():
         if isinstance(item, YamlScalar) and isinstance(item.value, str):

@@ -94,8 +94,6 @@ class StudiedRun:
 
 
 class _Read:
-    """The mission as a study reads it."""
-
     def __init__(self, studied: StudiedRun) -> None:
         self._studied = studied
 

@@ -217,7 +217,6 @@ def _check_installed() -> None:
 
 
 def _experiments(where: str = "deploy/experiments") -> dict[str, Path]:
-    """The shipped experiments by name."""
     return {path.stem: path for path in sorted(shipped(where).glob("*.yaml"))}
 
 

@@ -240,7 +240,6 @@ def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Po
 
 
 def _write_graph(drawn: PolicyGraph, graph: Path | None, header: Path | None) -> list[str]:
-    """The files that were written."""
     written = []
     if graph is not None:
         text = graphviz(drawn)

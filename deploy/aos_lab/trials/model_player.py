@@ -38,12 +38,7 @@ class ModelMissions(msgspec.Struct, frozen=True):
     @classmethod
     def of(cls, deployment: Deployment, world: Deployment | None = None) -> ModelMissions:
         """Those of a deployment; DocumentError with all that is wrong with its documents."""
-        mission = deployment.file.mission
-        limits = MissionLimits(
-            goal_probability=mission.goal_probability,
-            step_limit=mission.step_limit,
-            stop_below_value=mission.stop_below_value,
-        )
+        limits = msgspec.convert(deployment.file.mission, MissionLimits, from_attributes=True)
         played = project_of(world, plays_world=True) if world is not None else None
         return cls(project_of(deployment), limits, _search(deployment), played)
 

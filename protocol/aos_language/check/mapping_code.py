@@ -138,7 +138,6 @@ def _check_rules(
 def _check_expression(
     snippet: Snippet, names: python_names.PythonNames, findings: Findings, severity: Severity = Severity.ERROR
 ) -> ast.AST | None:
-    """Parses an expression and looks at its names."""
     tree = parsed(snippet, "eval", findings)
     if tree is not None:
         python_names.check_names(snippet, tree, names, findings, severity)

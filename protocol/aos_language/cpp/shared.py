@@ -311,7 +311,6 @@ def _declared(node: tree_sitter.Node) -> str:
 
 
 def _declarators(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
-    """A declarator and those within it."""
     while node is not None:
         yield node
         inner = node.child_by_field_name("declarator")

@@ -123,7 +123,6 @@ def _is_of_compile_time(function: tree_sitter.Node) -> bool:
 
 
 def _parent(node: tree_sitter.Node) -> tree_sitter.Node:
-    """The parent of a node below the root."""
     assert node.parent is not None
     return node.parent
 

@@ -44,8 +44,6 @@ async def serve(service: Service[Settings]) -> None:
 
 
 class _Registry:
-    """The answers of the registry service."""
-
     def __init__(self, service: Service[Settings], catalogue: Catalogue) -> None:
         self._service = service
         self._bus = service.bus

@@ -98,7 +98,6 @@ def refused(request: Activate, error: AosError, now_ns: int) -> Outcome:
 
 
 def _fault_of(error: AosError) -> Fault:
-    """An exception as a message."""
     return Fault(error.code, error.message, error.hint, error.diagnostics)
 
 

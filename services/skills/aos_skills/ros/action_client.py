@@ -88,7 +88,6 @@ class ActionClient:
         self._takers[action][goal] = take
 
     async def _ask(self, action: str, part: str, fields: Fields, type_name: str, timeout_s: float) -> Fields:
-        """The answer of one of the services that an action is made of."""
         request = ServiceRequest(f"{action}/_action/{part}", fields, timeout_s, type_name)
         return await self._node.call(request)
 

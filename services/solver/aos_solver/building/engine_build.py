@@ -151,7 +151,6 @@ def _digest_of_sources(compiler: Compiler, stamps: tuple[tuple[str, int, int], .
 
 
 def _part(compiler: Compiler, part: str, *options: str) -> list[str]:
-    """The command that compiles a part of the engine."""
     return compiler.compilation(str(SOURCES / f"{part}.cpp"), object_of(part), str(SOURCES), *options)
 
 

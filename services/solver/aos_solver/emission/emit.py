@@ -169,7 +169,6 @@ def _own_names(program: Program) -> dict[str, str]:
 
 
 def _facts(program: Program) -> dict[str, bool]:
-    """The facts of aos::ProjectDefaults."""
     return {
         "draws_defaults": program.draws_defaults,
         "has_rollout_policy": any(skill.rollout_policy for skill in program.skills),

@@ -61,8 +61,6 @@ class Enum(msgspec.Struct, frozen=True):
 
 
 class _Typed(msgspec.Struct, frozen=True):
-    """A name with its C++ type."""
-
     name: str
     type: str
 

@@ -70,8 +70,6 @@ def traced(emitted: EmittedModel) -> TracedModel:
 
 
 class _Tracing:
-    """The marks of one piece."""
-
     def __init__(self, piece: Piece, places: int) -> None:
         self._piece = piece
         self._places = places

@@ -137,7 +137,6 @@ class Valuing:
         return _values_of(plan)[action]
 
     def _with(self, share: float) -> Search:
-        """The search with a share of its budget."""
         if self._search.time_s is not None:
             return msgspec.structs.replace(self._search, time_s=self._search.time_s * share)
         return msgspec.structs.replace(

@@ -138,7 +138,6 @@ class Types:
         return f"aos::{kind.title()}<aos::Vector<{element}, {capacity}>>"
 
     def _over_enum(self, enum: str, element: str, span: Span) -> str:
-        """The type of an array over an enum."""
         if enum not in self._enums:
             known = ", ".join(sorted(self._enums)) or "none"
             message = f"`{enum}` is no enum, and cannot be what an array is indexed by"
