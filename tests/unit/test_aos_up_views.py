@@ -77,6 +77,11 @@ def test_a_decision_without_simulations_says_that_nothing_was_searched():
     assert decision_line(record).endswith("]  sarsop without a search in 0.25 s")
 
 
+def test_a_decision_that_was_prepared_for_long_says_so():
+    record = replace(DECISION, planning_s=8.4, preparation_s=8.35)
+    assert decision_line(record).endswith(" in 8.40 s by 2 threads, 8.35 of them preparation")
+
+
 def test_a_decision_for_less_than_the_best_value_says_why():
     serve = ActionValue("serve", 5.0, 100, 0.5)
     why = "serve cannot be chosen now: no adapter answers calls of /serve"

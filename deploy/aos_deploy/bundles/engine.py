@@ -17,6 +17,9 @@ from aos_solver.building.build import BuildKind
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 
+_TOLD_EVERY_S = 3.0
+"""So often a command tells how far the engine is."""
+
 
 @asynccontextmanager
 async def engine_of_bundle(
@@ -47,6 +50,8 @@ async def engine_of_bundle(
             kind=kind,
         )
         async with await Engine.start(built, seed=seed) as engine:
+            engine.on_progress = lambda progress: typer.echo(f"aos: {progress.text}", err=True)
+            await engine.tell_progress(_TOLD_EVERY_S)
             yield engine
             for finding in with_excerpts(await endless_findings(engine), planned.files):
                 typer.echo(render(finding), err=True)

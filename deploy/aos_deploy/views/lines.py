@@ -15,6 +15,7 @@ _SHOWN_MOVES = 8
 _SHOWN_ACTIONS = 6
 """The best of them; with more, a line of a terminal becomes a paragraph. `--json` has all."""
 
+_SHOWN_PREPARATION_S = 0.1
 _LONGEST_WORDS = 600
 """A robot's error may have kilobytes. With hints, and errors of several skills, ours have less."""
 
@@ -156,12 +157,14 @@ def effort_text(record: messages.DecisionRecord) -> str:
     """Says who decided, and with how much work; short."""
     if record.chosen_by in ("operator", "script"):
         return record.why
+    took, prepared_s = f"in {record.planning_s:.2f} s", record.preparation_s
+    prepared = f", {prepared_s:.2f} of them preparation" if prepared_s > _SHOWN_PREPARATION_S else ""
     if not record.simulations:
         by = f"{record.planner} without a search" if record.planner else ""
-        return f"{by} in {record.planning_s:.2f} s"
+        return f"{by} {took}{prepared}"
     by = f"{record.planner}, " if record.planner else ""
     threads = f" by {record.threads} threads" if record.threads > 1 else ""
-    return f"{by}{record.simulations} simulations in {record.planning_s:.2f} s{threads}"
+    return f"{by}{record.simulations} simulations {took}{threads}{prepared}"
 
 
 def risk_text(constraint: messages.ConstraintRisk) -> str:

@@ -116,6 +116,26 @@ TEST("A limit that is met leaves nothing listed, and is told") {
   EXPECT(!work.obstacle().empty());
 }
 
+TEST("A list that will take far more work than its limit is given up early") {
+  constexpr std::uint32_t states = 20'000;
+  Problem many = units::world(states, 1, 0.9);
+  many.starts.clear();
+  for (std::uint32_t state = 0; state < states; ++state) many.starts.push_back({state, 1.0 / states});
+  const Belief belief = initial_belief(many);
+  static std::uint64_t listed = 0;
+  aos::progress::between = std::chrono::milliseconds{0};
+  aos::progress::tell_to([](const char*, std::uint64_t done, std::uint64_t) { listed = std::max(listed, done); });
+  Space little{aos::ListLimits{.work = states / 5}};
+  EXPECT(!little.reach(belief));
+  EXPECT_EQUAL(little.obstacle(), std::string{"there are too many outcomes to list"});
+  EXPECT_EQUAL(listed, 0u);
+  Space nearly{aos::ListLimits{.work = 2 * states / 3}};
+  EXPECT(!nearly.reach(belief));
+  EXPECT(listed > states / 4);
+  aos::progress::tell_to(nullptr);
+  aos::progress::between = std::chrono::milliseconds{250};
+}
+
 TEST("A later try is for half as many states in the belief, and lists fewer states than the first one") {
   Problem problem = units::corridor(30'000, 0.9);
   for (std::uint32_t cell = 0; cell < 30'000; ++cell) units::row(problem, cell, 1) = {{1.0, cell, 0, 0.0}};  // no way back

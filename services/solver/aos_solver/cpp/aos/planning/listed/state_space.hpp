@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -60,7 +61,7 @@ class StateSpace {
     if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
     try {
       add_states_of(belief);
-      while (!is_closed()) list_rows_before(size());
+      while (!is_closed()) list_rows_before(size(), true);
       return true;
     } catch (const NotEnumerable& limit) {
       if (may_list_less(limit.reason)) return reach(belief);
@@ -86,7 +87,7 @@ class StateSpace {
       int listed = 0;
       try {
         add_states_of(belief);
-        for (; listed < decisions && !is_closed(); ++listed) list_rows_before(size());
+        for (; listed < decisions && !is_closed(); ++listed) list_rows_before(size(), true);
         const bool is_whole = is_closed();
         end_list();
         return is_whole ? std::numeric_limits<int>::max() : listed;
@@ -171,6 +172,9 @@ class StateSpace {
     return largest * decisions;
   }
 
+  static constexpr std::uint32_t fewest_priced = 16;  // states
+  static constexpr double far_more = 4;  // times the limit
+
   using SensingKey = std::vector<std::uint64_t>;  // of observations with their probabilities
   // A path through an action after which the mission goes on.
   struct Path {
@@ -232,12 +236,21 @@ class StateSpace {
     lister_.add_states_of(belief);
   }
 
-  void list_rows_before(std::size_t end) {
+  // With `gives_up` a list ends before the limit if the later half of what is listed took so much work that the rest will take
+  // far more: to find that out at the limit takes seconds.
+  void list_rows_before(std::size_t end, bool gives_up = false) {
     if (reports_numbers_) lister_.draws().report_to(&reports_);
-    for (; listed_ < end; ++listed_) {
+    std::size_t work = lister_.work();
+    for (const std::uint32_t first = listed_; listed_ < end; ++listed_) {
       if (listed_ % states_between_looks == 0) progress::tell("listing states", listed_, size());
       const State state = (*this)[listed_];
       for (std::size_t action = 0; action < rows_.actions; ++action) add_row(state, static_cast<int>(action));
+      const std::uint32_t done = listed_ - first + 1;
+      if (!std::has_single_bit(done)) continue;
+      const auto of_half = static_cast<double>(lister_.work() - std::exchange(work, lister_.work()));
+      const double expected = 2 * of_half / done * static_cast<double>(end - listed_);
+      if (!gives_up || done < fewest_priced || estimates_draws() || expected < far_more * static_cast<double>(lister_.limits().work)) continue;
+      throw NotEnumerable{"there are too many outcomes to list"};
     }
     rows_.states = listed_;
     rows_.observations = skips_sensing_ ? 1 : reports_numbers_ ? reports_.reports().size() : observations_.size();

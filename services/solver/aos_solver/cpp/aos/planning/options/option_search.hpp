@@ -292,7 +292,7 @@ class OptionSearch {
 
   void note_all(const State& state, auto& seen, int width) {
     cells_.write(state, cells_after_.data());
-    for (std::size_t i = 0; i < cells_.size(); ++i) seen.note(cells_after_.data(), cells_.size(), i, width);
+    seen.note(cells_after_.data(), cells_.size(), width, [](std::size_t) { return true; });
   }
   // Notes the values of a state. Returns whether it has any that no state before it had.
   bool is_new(const State& state, int width) {
@@ -308,11 +308,7 @@ class OptionSearch {
     return has_new_value ? 1 : has_new_pair ? 2 : 3;
   }
   bool is_new_among(auto& seen, int width, bool all) {
-    bool is_new = false;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (all || cells_after_[i] != cells_before_[i]) is_new = seen.note(cells_after_.data(), cells_.size(), i, width) || is_new;
-    }
-    return is_new;
+    return seen.note(cells_after_.data(), cells_.size(), width, [&](std::size_t i) { return all || cells_after_[i] != cells_before_[i]; });
   }
 
   const LeafCells<Model>& cells_;

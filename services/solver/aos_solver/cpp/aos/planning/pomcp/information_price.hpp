@@ -62,7 +62,6 @@ class InformationPrice {
     work_ = 0;
     std::array<double, priced_missions> without{};
     for (std::size_t i = 0; i < priced_missions; ++i) {
-      progress::tell("finding out what information is worth", i, priced_missions);
       without[i] = returned(belief, 0, i);
       promised += worth(true_state_) / priced_missions;
     }
@@ -90,6 +89,7 @@ class InformationPrice {
   // Plays a mission. The robot of it knows a few states with weights, of which one is the true one. Afterwards `true_state_` is
   // where it began.
   double returned(const Belief<Model>& belief, double price, std::uint64_t mission) {
+    progress::tell("finding out what information is worth", mission, priced_missions);
     Sampler random{mission};
     Cloud cloud = drawn(belief, random);
     State state = cloud[static_cast<std::size_t>(random.below(static_cast<int>(cloud.size())))].state;

@@ -52,13 +52,14 @@ class RestValues {
     std::vector<std::uint16_t> rows;
     std::vector<double> targets;
     for (const State& example : examples) {
-      if (targets.size() % examples_between_looks == 0) progress::tell("learning what states are worth", targets.size(), examples.size());
+      tell(targets.size(), examples.size());
       cells_.add_row(example, rows);
       targets.push_back(returned_by(base, static_cast<std::size_t>(horizon_), example, random));
     }
     fit(rows, targets);
     if (used_.empty()) return false;
     for (std::size_t i = 0; i < examples.size(); ++i) {
+      tell(i, examples.size());
       targets[i] = 0;
       for (int j = 0; j < nearer; ++j) targets[i] += returned_by(base, settling(), examples[i], random) / nearer;
     }
@@ -87,10 +88,14 @@ class RestValues {
   static constexpr std::size_t fewest_examples = 200;
   static constexpr std::size_t most_examples = 20'000;
   static constexpr std::size_t examples_between_looks = 64;
-  static constexpr int sweeps = 30;
+  static constexpr std::size_t sweeps = 30;
   static constexpr int nearer = 8;  // returns of each example at last, of so many times fewer steps
   static constexpr int first_tries = 4;  // of each action, with other states; four times as many of each better quarter
   static constexpr std::size_t kept_share = 4;
+
+  static void tell(std::size_t done, std::size_t all) {
+    if (done % examples_between_looks == 0) progress::tell("learning what states are worth", done, all);
+  }
 
   // Sequential halving: all actions are tried under the same luck, the better quarter of them four times as often, and so on.
   void find_action(const Belief<Model>& belief, Sampler& random) {
@@ -112,7 +117,10 @@ class RestValues {
 
   void fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets) {
     CellTables tables{cells_.variables()};
-    for (int i = 0; i < sweeps; ++i) tables.fit(rows, targets);
+    for (std::size_t i = 0; i < sweeps; ++i) {
+      progress::tell("learning what states are worth", i, sweeps);
+      tables.fit(rows, targets);
+    }
     tables_ = std::move(tables);
     used_ = tables_.used_variables();
   }

@@ -112,7 +112,7 @@ class SavingSearch {
     cells_after_.resize(actions * cells_.size());
     after_.resize(actions, start);
     cells_.write(start, cells_before_.data());
-    for (std::size_t i = 0; i < cells_.size(); ++i) seen_.note(cells_before_.data(), cells_.size(), i, width);
+    seen_.note(cells_before_.data(), cells_.size(), width, [](std::size_t) { return true; });
     for (std::uint32_t number = 0; number < nodes_.size() && limit > 0 && nodes_[number].depth < longest; ++number) {
       const std::uint32_t depth = nodes_[number].depth;
       const double discount = std::pow(Model::discount, depth);
@@ -167,11 +167,8 @@ class SavingSearch {
   }
   // Notes what an action changes. Returns whether anything of it is new.
   bool is_new(std::size_t action, int width) {
-    bool is_new = false;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (is_own_[action * cells_.size() + i]) is_new = seen_.note(&cells_after_[action * cells_.size()], cells_.size(), i, width) || is_new;
-    }
-    return is_new;
+    return seen_.note(&cells_after_[action * cells_.size()], cells_.size(), width,
+                      [&](std::size_t i) { return is_own_[action * cells_.size() + i] != 0; });
   }
 
   const LeafCells<Model>& cells_;
@@ -184,7 +181,7 @@ class SavingSearch {
   std::vector<Worth> worths_;
   std::vector<std::uint64_t> cells_before_;
   std::vector<std::uint64_t> cells_after_;  // [action * variables + variable]
-  std::vector<bool> is_own_;                // [action * variables + variable]
+  std::vector<char> is_own_;                // [action * variables + variable]
 };
 
 }  // namespace aos

@@ -5,45 +5,76 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "aos/base/mixed.hpp"
 
 namespace aos {
 
+// Notes the values of those of `count` variables that are looked at, or with width 2 their pairs with all others. Returns
+// whether any is new. `insert` notes a value or pair, and says whether it is new.
+template <class IsLookedAt, class Insert>
+bool note_cells(const std::uint64_t* cells, std::size_t count, int width, IsLookedAt&& is_looked_at, Insert&& insert) {
+  thread_local std::vector<std::uint64_t> atoms;
+  atoms.clear();
+  bool is_new = false;
+  for (std::size_t variable = 0; variable < count; ++variable) {
+    if (!is_looked_at(variable)) continue;
+    const auto atom_of = [&](std::size_t each) { return mixed(mixed(0, each), cells[each]); };
+    if (width == 1) {
+      is_new = insert(atom_of(variable)) || is_new;
+      continue;
+    }
+    for (std::size_t each = atoms.size(); each < count; ++each) atoms.push_back(atom_of(each));
+    const std::uint64_t atom = atoms[variable];
+    for (std::size_t other = 0; other < count; ++other) {
+      if (other != variable) is_new = insert(mixed(std::min(atom, atoms[other]), std::max(atom, atoms[other]))) || is_new;
+    }
+  }
+  return is_new;
+}
+
+// A set of numbers that are well mixed: open addressing, at most half full. 0 is taken for 1.
 class SeenCells {
  public:
-  void clear() { seen_.clear(); }
-
-  // Notes the value of one variable of `count` cells, or with width 2 its pairs with all others. Returns whether any is new.
-  bool note(const std::uint64_t* cells, std::size_t count, std::size_t variable, int width) {
-    return note_in(cells, count, variable, width, [this](std::uint64_t value) { return seen_.insert(value).second; });
-  }
-
-  // The same; `insert` notes a value or pair, and says whether it is new.
-  template <class Insert>
-  static bool note_in(const std::uint64_t* cells, std::size_t count, std::size_t variable, int width, Insert&& insert) {
-    const std::uint64_t atom = mixed(mixed(0, variable), cells[variable]);
-    if (width == 1) return insert(atom);
-    bool is_new = false;
-    for (std::size_t other = 0; other < count; ++other) {
-      if (other == variable) continue;
-      const std::uint64_t second = mixed(mixed(0, other), cells[other]);
-      is_new = insert(mixed(std::min(atom, second), std::max(atom, second))) || is_new;
-    }
-    return is_new;
+  void clear() { *this = {}; }
+  // See note_cells.
+  template <class IsLookedAt>
+  bool note(const std::uint64_t* cells, std::size_t count, int width, IsLookedAt&& is_looked_at) {
+    return note_cells(cells, count, width, is_looked_at, [this](std::uint64_t value) { return insert(std::max<std::uint64_t>(value, 1)); });
   }
 
  private:
-  std::unordered_set<std::uint64_t> seen_;
+  bool insert(std::uint64_t value) {
+    std::uint64_t& slot = slot_of(value);
+    if (slot == value) return false;
+    slot = value;
+    if (2 * ++size_ > slots_.size()) grow();
+    return true;
+  }
+  std::uint64_t& slot_of(std::uint64_t value) {
+    std::size_t slot = value & (slots_.size() - 1);
+    while (slots_[slot] != 0 && slots_[slot] != value) slot = (slot + 1) & (slots_.size() - 1);
+    return slots_[slot];
+  }
+  void grow() {
+    const std::vector<std::uint64_t> before = std::exchange(slots_, std::vector<std::uint64_t>(4 * slots_.size()));
+    for (const std::uint64_t value : before) {
+      if (value != 0) slot_of(value) = value;
+    }
+  }
+
+  std::vector<std::uint64_t> slots_ = std::vector<std::uint64_t>(1 << 10);
+  std::size_t size_ = 0;
 };
 
 // The same in a table of bits, which is faster. Of two values with one bit the second counts as seen.
 class SeenBits {
  public:
-  bool note(const std::uint64_t* cells, std::size_t count, std::size_t variable, int width) {
-    return SeenCells::note_in(cells, count, variable, width, [this](std::uint64_t value) {
+  template <class IsLookedAt>
+  bool note(const std::uint64_t* cells, std::size_t count, int width, IsLookedAt&& is_looked_at) {
+    return note_cells(cells, count, width, is_looked_at, [this](std::uint64_t value) {
       std::uint64_t& word = words_[value / 64 % words_.size()];
       const std::uint64_t bit = std::uint64_t{1} << value % 64;
       const bool is_new = (word & bit) == 0;

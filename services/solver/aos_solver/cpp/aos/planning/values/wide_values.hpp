@@ -108,6 +108,7 @@ class WideValues final : public StateValues<Model> {
     const std::size_t work_of_one = 1 + Model::state_bytes() / 64;
     std::size_t work = 0;
     for (std::size_t walks = 0; walks < looked_at && work < max_looking_work; ++walks) {
+      if (walks % states_between_looks == 0) progress::tell("walking at random", walks, looked_at);
       State state = belief.sample(random);
       const int steps = random.below(horizon);
       work += work_of_one * (1 + static_cast<std::size_t>(walk.take(state, steps, random)));
