@@ -9,11 +9,14 @@ import errno
 import os
 import signal
 import sys
+from contextlib import suppress
 from typing import Protocol
 
 from aos_deploy.events import Event, Report
 
 ECHO_S = 0.3
+_LOOK_S = 0.5
+"""A terminal is looked at this often: a skill may take long, and nothing is told meanwhile."""
 _STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -52,30 +55,43 @@ def _mute() -> None:
     os.close(nowhere)
 
 
+def _is_terminal() -> bool:
+    return sys.stdout is not None and sys.stdout.isatty()  # None where it was closed before.
+
+
 async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) -> int:
     """The exit code. The first signal stops everything in order, any further one at once. Everything stops in
     order also where nobody reads any more.
 
     A signal that comes within ECHO_S of the first is the same one: `timeout` and terminals send it to a
-    process and to its group. A signal after the end changes nothing: the process ignores it from then on.
+    process and to its group. That of a terminal which was closed may come after that was noticed. A signal
+    after the end changes nothing: the process ignores it from then on.
     """
     loop = asyncio.get_running_loop()
-    is_terminal = sys.stdout is not None and sys.stdout.isatty()  # None where it was closed before.
+    is_terminal = _is_terminal()
     work = loop.create_task(mission.run())
     interrupted_s: float | None = None
+    is_stopping = False
+
+    def stop() -> None:
+        nonlocal is_stopping
+        if not is_stopping:  # Ctrl-C ends the reader as well.
+            is_stopping = True
+            work.cancel()
 
     def interrupt() -> None:
         nonlocal interrupted_s
         if interrupted_s is None:
             interrupted_s = loop.time()
-            work.cancel()
+            stop()
         elif loop.time() - interrupted_s > ECHO_S:
             mission.kill()
 
     async def stop_unread() -> None:
-        await is_unread.wait()
-        if interrupted_s is None:  # Ctrl-C ends the reader as well.
-            interrupt()
+        while not is_unread.is_set() and is_terminal == _is_terminal():
+            with suppress(TimeoutError):
+                await asyncio.wait_for(is_unread.wait(), _LOOK_S)
+        stop()
 
     for number in _STOPPING:
         loop.add_signal_handler(number, interrupt)
@@ -84,7 +100,7 @@ async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) ->
         return (await work).exit_code
     finally:
         reader.cancel()
-        if is_terminal and not sys.stdout.isatty():
+        if is_terminal and not _is_terminal():
             _mute()  # It was closed, and a view still has to end.
         for number in _STOPPING:
             loop.remove_signal_handler(number)

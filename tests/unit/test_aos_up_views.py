@@ -1,8 +1,6 @@
 import io
 import itertools
 import json
-import os
-import pty
 import sys
 import threading
 
@@ -367,16 +365,6 @@ def test_a_screen_is_drawn_by_one_thread_while_another_tells_it_events():
         sys.setswitchinterval(before_s)
         is_drawn.set()
         telling.join()
-
-
-def test_a_terminal_that_is_closed_is_noticed_at_the_next_event():
-    terminal, inside = pty.openpty()
-    with os.fdopen(inside, "w") as file:
-        view = LiveView("armadillo", Console(file=file))
-        view(DECISION)
-        os.close(terminal)
-        with pytest.raises(OSError, match="terminal was closed"):
-            view(Told("searching"))
 
 
 def test_without_colour_there_is_no_style_at_all(monkeypatch):

@@ -1,6 +1,5 @@
 """The live view of a mission in a terminal."""
 
-import errno
 import io
 import threading
 import time
@@ -169,15 +168,11 @@ class Screen:
 
 
 class LiveView:
-    """Redraws a `Screen` four times a second and at each event; leaves its last state on the terminal.
-
-    An event after the terminal was closed is an OSError (EIO).
-    """
+    """Redraws a `Screen` four times a second and at each event; leaves its last state on the terminal."""
 
     def __init__(self, title: str, console: Console | None = None) -> None:
         self.screen = Screen(title)
         shown = console or our_console()
-        self._is_drawn = shown.is_terminal
         self._live = Live(self.screen, console=shown, refresh_per_second=4, transient=False)
 
     def __enter__(self) -> Self:
@@ -190,8 +185,6 @@ class LiveView:
 
     def __call__(self, event: Event) -> None:
         self.screen.take(event)
-        if self._is_drawn and not self._live.console.is_terminal:  # rich draws no more, and says nothing.
-            raise OSError(errno.EIO, "the terminal was closed")
         if isinstance(event, SkillProgress):
             return  # It can come many times a second.
         is_end = isinstance(event, ServiceChanged) and event.state == "ended" and event.detail
