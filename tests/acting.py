@@ -1,5 +1,3 @@
-"""Projects of one skill, `act`, for tests of what the text of its model tells."""
-
 from mappings import mapping_of_model
 from scripted_models import text_project
 

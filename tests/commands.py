@@ -1,5 +1,3 @@
-"""The command line, called within a test's process."""
-
 from pathlib import Path
 
 from typer.testing import CliRunner, Result

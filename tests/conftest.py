@@ -1,5 +1,3 @@
-"""Fixtures that every kind of test may use."""
-
 import gc
 import signal
 from collections.abc import Iterator

@@ -1,5 +1,3 @@
-"""The builder of records of decisions for tests."""
-
 from typing import Any
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord

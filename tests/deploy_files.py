@@ -1,5 +1,3 @@
-"""Deploy files of a rover, written, read and refused."""
-
 from pathlib import Path
 
 import pytest

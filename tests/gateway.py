@@ -1,5 +1,3 @@
-"""A gateway as a process, requests to it, and small missions for it to show."""
-
 import fcntl
 import json
 import os

@@ -1,5 +1,3 @@
-"""The values that the JSON reader has read, as Python's own."""
-
 from typing import Any
 
 from aos_language.reading import json_text

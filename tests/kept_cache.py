@@ -1,5 +1,3 @@
-"""The folder in which compiled models are kept from one run of the tests to the next."""
-
 import contextlib
 import os
 from pathlib import Path

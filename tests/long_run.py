@@ -1,5 +1,3 @@
-"""The directory of a run with a journal of any length, as a mission of many steps leaves it."""
-
 import random
 from pathlib import Path
 

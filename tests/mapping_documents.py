@@ -1,5 +1,3 @@
-"""Abstraction mappings for tests, written as a user writes them and read by the registry's reader."""
-
 from pathlib import Path
 from textwrap import dedent
 

@@ -1,5 +1,3 @@
-"""One activation of a generated mapping, in this process."""
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""The builder of abstraction mappings for tests, in the words that a user writes."""
-
 from collections.abc import Mapping, Sequence
 
 

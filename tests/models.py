@@ -1,5 +1,3 @@
-"""Compiled models for tests: a bundle or a text becomes an engine, from one cache."""
-
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path

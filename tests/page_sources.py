@@ -1,5 +1,3 @@
-"""The page's sources with their libraries, where node is there to fetch them."""
-
 import hashlib
 import os
 import shutil

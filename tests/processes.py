@@ -1,5 +1,3 @@
-"""Looking at other processes: which are there, which have gone, who listens."""
-
 import asyncio
 import json
 import os

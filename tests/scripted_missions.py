@@ -1,5 +1,3 @@
-"""Missions of the loop with a real engine, and a robot that the test scripts."""
-
 from collections.abc import Callable, Sequence
 
 from models import engine_of

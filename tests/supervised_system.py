@@ -1,5 +1,3 @@
-"""A supervised system of small real processes on a real bus."""
-
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

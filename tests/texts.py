@@ -1,5 +1,3 @@
-"""Documents that tests hold as text, by the names of their files."""
-
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""Missions of bundles with and without a mechanism: their returns, as rows of a table."""
-
 import argparse
 import json
 import os

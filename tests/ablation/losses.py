@@ -1,5 +1,3 @@
-"""Losses on random models: what a planner's regret grows by without a mechanism, by family."""
-
 from collections import defaultdict
 from statistics import fmean, stdev
 from typing import Any

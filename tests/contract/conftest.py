@@ -1,5 +1,3 @@
-"""A real bus for contract tests, one router process for each test module, and services on it."""
-
 import os
 import socket
 import subprocess

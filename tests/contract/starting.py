@@ -1,5 +1,3 @@
-"""Starting a process, and waiting until it is present on the bus."""
-
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

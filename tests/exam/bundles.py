@@ -1,5 +1,3 @@
-"""Bundles whose first decision's value is held against whole missions of the real engine."""
-
 import random
 from pathlib import Path
 from statistics import fmean, stdev

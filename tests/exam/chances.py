@@ -1,5 +1,3 @@
-"""The numbers that the families draw and reckon with."""
-
 import random
 
 from .problem import Seen

@@ -1,5 +1,3 @@
-"""The commands of the exam: each prints what is false, a summary, and returns an exit code."""
-
 import argparse
 import asyncio
 import json

@@ -1,5 +1,3 @@
-"""Problems by name: a family and a seed."""
-
 import random
 from collections.abc import Sequence
 from contextlib import suppress

@@ -1,5 +1,3 @@
-"""Worlds as tables, with ties, with endings everywhere, with a clock."""
-
 import random
 from itertools import product
 

@@ -1,5 +1,3 @@
-"""Problems of the exam: a step as a function of the state, and the tables that come of it."""
-
 from __future__ import annotations
 
 import dataclasses

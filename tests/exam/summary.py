@@ -1,5 +1,3 @@
-"""The results of an exam: counts of false claims, and regret by family."""
-
 import dataclasses
 from collections import Counter, defaultdict
 from statistics import fmean

@@ -1,5 +1,3 @@
-"""The documents of attempts: a robot whose skills count, and one or many of them hostile."""
-
 import shutil
 from collections.abc import Mapping
 from pathlib import Path

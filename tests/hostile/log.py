@@ -1,5 +1,3 @@
-"""The log of a campaign: one line for each attempt, from which an interrupted one goes on."""
-
 import os
 import sys
 import time

@@ -1,5 +1,3 @@
-"""A robot that always hears the tiger on the left."""
-
 import asyncio
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""Fixtures of the tests that start whole systems."""
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

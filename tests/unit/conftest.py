@@ -1,5 +1,3 @@
-"""Folders that unit tests of several files begin with."""
-
 from pathlib import Path
 
 import pytest

@@ -1,5 +1,3 @@
-"""The documents of the problems: bundles as texts, in the sizes that are asked for."""
-
 from .writing import Bundle, BundleWriter
 
 

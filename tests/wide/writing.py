@@ -1,5 +1,3 @@
-"""Documents and mappings of a bundle, from its skills."""
-
 from mappings import mapping_text
 
 Bundle = dict[str, str]  # file name to text
