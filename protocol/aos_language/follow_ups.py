@@ -12,7 +12,7 @@ from aos_protocol.diagnostics import Diagnostic, Span, has_errors
 
 _NAME = re.compile(r"`(\w+)`")
 _MEANT = re.compile(r"Did you mean `(\w+)`\?")
-_OF_NAMES = ("AOS110", "AOS116", "AOS123")
+_OF_NAMES = ("AOS110", "AOS116", "AOS123", "AOS201")
 _SHOWN, _NEAR_LINES = 6, 8
 _WORD = re.compile(r"\w+")
 _TEXT = re.compile(r"'(\w+)'")
@@ -200,7 +200,11 @@ def _is_before(other: Diagnostic, one: Diagnostic) -> bool:
             is_warning = not one.is_error
             return (is_warning and is_compiled) or (is_first and not one.message.startswith("this "))
         case "AOS201":
-            return other.code == "AOS201" and is_earlier_place and one.message.startswith("expected ")
+            is_syntax = is_earlier_place and one.message.startswith(("expected ", "`else` without"))
+            is_beside = lines == 0 and is_earlier_place and other.message.startswith("expected ")
+            is_of_type = "has no member" in one.message and "name a type" in other.message
+            lost = is_of_type and not {*_NAME.findall(one.message)}.isdisjoint(_WORD.findall(other.excerpt))
+            return other.code == "AOS201" and (is_syntax or is_beside or lost)
         case "AOS121":
             return "never assigns" in one.message and other.code == "AOS103" and is_earlier
         case "AOS127":

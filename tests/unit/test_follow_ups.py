@@ -2,6 +2,7 @@ import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, found
 
 from aos_language.follow_ups import told_once
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
 
 TEXTS = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}
 SENSES = MAPPING.replace(
@@ -74,3 +75,17 @@ def test_mistakes_that_have_nothing_to_do_with_each_other_are_told_together():
         texts=TWO_RESPONSES,
     )
     assert [one.split()[1] for one in codes] == ["AOS106", "AOS105", "AOS110"]
+
+
+def test_what_a_compiler_says_of_one_mistake_is_told_once():
+    def said(line: int, column: int, message: str, excerpt: str = "") -> Diagnostic:
+        return Diagnostic(Severity.ERROR, "AOS201", message, Span("walk.sd", line, column), excerpt=excerpt)
+
+    typed = said(8, 3, "`duble` does not name a type", "struct Trip { duble cost; };")
+    syntax = said(20, 4, "expected `(` before `AOS`")
+    others = (
+        said(9, 7, "`struct Trip` has no member named `cost`"),
+        said(21, 1, "`else` without a previous `if`"),
+    )
+    apart = said(20, 9, "`in` was not declared"), said(40, 1, "`far` was not declared")
+    assert told_once((typed, others[0], syntax, apart[0], others[1], apart[1])) == (typed, syntax, apart[1])
