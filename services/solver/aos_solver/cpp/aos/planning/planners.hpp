@@ -39,9 +39,8 @@ inline constexpr const char* planner_names[] = {"auto", "pomcp", "despot", "sars
 
 // The planner of this name, if there is one that can be asked for.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
-  const auto* const last = planner_names + static_cast<std::size_t>(PlannerKind::savings);
-  const auto* const found = std::find(planner_names, last, name);
-  return found == last ? std::nullopt : std::optional{static_cast<PlannerKind>(found - planner_names)};
+  const auto* const found = std::ranges::find(planner_names, name);
+  return found == std::end(planner_names) ? std::nullopt : std::optional{static_cast<PlannerKind>(found - planner_names)};
 }
 
 template <class Model>

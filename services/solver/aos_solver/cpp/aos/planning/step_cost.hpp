@@ -77,12 +77,13 @@ Operations cost_of_step() {
 template <class Model>
 class AffordableSteps {
  public:
-  double of(Budget budget, int horizon) {
+  // At most so many steps as are counted, or, where `as_measured`, all that there was time for before.
+  double of(Budget budget, int horizon, bool as_measured = false) {
     if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least);
     if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
     const double affordable = budget.seconds * operations_of_second / static_cast<double>(step_cost_);
     const double measured = seconds_ > 0 ? budget.seconds * steps_ / seconds_ : affordable;
-    return std::max(std::min(affordable, measured), least_in_time);
+    return std::max(as_measured ? measured : std::min(affordable, measured), least_in_time);
   }
   // So many steps took so long. Later ones count more.
   void note(double steps, std::chrono::duration<double> time) {

@@ -84,7 +84,7 @@ class SavingsPlanner final : public Planner<Model> {
     const auto start = PlanningClock::now();
     // A look for options has taken its share of the budget.
     if (options_.has_looked()) share *= 1 - OptionPolicy<Model>::of_options;
-    policy_.prepare(question.belief, share * affordable_steps_.of(question.budget, question.horizon), question.barred, random);
+    policy_.prepare(question.belief, share * affordable_steps_.of(question.budget, question.horizon, true), question.barred, random);
     affordable_steps_.note(policy_.taken(), PlanningClock::now() - start);
   }
 
@@ -95,7 +95,7 @@ class SavingsPlanner final : public Planner<Model> {
     missions_.play(belief, policy_.worths(), nullptr, horizon, this->choice(policy_.estimates(), horizon, barred), Sampler{random.bits()});
   }
 
-  // Whether POMCP that ends in rollouts tells, beyond a standard error, more of its choice than savings do of theirs. A tree
+  // Whether POMCP that ends in rollouts tells, beyond the error of the difference, more of its choice than savings do of theirs. A tree
   // that ends in values of states is not asked: it promises what no robot returns that does not see the state.
   bool do_rollouts_tell_more(const Question<Model>& question, Sampler& random, Choosing& choosing) {
     const SearchTime time{choosing};
@@ -106,7 +106,8 @@ class SavingsPlanner final : public Planner<Model> {
     rollouts_.prepare(half, random, choosing);
     choosing.simulations += rollouts_.search(half, random, why);
     const ActionEstimate searched = told(rollouts_, question);
-    return searched.q - searched.standard_error > told(*this, question).q;
+    const ActionEstimate saving = told(*this, question);
+    return searched.q - saving.q > std::hypot(searched.standard_error, saving.standard_error);
   }
   static ActionEstimate told(const Planner<Model>& planner, const Question<Model>& question) {
     const Estimates estimates = planner.estimates(question.belief);
