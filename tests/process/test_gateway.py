@@ -212,6 +212,7 @@ def test_a_mission_that_is_over_is_neither_stopped_nor_steered(past: tuple[Gatew
         served.post(f"/v1/missions/{name}/stop"),
         served.post(f"/v1/missions/{name}/steering", {"verb": "hold"}),
         served.post(f"/v1/runs/{name}/missions"),
+        served.post(f"/v1/runs/{name}/stop"),
     ):
         assert (answer.status, answer.json["code"]) == (409, "AOS905")
     assert served.ask(f"/v1/missions/{name}/documents?revision={2**40}").status == 400
@@ -366,3 +367,5 @@ def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(
         view = served.ask(f"/v1/missions/{run.name}-2").json
         assert {name: view["mission"][name] for name in wish} == wish
         assert view["parameters"] == {"room": "lab"}
+        ended = served.post(f"/v1/runs/{run.name}/stop")
+        assert (ended.status, ended.json["ending"]) == (200, "stopped")

@@ -269,6 +269,12 @@ def test_the_next_mission_is_begun_where_one_has_ended(
     page.get_by_role("button", name="Begin it").click()
     expect(page).to_have_url(re.compile(f"{name[:-1]}2$"))
     expect(page.locator(".decision .action")).to_have_text("press(room=lab)")
+    page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name[:-1]}2/system")
+    end = page.get_by_role("button", name="End the system")
+    kept(page, "end")
+    end.click()
+    expect(end).to_have_count(0)
+    assert not served.ask(f"/v1/runs/{name[:-2]}").json["is_running"]
 
 
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(

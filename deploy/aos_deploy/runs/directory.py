@@ -19,6 +19,7 @@ from __future__ import annotations
 import fcntl
 import os
 import shutil
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
@@ -233,6 +234,23 @@ class RunDirectory:
         except OSError:
             return True
         return False
+
+    def interrupt(self, pid: int) -> bool:
+        """Ends the run in order, as Ctrl-C does. False where no process of this number uses the directory."""
+        try:
+            handle = os.pidfd_open(pid)
+        except OSError:
+            return False
+        try:
+            files = Path(f"/proc/{pid}/fd").iterdir()
+            if not any(each.exists() and each.samefile(self.path) for each in files):
+                return False
+            signal.pidfd_send_signal(handle, signal.SIGINT)
+        except OSError:
+            return False
+        finally:
+            os.close(handle)
+        return True
 
 
 def _write_whole(path: Path, content: bytes, place: str) -> None:

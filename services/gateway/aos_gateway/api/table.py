@@ -18,6 +18,7 @@ OPERATIONS: tuple[Operation, ...] = (
     operation("GET", "/v1/runs/{run}/logs/{service}", run_files.log, media="text/plain"),
     operation("GET", "/v1/runs/{run}/bundles", documents.bundles),
     operation("POST", "/v1/runs/{run}/bundles", writing.push, upload=_ARCHIVE),
+    operation("POST", "/v1/runs/{run}/stop", writing.end),
     operation("POST", "/v1/runs/{run}/missions", writing.start_next, status=201),
     operation("GET", "/v1/missions", reading.missions),
     operation("GET", "/v1/missions/{mission}", reading.mission),

@@ -8,7 +8,7 @@ import msgspec
 
 from aos_deploy.deployment.folder import deploy_files_in
 from aos_deploy.deployment.reading import read_deploy_file
-from aos_gateway.runs.run import Run
+from aos_gateway.runs.run import Run, RunEntry
 from aos_gateway.runs.starting import StartedRun, start_system
 from aos_gateway.runs.uploads import ProjectEntry, files_of_upload, keep_project, kept_projects
 from aos_gateway.shared import Gateway
@@ -120,6 +120,13 @@ async def start(gateway: Gateway, body: StartSystem) -> StartedRun:
     options += ["--seed", str(body.seed)] if body.seed is not None else []
     options += [f"--set={name}={text}" for name, text in sorted(body.values.items())]
     return await start_system(gateway.shelf, path, gateway.runs, options)
+
+
+async def end(gateway: Gateway, run: str) -> RunEntry:
+    """End a system in order, as Ctrl-C in its terminal does. Answered when it has ended."""
+    found = gateway.shelf.run(run)
+    await found.end()
+    return await found.entry()
 
 
 async def start_next(gateway: Gateway, run: str, body: NextMission) -> MissionState:

@@ -31,6 +31,8 @@ from aos_solver.mission.records.history import history_page
 from aos_solver.mission.records.logbook import entries_of
 
 _BEGINNING_S = 1.0
+_END_S = 60.0
+"""An ordered end takes less."""
 _LOOK_S = 0.5
 """Somebody who waits for an answer hears so soon that the system has ended."""
 
@@ -94,6 +96,10 @@ class Run(ABC):
                 if state.mission == mission:
                     return state
         return MissionState(mission, "waiting", 0, 0.0)
+
+    async def end(self) -> None:
+        """Ends its system in order, and waits until it is over; GatewayError AOS905 if it does not run."""
+        raise GatewayError(f"the system {self.name} runs elsewhere", code="AOS905", hint="End it there")
 
     async def parameters(self, mission: str) -> dict[str, str]:
         """The values of a mission's parameters; none where they are not known."""
@@ -159,6 +165,22 @@ class KeptRun(Run):
         if self._last is None or self._last.is_running or self._goes_on_again():
             self._last = await asyncio.to_thread(self._entry)
         return self._last
+
+    async def end(self) -> None:
+        interrupted = await asyncio.to_thread(self._interrupt)
+        if not interrupted:
+            raise self._over()
+        try:
+            async with asyncio.timeout(_END_S):
+                is_there = True
+                while is_there:
+                    await asyncio.sleep(_LOOK_S)
+                    is_there = await asyncio.to_thread(lambda: self.directory.is_held)
+        except TimeoutError:
+            raise GatewayError(f"{self.name} was asked to end, and has not yet", code="AOS601") from None
+
+    def _interrupt(self) -> bool:
+        return self.is_running and self.directory.interrupt(self.record.pid)
 
     def _goes_on_again(self) -> bool:
         """Says whether a run whose aos-up was killed was taken up, and may be over again."""

@@ -1,6 +1,6 @@
 // The system of a mission: its processes and their logs, its documents' revisions, new documents.
 import { Card, Findings, html, useEffect, useState } from "./ui.js";
-import { hasToken, read, readText, send } from "./api.js";
+import { hasToken, read, readText, send, write } from "./api.js";
 import { mission, reports, services } from "./store.js";
 import { moment } from "./format.js";
 
@@ -50,6 +50,7 @@ export function System() {
           ${run.sandbox && html`<div><dt>Sandbox</dt><dd>${run.sandbox}</dd></div>`}
         </dl>`}
         ${(processes?.ends ?? []).map((end) => html`<p class="aside"><b>${end.name}</b> ended after ${end.after_s.toFixed(1)} s, ${end.how}: ${end.then}</p>`)}
+        ${run?.is_running && run.directory && hasToken() && html`<${End} run=${view.run} ended=${setRun} />`}
       <//>
       <${Card} id="bundles" title="Documents">
         <ul class="bundles">${bundles.map((each) => html`<li><b>${each.project}</b> revision ${each.revision}<span class="muted">${each.skills.join(", ")}</span></li>`)}</ul>
@@ -57,6 +58,20 @@ export function System() {
       <//>
     </div>
   </div>`;
+}
+
+// A system that was started here has no terminal for Ctrl-C.
+function End({ run, ended }) {
+  const [problem, setProblem] = useState(null);
+  const [isAsked, setIsAsked] = useState(false);
+  const end = () => {
+    setIsAsked(true);
+    write(`/v1/runs/${encodeURIComponent(run)}/stop`).then(ended, (error) => {
+      setProblem(error);
+      setIsAsked(false);
+    });
+  };
+  return html`<p><button class="stop" disabled=${isAsked} onClick=${end}>End the system</button></p><${Findings} problem=${problem} />`;
 }
 
 function Push({ run }) {
