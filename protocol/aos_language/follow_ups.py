@@ -128,7 +128,7 @@ class _Causes:
             case "AOS114" if "has no monitor" in one.message:
                 return any("monitor" in other.message for other in self._unread)
             case "AOS114":
-                return ", and the mapping" in one.message
+                return ", and the mapping" in one.message or any('lacks "Name"' in o.message for o in others)
             case "AOS140":
                 return any(_is_of_locals(other) for other in self._unread)
             case "AOS110" | "AOS116" | "AOS123":
