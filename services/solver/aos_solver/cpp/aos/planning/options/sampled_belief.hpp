@@ -89,17 +89,23 @@ class SampledBelief {
     }
   }
 
-  // Takes the running part, which is not empty, with one state for all of the same key, and leaves at most `count` of these.
+  // Takes the running part, which is not empty, with one state for all of the same key, and leaves at most `count` of these. Of
+  // many particles a part is drawn: to compare 100,000 takes half of a budget of 0.1 s.
   void draw_alike(const Belief<Model>& belief, std::size_t count, FunctionRef<std::uint64_t(const State&)> key_of, Sampler& random) {
     std::unordered_map<std::uint64_t, std::size_t> known;
     std::vector<State> alike;
     StateWeights weights;
-    for (const auto& [state, weight] : belief.particles()) {
-      if (Model::ending(state) != Ending::running) continue;
+    const auto take = [&](const State& state, double weight) {
+      if (Model::ending(state) != Ending::running) return;
       const auto [entry, is_new] = known.emplace(key_of(state), alike.size());
       if (is_new) alike.push_back(state);
       if (is_new) weights.push_back(0);
       weights[entry->second] += weight;
+    };
+    const auto& particles = belief.particles();
+    if (particles.size() > most_compared) draw_evenly<Model>(particles, most_compared, random, [&](const State& state) { take(state, 1); });
+    if (alike.empty()) {
+      for (const auto& [state, weight] : particles) take(state, weight);
     }
     thin_out(weights, count, random);
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
@@ -117,6 +123,8 @@ class SampledBelief {
   const StateWeights& weights() const { return weights_; }
 
  private:
+  static constexpr std::size_t most_compared = 8192;  // particles
+
   std::vector<State> states_;
   StateWeights weights_;
 };
