@@ -9,6 +9,8 @@ import pytest
 from models import built_bundle
 from processes import COMMAND_S
 
+from aos_solver.offline.solver_program import build_solver
+
 AOS = Path(sys.executable).parent / "aos"
 COMMANDS = (
     ("simulate", "--runs", "2", "--simulations", "10"),
@@ -24,6 +26,7 @@ def test_a_piped_command_says_nothing_beside_its_result(
 ):
     bundle = bundles / "bench" / "tiger"
     asyncio.run(built_bundle(bundle, cache_dir))
+    asyncio.run(build_solver(cache_dir))
     done = subprocess.run(
         [AOS, command[0], str(bundle), *command[1:], "--json"],
         capture_output=True,
