@@ -11,7 +11,8 @@ from aos_protocol.diagnostics import Diagnostic, Span
 
 _UNREAD = frozenset(("AOS101", "AOS102", "AOS103", "AOS104", "AOS107", "AOS108"))
 """Text that is not taken up as it stands, with what it declares."""
-_GROUPED = frozenset(("AOS110", "AOS116", "AOS123", "AOS201"))
+_STRAY = "AOS104"
+_OF_NAMES = frozenset(("AOS110", "AOS116", "AOS123", "AOS201"))
 _NEEDS_DECLARATION = frozenset(("AOS110", "AOS116", "AOS119"))
 _SHOWN = 6
 
@@ -45,9 +46,15 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     groups: dict[Hashable, list[Diagnostic]] = {}
     for number, one in enumerate(found):
         if not follows(one):
-            key = (one.code, one.message, one.hint) if one.code in _GROUPED else number
-            groups.setdefault(key, []).append(one)
+            groups.setdefault(_key(one) or number, []).append(one)
     return tuple(_with_places(first, [one.span for one in rest]) for first, *rest in groups.values())
+
+
+def _key(one: Diagnostic) -> Hashable | None:
+    """Returns what findings of one mistake have in common."""
+    if one.code in _OF_NAMES:
+        return one.code, one.message, one.hint
+    return (one.code, one.message, one.span.file) if one.code == _STRAY else None
 
 
 def _has_near_name(one: Diagnostic) -> bool:

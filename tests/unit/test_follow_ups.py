@@ -63,6 +63,11 @@ def test_a_name_that_nothing_declares_is_told_once_with_its_places():
     assert only.endswith("Also: line 23, walk.sd:9")
 
 
+def test_text_without_its_section_is_told_once_however_many_pieces_it_has():
+    (only,) = told(("skill", "dynamic_model:\n", "dynamic model:\n// It walks.\n"))
+    assert only == "walk.sd:8 AOS104 Did you mean `dynamic_model:`? Also: line 10"
+
+
 def test_mistakes_that_have_nothing_to_do_with_each_other_are_told_together():
     codes = told(
         ("environment", "horizon: 4", "horizon: ten"),
