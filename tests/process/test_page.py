@@ -68,9 +68,21 @@ def screens(page: Page) -> Iterator[str]:
         yield f"{width}-{theme}"
 
 
+# The page's policy refuses what `wait_for_function` evaluates from its second look on.
+FITS = """() => new Promise(told => {
+    let frames = 600;
+    const look = () => {
+        const fits = document.documentElement.scrollWidth <= innerWidth;
+        if (fits || --frames === 0) told(fits);
+        else requestAnimationFrame(look);
+    };
+    look();
+})"""
+
+
 def wait_for_width(page: Page) -> None:
     """Waits until nothing is wider than the screen, which charts follow a frame later."""
-    page.wait_for_function("document.documentElement.scrollWidth <= innerWidth")
+    assert page.evaluate(FITS), "something stays wider than the screen"
 
 
 def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
