@@ -4,6 +4,7 @@ They are known by their codes and files alone. Editors mark each place, and do n
 """
 
 from collections.abc import Hashable, Iterable
+from pathlib import PurePath
 
 import msgspec
 
@@ -21,9 +22,9 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Returns the findings without those that follow from others.
 
     Left out are warnings and remarks on a file with errors. Where text is not taken up, so is what its file
-    lacks, and names that nothing declares and no other name is near, in all files. A compiler's error is left
-    out where another error stands before it in its line. One that stands at several places is told at the
-    first, with the others in the hint.
+    lacks, and names that nothing declares and no other name is near, in files that use what it declares. A
+    compiler's error is left out where another error stands before it in its line. A name that stands at
+    several places is told at the first, with the others in the hint.
     """
     found = tuple(diagnostics)
     errors = [one for one in found if one.is_error]
@@ -41,7 +42,8 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
                 return one.span.file in unread
             case "AOS201":
                 return lines[one.span.file, one.span.line] is not one
-        return one.code in _NEEDS_DECLARATION and bool(unread) and not _has_near_name(one)
+        is_of_unread = any(_declares_for(file, one.span.file) for file in unread)
+        return one.code in _NEEDS_DECLARATION and is_of_unread and not _has_near_name(one)
 
     groups: dict[Hashable, list[Diagnostic]] = {}
     for number, one in enumerate(found):
@@ -55,6 +57,15 @@ def _key(one: Diagnostic) -> Hashable | None:
     if one.code in _OF_NAMES:
         return one.code, one.message, one.hint
     return (one.code, one.message, one.span.file) if one.code == _STRAY else None
+
+
+def _declares_for(file: str, user: str) -> bool:
+    """Returns whether a file may declare what another one uses.
+
+    An environment and low-level types do for all files, a skill and its mapping for each other. The name of a
+    JSON document does not say what it is.
+    """
+    return file.endswith((".ef", ".lf", ".json")) or PurePath(file).stem == PurePath(user).stem
 
 
 def _has_near_name(one: Diagnostic) -> bool:

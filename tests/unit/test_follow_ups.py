@@ -76,6 +76,12 @@ def test_mistakes_that_have_nothing_to_do_with_each_other_are_told_together():
         texts=TWO_RESPONSES,
     )
     assert [one.split()[1] for one in codes] == ["AOS106", "AOS105", "AOS110"]
+    codes = told(
+        ("environment", "state.first.x", "state.third.x"),
+        ("mapping", "code:\nfar_m", "far_m"),
+        texts=TWO_RESPONSES,
+    )
+    assert [one.split()[1] for one in codes] == ["AOS110", "AOS104"]
 
 
 def test_what_a_compiler_says_of_one_line_or_one_name_is_told_once():
