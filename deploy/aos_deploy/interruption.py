@@ -71,12 +71,9 @@ async def run_until_interrupted(mission: Stoppable, is_unread: asyncio.Event) ->
     is_terminal = _is_terminal()
     work = loop.create_task(mission.run())
     interrupted_s: float | None = None
-    is_stopping = False
 
     def stop() -> None:
-        nonlocal is_stopping
-        if not is_stopping:  # Ctrl-C ends the reader as well.
-            is_stopping = True
+        if not work.cancelling():  # Ctrl-C ends the reader as well.
             work.cancel()
 
     def interrupt() -> None:

@@ -2,7 +2,7 @@
 
 import asyncio
 from abc import ABC, abstractmethod
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager, suppress
 from pathlib import Path
 
@@ -131,10 +131,7 @@ class Run(ABC):
             raise
 
     async def _look(self, until_over: asyncio.Timeout) -> None:
-        is_running = True
-        while is_running:
-            await asyncio.sleep(_LOOK_S)
-            is_running = await asyncio.to_thread(lambda: self.is_running)
+        await _until_not(lambda: self.is_running)
         until_over.reschedule(asyncio.get_running_loop().time())
 
     def _over(self) -> GatewayError:
@@ -167,15 +164,11 @@ class KeptRun(Run):
         return self._last
 
     async def end(self) -> None:
-        interrupted = await asyncio.to_thread(self._interrupt)
-        if not interrupted:
+        if not await asyncio.to_thread(self._interrupt):
             raise self._over()
         try:
             async with asyncio.timeout(_END_S):
-                is_there = True
-                while is_there:
-                    await asyncio.sleep(_LOOK_S)
-                    is_there = await asyncio.to_thread(lambda: self.directory.is_held)
+                await _until_not(lambda: self.directory.is_held)
         except TimeoutError:
             raise GatewayError(f"{self.name} was asked to end, and has not yet", code="AOS601") from None
 
@@ -304,3 +297,11 @@ def _ending_of(folder: Path) -> str:
         return account_of(folder).verdict().ending or "killed"
     except AosError:
         return "killed"
+
+
+async def _until_not(holds: Callable[[], bool]) -> None:
+    """Looks at files, which tell nobody that they change."""
+    does_hold = True
+    while does_hold:
+        await asyncio.sleep(_LOOK_S)
+        does_hold = await asyncio.to_thread(holds)
