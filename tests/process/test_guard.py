@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import descendants, until_ended
+from processes import HANG_S, descendants, until_ended
 
 from aos_runtime.processes.children import PIPE, Child, Limits, guarded
 
@@ -70,6 +70,18 @@ async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace():
     await child.stdout.readline()
     below = descendants(child.pid)
     assert await child.stop(grace_s=5) == -signal.SIGKILL
+    await until_ended(below)
+
+
+async def test_what_an_ended_command_left_behind_is_told_and_killed_though_it_ignores_sigterm():
+    script = "sh -c \"trap '' TERM; echo up; while true; do sleep 1000; done\" & read line; exit 3"
+    child = await start(script, Limits(grace_s=HANG_S, left_behind_s=0.1))
+    await child.stdout.readline()
+    below = descendants(child.pid)
+    child.stdin.write(b"end\n")
+    assert await child.wait_for(HANG_S / 2)
+    assert child.returncode == 3
+    assert b" (sh) went on after SIGTERM, and is killed" in await child.stderr.read()
     await until_ended(below)
 
 

@@ -17,6 +17,10 @@ from aos_protocol.access import ADAPTER, ROLES, SERVER, WATCHER, Party
 from aos_runtime.processes.children import Limits, guarded
 from aos_runtime.processes.settings import ServiceSettings
 
+_LEFT_BEHIND_S = 2.0
+"""Processes that an adapter which ended by itself has left behind have this time to end. It is less than that
+after which a silent adapter is taken for frozen."""
+
 
 class Program(msgspec.Struct, frozen=True, kw_only=True):
     """A service to be supervised.
@@ -87,7 +91,9 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
         """The command line."""
         own = [sys.executable, "-m", self.module, str(settings)]
         words = words_of(self.command) if self.command else own
-        return guarded(words, Limits(grace_s=self.stop_s)) if self.is_guarded else words
+        left_behind_s = _LEFT_BEHIND_S if self.is_adapter else None
+        limits = Limits(grace_s=self.stop_s, left_behind_s=left_behind_s)
+        return guarded(words, limits) if self.is_guarded else words
 
 
 def words_of(command: tuple[str, ...]) -> list[str]:

@@ -46,7 +46,8 @@ class Streams(TypedDict, total=False):
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True):
-    """The limits of a guarded command; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL.
+    """The limits of a guarded command; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL,
+    `left_behind_s` for what a command that ended by itself has left behind; None is the grace.
 
     The `niceness` is added to this process's own: of a command with 19, all others come first.
     """
@@ -56,6 +57,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True):
     file_bytes: int | None = None
     niceness: int | None = None
     grace_s: float = 0.5
+    left_behind_s: float | None = None
 
 
 class Confinement(msgspec.Struct, frozen=True, kw_only=True):

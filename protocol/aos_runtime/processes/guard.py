@@ -1,14 +1,15 @@
 r"""A small process around a command that must leave nothing behind: compilers, engines, mapping workers.
 
     python -m aos_runtime.processes.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] \
-        [--niceness N] [--grace-s S] [--profile NAME [--read PATH]... [--execute PATH]... [--write PATH]... \
-        [--trust YES]] -- command...
+        [--niceness N] [--grace-s S] [--left-behind-s S] [--profile NAME [--read PATH]... \
+        [--execute PATH]... [--write PATH]... [--trust YES]] -- command...
 
 The command runs in a process group of its own, under the limits, on the guard's own stdin, stdout and
 stderr. When it ends, when the guard is told to stop (SIGTERM, SIGINT, SIGHUP), or when the guard's parent
 ends, every descendant of the guard is ended, those that left the group too: SIGTERM, and after the grace
-SIGKILL; after SIGQUIT, SIGKILL at once. The guard then ends the way the command did, by the same signal or
-with the same status; with 127 if the command cannot be started.
+SIGKILL, which the error output tells; after SIGQUIT, SIGKILL at once. Where the command ended by itself, the
+time `left_behind_s` counts in place of the grace. The guard then ends the way the command did, by the same
+signal or with the same status; with 127 if the command cannot be started.
 
 With a profile the command runs in a sandbox, and may use the files below the paths named and no others; see
 `sandbox.confine`. Where the kernel cannot do that, it does not run, unless its documents are trusted.
@@ -55,7 +56,7 @@ _LIMITS = {
 
 def main(arguments: list[str]) -> NoReturn:
     """Runs the command named in the arguments and ends as it ends."""
-    grace_s, niceness, limits, sandbox, command = _parse(arguments)
+    grace_s, left_behind_s, niceness, limits, sandbox, command = _parse(arguments)
     signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
     die_with_parent(signal.SIGTERM)
     adopt_orphans()
@@ -65,8 +66,8 @@ def main(arguments: list[str]) -> NoReturn:
     pid = os.fork()
     if pid == 0:
         _become(command, niceness, limits, sandbox, guard_pid)
-    status = _wait(pid, grace_s)
-    _end_descendants(grace_s)
+    status, was_asked = _wait(pid, grace_s)
+    _end_descendants(grace_s if was_asked or left_behind_s is None else left_behind_s)
     _end_like(status)
 
 
@@ -90,19 +91,22 @@ def _leave_to_keeper(grace_s: float) -> None:
             os.kill(keeper, signal.SIGCONT)  # A frozen one hears nothing.
 
 
-def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], Sandbox, list[str]]:
-    """The grace, the niceness, the limits by kind, the sandbox, and the command."""
+def _parse(arguments: list[str]) -> tuple[float, float | None, int, dict[int, int], Sandbox, list[str]]:
+    """The grace, that of what is left behind, the niceness, the limits by kind, the sandbox, the command."""
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options, command = arguments[:split], arguments[split + 1 :]
     if len(options) % 2 or not command:
         _fail("usage: guard [--option value]... -- command...")
     grace_s = _GRACE_S
+    left_behind_s: float | None = None
     niceness = 0
     limits: dict[int, int] = {}
     sandbox = Sandbox()
     for name, text in zip(options[::2], options[1::2], strict=True):
         if name == "--grace-s":
             grace_s = float(text)
+        elif name == "--left-behind-s":
+            left_behind_s = float(text)
         elif name == _NICENESS:
             niceness = int(text)
         elif name in _LIMITS:
@@ -115,7 +119,7 @@ def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], Sandbox, l
             sandbox.files.append((text, ACCESS[name]))
         else:
             _fail(f"unknown option {name}")
-    return grace_s, niceness, limits, sandbox, command
+    return grace_s, left_behind_s, niceness, limits, sandbox, command
 
 
 def _become(
@@ -164,13 +168,13 @@ def _limit(kind: int, value: int) -> None:
     resource.setrlimit(kind, (value, value))
 
 
-def _wait(pid: int, grace_s: float) -> int:
-    """The command's wait status; being told to stop stops it first."""
+def _wait(pid: int, grace_s: float) -> tuple[int, bool]:
+    """The command's wait status, and whether it was asked to end; being told to stop stops it first."""
     kill_at_s: float | None = None
     while True:
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:
-            return status
+            return status, kill_at_s is not None
         if kill_at_s is None:
             received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
             if received == _AT_ONCE:
@@ -181,7 +185,7 @@ def _wait(pid: int, grace_s: float) -> int:
                 kill_at_s = time.monotonic() + grace_s
         elif time.monotonic() >= kill_at_s:
             _signal_group(pid, signal.SIGKILL)
-            return os.waitpid(pid, 0)[1]
+            return os.waitpid(pid, 0)[1], True
         elif _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, kill_at_s - time.monotonic())):
             kill_at_s = 0.0
             os.kill(os.getpid(), _AT_ONCE)
@@ -190,10 +194,14 @@ def _wait(pid: int, grace_s: float) -> int:
 def _end_descendants(grace_s: float) -> None:
     """Ends what the command left behind; it has become this process's own children."""
     kill_at_s = time.monotonic() + grace_s
+    told: set[int] = set()
     while children := _children():
         is_late = time.monotonic() >= kill_at_s
         for child in children:
             os.kill(child, signal.SIGKILL if is_late else signal.SIGTERM)
+            if is_late and kill_at_s and child not in told:
+                told.add(child)
+                _tell(f"{child} ({_name(child)}) went on after SIGTERM, and is killed")
         if _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, 0.05)):
             kill_at_s = 0.0
         _reap()
@@ -207,6 +215,11 @@ def _children() -> list[int]:
     _reap()
     with open(f"/proc/self/task/{os.getpid()}/children", "rb") as listing:  # noqa: PTH123
         return [int(pid) for pid in listing.read().split()]
+
+
+def _name(child: int) -> str:
+    with open(f"/proc/{child}/comm", errors="replace") as name:  # noqa: PTH123
+        return name.read().strip()
 
 
 def _reap() -> None:
@@ -239,8 +252,15 @@ def _end_like(status: int) -> NoReturn:
 
 
 def _fail(text: str) -> NoReturn:
-    os.write(2, f"guard: {text}\n".encode())
+    _tell(text)
     os._exit(NOT_STARTED)
+
+
+def _tell(text: str) -> None:
+    try:
+        os.write(2, f"guard: {text}\n".encode())
+    except OSError:
+        return  # a log on a full disk, or one that nobody reads
 
 
 if __name__ == "__main__":
