@@ -368,7 +368,7 @@ def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[G
     kept(page, "thousand")
 
 
-def test_a_mission_whose_model_is_compiled_says_so_in_the_answer_the_stream_and_the_page(
+def test_a_mission_whose_model_is_compiled_says_so_everywhere_and_another_follows_where_it_is_stopped(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     compiler = tmp_path / "c++"
@@ -376,7 +376,8 @@ def test_a_mission_whose_model_is_compiled_says_so_in_the_answer_the_stream_and_
     compiler.chmod(0o755)
     monkeypatch.setenv("CXX", str(compiler))
     with gateway(tmp_path, tmp_path / "cache") as served:
-        started = served.post("/v1/runs", {"deploy_file": str(ROOT / "deploy/errand.yaml"), "model": True})
+        start = {"deploy_file": str(ROOT / "deploy/errand.yaml"), "model": True, "stay": True}
+        started = served.post("/v1/runs", start)
         page = opened(browser, served)
         page.goto(f"http://127.0.0.1:{served.port}/#/missions/latest")
         expect(page.locator(".phase")).to_have_text("Compiling the model")
@@ -385,6 +386,9 @@ def test_a_mission_whose_model_is_compiled_says_so_in_the_answer_the_stream_and_
         assert (state["mission"], state["phase"]) == (started.json["mission"], "compiling")
         with served.events("/v1/events?mission=latest") as events:
             assert next(data for _, kind, data in events if kind == "state") == state
+        page.get_by_role("button", name="Stop").click()
+        expect(page.get_by_text("Next mission")).to_have_count(1)
+        expect(page.get_by_role("button", name="Stop")).to_have_count(0)
         record = json.loads((tmp_path / "runs/latest/run.json").read_text())
         os.kill(record["pid"], signal.SIGINT)
-        expect(page.locator(".phase")).to_have_text("Cancelled")
+        expect(page.locator(".phase")).to_have_text("Stopped")

@@ -243,8 +243,9 @@ class KeptRun(Run):
         return self.directory.path if number is None else mission_folder(self.directory.path, number)
 
     def summary(self, mission: str) -> Summary | None:
-        """The summary of a mission that has ended."""
-        return self.directory.read_summary(number_in(self.name, mission) or 0)
+        """The summary of a mission that has ended; that of its run where it has not begun."""
+        number = number_in(self.name, mission) or 0
+        return self.directory.read_summary(number if number in mission_folders(self.directory.path) else 0)
 
 
 class RemoteRun(Run):

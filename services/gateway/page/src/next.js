@@ -1,8 +1,8 @@
-// The next mission of a system that stays, where one has ended and none runs.
+// The next mission of a system that stays, where one has ended or was kept from beginning, and none runs.
 import { Findings, html, useEffect, useState } from "./ui.js";
 import { hasToken, read, write } from "./api.js";
 import { addressOf, go } from "./route.js";
-import { mission, state, successor } from "./store.js";
+import { isGivenUp, mission, state, successor } from "./store.js";
 
 export function Next() {
   const [stays, setStays] = useState(false);
@@ -11,7 +11,7 @@ export function Next() {
   const [problem, setProblem] = useState(null);
   const [busy, setBusy] = useState(false);
   const run = mission.value?.run;
-  const isOver = state.value?.phase === "ended";
+  const isOver = state.value?.phase === "ended" || isGivenUp.value;
   useEffect(() => {
     if (!run || !isOver || !hasToken()) return;
     read(`/v1/runs/${encodeURIComponent(run)}`).then(
@@ -32,8 +32,8 @@ export function Next() {
       go(addressOf((await write(`/v1/runs/${encodeURIComponent(run)}/missions`, body)).mission));
     } catch (error) {
       setProblem(error);
-      setBusy(false);
     }
+    setBusy(false);
   }
 
   return html`<details class="card next">

@@ -3,14 +3,14 @@ import { Findings, html } from "./ui.js";
 import { signal } from "@preact/signals";
 import { hasToken, write } from "./api.js";
 import { addressOf, route } from "./route.js";
-import { mission, state, successor } from "./store.js";
+import { isGivenUp, mission, state, successor } from "./store.js";
 
 const failed = signal(null);
 const busy = signal("");
 
 const MAY_NOT = ["waiting", "compiling", "ended"]; // No mission has begun, or none runs any more.
 const isUnderWay = () => mission.value?.is_running && state.value && !MAY_NOT.includes(state.value.phase);
-const isToBegin = () => mission.value?.is_running && ["waiting", "compiling"].includes(state.value?.phase);
+const isToBegin = () => mission.value?.is_running && !isGivenUp.value && ["waiting", "compiling"].includes(state.value?.phase);
 export const canSteer = () => hasToken() && isUnderWay();
 const isHeld = () => Boolean(state.value?.held_by) || state.value?.phase === "holding";
 

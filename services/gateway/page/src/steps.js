@@ -36,7 +36,7 @@ export function Table() {
 
 const Row = ({ step, isNow }) => html`<tr aria-selected=${isNow} onClick=${() => selectStep(step.step)}>
   <td><button class="row-step" aria-label=${`Step ${step.step}`}>${step.step}</button></td>
-  <td class="action" title=${step.action}>${briefAction(step.action)}</td>
+  <td class="action" title=${step.action}>${briefAction(step.action).split(/(?<=[(,])/).map((part) => html`${part}<wbr />`)}</td>
   <td class="num wide-only">${signed(step.value)}</td>
   <td>${step.status ? (hasFailed(step) ? html`<span class="bad">✕ ${step.status.replace("_", " ")}</span>` : step.seen) : html`<span class="muted">running</span>`}</td>
   <td class="num wide-only">${step.status ? chance(step.expected) : ""}</td>

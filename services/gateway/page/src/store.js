@@ -23,6 +23,7 @@ export const successor = signal(null);
 export const loadedIn = signal(null);
 
 export const last = computed(() => steps.value.at(-1) ?? null);
+export const isGivenUp = computed(() => state.value?.phase === "waiting" && !!state.value.remark);
 export const isGone = computed(() => !!mission.value && !mission.value.is_running && state.value?.phase !== "ended");
 export const isLive = computed(() => route.value.step === null);
 export const at = computed(() => {
