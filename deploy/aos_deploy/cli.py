@@ -20,6 +20,8 @@ from aos_protocol.errors import AosError
 
 _COMMANDS = {
     "up": ("aos_deploy.commands.up", "Bring a robot's system up and run its mission."),
+    "down": ("aos_deploy.commands.down", "End a running system in order."),
+    "logs": ("aos_deploy.commands.logs", "Print the logs of a run."),
     "decisions": ("aos_deploy.commands.decisions", "Print every decision of a mission from its first step."),
     "export": ("aos_deploy.commands.export", "Write the records of runs to files to take home."),
     "serve": ("aos_gateway.command", "Show runs, living and past, on a page and over HTTP."),

@@ -180,6 +180,31 @@ def test_of_two_living_missions_one_has_to_be_named(root: Path, place: Place, mi
         assert up.end() == (130, "")
 
 
+def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads_them_to_the_end(
+    root: Path, tmp_path: Path
+):
+    place = Place(root, tmp_path, "tcp/127.0.0.1:0", tmp_path / "running")
+    with place.up() as up:
+        assert up.has_decided()
+        command = [BIN / "aos", "logs", "router", "python", "--follow", "--json"]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        with subprocess.Popen(command, cwd=tmp_path, env=place.environment, text=True, **pipes) as following:
+            assert following.stdout is not None
+            first = json.loads(following.stdout.readline())
+            assert (first["service"], "loading robot.py" in first["line"]) == ("python", True)
+            assert "no system that runs is named lion" in place.run("down", "lion").stderr
+            ended = json.loads(place.run("down", place.deploy.name, "--json").stdout)
+            assert (ended["robot"], ended["ending"], ended["steps"]) == ("tiger", "cancelled", 1)
+            assert up.ended() == (130, "")
+            services = {
+                json.loads(line)["service"] for line in following.communicate(timeout=HANG_S)[0].splitlines()
+            }
+            assert (services, following.returncode) == ({"python", "router"}, 0)
+    last = place.run("logs", "router", "--lines", "1").stdout
+    assert (last.startswith("router | "), last.count("\n")) == (True, 1)
+    assert "Did you mean `router`?" in place.run("logs", "ruter").stderr
+
+
 def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path):
     place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", tmp_path)
     with place.up() as one, place.up() as other:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -60,16 +61,12 @@ def runs(
         return
     going_on = {run.path: run for run in living_runs()}
     kept = {} if running else {run.path: run for run in _runs_in(folder or runs_here())}
-    entries = [_entry(run) for run in (kept | going_on).values()]
+    entries = [entry_of(run) for run in (kept | going_on).values()]
     entries.sort(key=lambda entry: entry.started)
     if as_json:
         print_json(entries)
         return
-    for entry in (each for listed in entries for each in (listed, *listed.missions)):
-        steps = "" if entry.steps is None else count(entry.steps, "step")
-        took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
-        values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
-        typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")
+    print_entries(entries)
     if not entries:
         where = "" if running else f", and there is no run in {folder or runs_here()}"
         typer.echo(f"No mission runs{where}.")
@@ -98,6 +95,15 @@ def prune(
     )
 
 
+def print_entries(entries: Iterable[Entry]) -> None:
+    """Each on a line, those of its missions below it."""
+    for entry in (each for listed in entries for each in (listed, *listed.missions)):
+        steps = "" if entry.steps is None else count(entry.steps, "step")
+        took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
+        values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
+        typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")
+
+
 def _runs_in(folder: Path) -> list[RunDirectory]:
     found = folder.resolve().glob("*/run.json")
     return [RunDirectory(record.parent) for record in found if not record.parent.is_symlink()]
@@ -111,7 +117,8 @@ def _ending_in_journal(folder: Path, otherwise: str = "killed") -> str:
         return otherwise
 
 
-def _entry(run: RunDirectory) -> Entry:
+def entry_of(run: RunDirectory) -> Entry:
+    """A run as it is listed."""
     try:
         record = run.read_record()
     except DeployError:

@@ -114,6 +114,26 @@ def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
     return chosen
 
 
+def living_system(name: str, runs: Path | None) -> RunDirectory:
+    """The run that goes on of a robot or a deploy file.
+
+    `runs` is as in `chosen_run`. DeployError AOS801 if there are several, BusError AOS605 if there is none.
+    """
+    here, elsewhere = ([run for run in each if _is_named(run, name)] for each in _living(runs))
+    named = here or elsewhere
+    if len(named) > 1:
+        raise _several(named)
+    if not named:
+        hint = "`aos runs --running` lists those that run"
+        raise BusError(f"no system that runs is named {name}", code="AOS605", hint=hint)
+    return named[0]
+
+
+def _is_named(run: RunDirectory, name: str) -> bool:
+    record = run.read_record()
+    return name == record.robot or Path(name).resolve() == Path(record.deploy_file)
+
+
 def _opened(file: Path) -> Path:
     """The directory of the run in a file, unpacked."""
     runs = opened_bundle(file)
