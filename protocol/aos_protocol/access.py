@@ -13,8 +13,6 @@ enforces the table, and `Bus` looks at it before it sends. A new key is a row he
 The router carries everything and says nothing itself.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Literal, NamedTuple
 

@@ -4,8 +4,6 @@ Every failure to decode is a BusError with code AOS602 (malformed), AOS603 (anot
 names the field; nothing else escapes, whatever the bytes are.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any, TypeVar
 

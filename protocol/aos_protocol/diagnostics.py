@@ -4,8 +4,6 @@ A diagnostic is collected, never raised: one run over a bundle reports all of th
 exceptions and live in `errors`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import msgspec

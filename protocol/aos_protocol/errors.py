@@ -20,8 +20,6 @@ compares no codes:
 A user's mistakes are collected as diagnostics; an AosError may carry them.
 """
 
-from __future__ import annotations
-
 import sys
 
 from aos_protocol.diagnostics import Diagnostic, render

@@ -1,7 +1,5 @@
 """The parts of newer Pythons that Python 3.10 lacks, for robots on Ubuntu 22.04 and ROS 2 Humble."""
 
-from __future__ import annotations
-
 import sys
 
 __all__ = ["StrEnum"]

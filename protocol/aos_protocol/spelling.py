@@ -1,7 +1,5 @@
 """Names in messages: what was probably meant by one that does not exist, and what a terminal shows."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable
 from pathlib import Path

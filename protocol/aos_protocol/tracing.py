@@ -4,8 +4,6 @@ Solver, middleware and adapter need not hand them on: whoever knows an activatio
 hexadecimal, as in W3C's trace context.
 """
 
-from __future__ import annotations
-
 from hashlib import sha256
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Reasons why skills cannot be run, as people read them: what several have in common is told once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 NO_ADAPTER = "no adapter answers calls of "

@@ -3,8 +3,6 @@
 Only `monotonic_s` may decide anything; the wall clock is for journals and people.
 """
 
-from __future__ import annotations
-
 import time
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """The place in somebody's Python where something happened: the innermost line that is in no library."""
 
-from __future__ import annotations
-
 import sysconfig
 from collections.abc import Iterable
 from traceback import FrameSummary

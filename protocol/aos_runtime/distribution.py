@@ -1,7 +1,5 @@
 """AOS as a package: the name that pip knows it by, which is not the name of its commands, and its extras."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 DISTRIBUTION = "aos-autonomy"

@@ -11,8 +11,6 @@ Where nothing is armed a place costs the look at one variable. Only `Journal` re
 own making: `FILE.KIND.before` and `FILE.KIND.after`.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import signal

@@ -4,8 +4,6 @@ People's code gives other things: numpy's numbers and arrays, enumerations, mess
 objects of their own classes. Each of them has plain data that it stands for.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from enum import Enum
 from typing import Any

@@ -1,7 +1,5 @@
 """Files of which nobody ever reads a part."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from pathlib import Path

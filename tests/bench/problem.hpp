@@ -8,7 +8,6 @@
 //   int promising_action(const State&, Random&)           for play-outs that use what the robot has learnt
 #pragma once
 
-#include <cstdint>
 
 namespace bench {
 

@@ -1,7 +1,5 @@
 """Missions of the loop with a simulated world, whose rows are kept as a journal keeps them."""
 
-from __future__ import annotations
-
 from collections.abc import Awaitable, Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple

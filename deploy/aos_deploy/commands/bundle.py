@@ -1,7 +1,5 @@
 """`aos bundle`: documents sent to a running registry, and what it holds."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """Code in documents: text with its places, and the blocks that it stands in."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

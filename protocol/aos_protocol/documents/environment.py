@@ -1,7 +1,5 @@
 """The environment document: state and its types, initial belief, extrinsic changes, rewards, monitors."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

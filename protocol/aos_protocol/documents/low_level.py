@@ -1,7 +1,5 @@
 """The environment's Python side: low-level types and constants."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,7 +1,5 @@
 """All documents of one robot and task, and what its mission adds to them."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

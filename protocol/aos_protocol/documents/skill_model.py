@@ -1,7 +1,5 @@
 """The skill document (SD): how a skill changes the world, what it costs, what it reports."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Span

@@ -1,7 +1,5 @@
 """The base of every message, the envelope around it, and the answer to a fault."""
 
-from __future__ import annotations
-
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic

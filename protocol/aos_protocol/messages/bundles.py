@@ -1,7 +1,5 @@
 """Documents on their way into the registry, and what it holds."""
 
-from __future__ import annotations
-
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.messages.base import Message

@@ -1,7 +1,5 @@
 """Model against reality: the sequential tests of what skills report, and their alarms."""
 
-from __future__ import annotations
-
 from aos_protocol.messages.base import Message
 
 

@@ -1,7 +1,5 @@
 """The mission: its phase, its beliefs, and its decisions."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, Literal
 

@@ -1,7 +1,5 @@
 """The records of what decides: the searches behind a decision, and beliefs as a whole."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from aos_protocol.messages.base import Message

@@ -1,7 +1,5 @@
 """Steering: what an operator wants of a mission that runs, and what became of it."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from aos_protocol.messages.base import Message

@@ -4,8 +4,6 @@ An adapter turns calls into motion and the robot's data into topics. It is a cla
 aos_runtime.adapters` runs one of it in a process of its own.
 """
 
-from __future__ import annotations
-
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, Observed
 from aos_runtime.adapters.host import Host
 from aos_runtime.adapters.settings import AdapterSettings, Binding

@@ -7,8 +7,6 @@ The first is the command of an adapter `command`, which finds in its environment
 is how aos-up starts an adapter of the kind `class`.
 """
 
-from __future__ import annotations
-
 import sys
 
 from aos_runtime.adapters.host import serve_adapter

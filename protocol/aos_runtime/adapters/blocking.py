@@ -1,7 +1,5 @@
 """Adapters that hold up their event loop: such a call cannot be cancelled, and nothing else can be called."""
 
-from __future__ import annotations
-
 import asyncio
 import faulthandler
 import logging

@@ -1,7 +1,5 @@
 """The calls of an adapter: one at a time, at most one motion for each id, a deadline for each and its end."""
 
-from __future__ import annotations
-
 import asyncio
 import inspect
 import logging

@@ -3,8 +3,6 @@
 The deploy file says which programs run, so what it says is trusted as they are.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from types import SimpleNamespace

@@ -3,8 +3,6 @@
 Calls are in `calls.py`, messages on topics in `outbox.py`.
 """
 
-from __future__ import annotations
-
 import asyncio
 import importlib
 import inspect

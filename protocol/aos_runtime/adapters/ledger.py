@@ -4,8 +4,6 @@ A repeat of an ended id gets the stored answer, or the same error. A repeat of o
 ended gets "outcome unknown", and nothing moves, unless it runs: then whoever carries the ledger lets it join.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_protocol.errors import AosError, SkillError, error_from_code

@@ -1,7 +1,5 @@
 """The messages of an adapter that wait to be sent, from any thread, in order."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import threading

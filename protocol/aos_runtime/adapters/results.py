@@ -1,7 +1,5 @@
 """The result of a call, from what an adapter has answered."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from aos_protocol.errors import SkillError

@@ -1,7 +1,5 @@
 """The call that an adapter runs, and what is told of its progress."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """The values that an adapter gives, made ready for the bus."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The settings that an adapter's process is started with."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec

@@ -1,7 +1,5 @@
 """The settings of an adapter that is started by a command: from its words and its environment."""
 
-from __future__ import annotations
-
 import os
 import stat
 import sys

@@ -1,7 +1,5 @@
 """Requests that were started and how they ended, so that one that is repeated moves nothing twice."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 

@@ -7,8 +7,6 @@ A system that ends with its mission has none: its mission has the run's name and
 are the run's own.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aos_protocol.errors import StorageError

@@ -4,8 +4,6 @@ A view or a computed column is a program. SQLite runs it for whoever reads, who 
 of Ctrl-C, where it has no end.
 """
 
-from __future__ import annotations
-
 import sqlite3
 
 

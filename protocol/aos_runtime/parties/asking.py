@@ -1,7 +1,5 @@
 """Asking a service that may be started again before it has answered."""
 
-from __future__ import annotations
-
 import logging
 from typing import TypeVar
 

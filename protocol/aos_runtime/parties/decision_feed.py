@@ -1,7 +1,5 @@
 """The order of decision records that come out of a stream and out of a history."""
 
-from __future__ import annotations
-
 from aos_protocol.messages import DecisionRecord, History
 
 

@@ -4,8 +4,6 @@ A solver that was replaced may still have messages on their way, and somebody el
 that are not his. Middleware and adapters each have a fence.
 """
 
-from __future__ import annotations
-
 import asyncio
 import hashlib
 from collections.abc import Awaitable, Callable

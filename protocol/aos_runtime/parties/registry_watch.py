@@ -1,7 +1,5 @@
 """The registry as other services see it: the newest documents of a project, and those of each revision."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 from collections.abc import Awaitable, Callable

@@ -1,7 +1,5 @@
 """Waiting for a state that a service tells when it changes and gives to whoever asks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

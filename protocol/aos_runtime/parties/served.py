@@ -1,7 +1,5 @@
 """The adapters' paths that are served now, and why others are not, as their tokens tell."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

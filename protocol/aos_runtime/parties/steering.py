@@ -1,7 +1,5 @@
 """The questions with which an operator starts a mission and steers the one that runs."""
 
-from __future__ import annotations
-
 import getpass
 import socket
 import uuid

@@ -7,8 +7,6 @@ A service ends with its parent, on SIGTERM, or with a fault. SIGTERM cancels `se
 disk neither may have space: the exit status tells that, too.
 """
 
-from __future__ import annotations
-
 import asyncio
 import gc
 import logging

@@ -1,7 +1,5 @@
 """A trial of the sandbox: a confined program that tries what it may not."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The settings of a service process, and the place of its last word."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

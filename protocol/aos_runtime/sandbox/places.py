@@ -1,7 +1,5 @@
 """The files of this machine that confined programs need: libraries, compilers, Python."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil

@@ -4,8 +4,6 @@ Engine and worker run code of documents: they may call what computing takes. Com
 may call what the table does not refuse. Which files they may use is said where they are started.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 

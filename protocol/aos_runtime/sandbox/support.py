@@ -3,8 +3,6 @@
 A machine whose kernel cannot confine runs documents only where somebody has said that they are trusted.
 """
 
-from __future__ import annotations
-
 import logging
 import os
 from functools import cache

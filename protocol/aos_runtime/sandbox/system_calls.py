@@ -4,8 +4,6 @@ Numbers are those of asm/unistd_64.h (x86-64) and asm-generic/unistd.h (arm64). 
 have the same.
 """
 
-from __future__ import annotations
-
 ARCHITECTURES = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 """The machines, as `uname` names them, that filters can be made for, and what the kernel calls them."""
 

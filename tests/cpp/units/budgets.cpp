@@ -1,7 +1,6 @@
 // What a budget in simulations buys in each planner: budget.hpp. Work is counted here, and no clock is asked.
 #include "aos/planning/planners.hpp"
 
-#include <initializer_list>
 #include <string>
 #include <vector>
 

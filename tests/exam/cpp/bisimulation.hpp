@@ -1,7 +1,6 @@
 // How many states there are at least once those are taken together that no experiment can tell apart.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

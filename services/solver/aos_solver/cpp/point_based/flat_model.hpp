@@ -55,7 +55,6 @@ struct FlatModel {
   std::vector<Start> starts;
 
   std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
-  // The outcomes of all actions in a state.
   std::span<const Outcome> outcomes_of(std::size_t state) const {
     return {outcomes.begin(row(state, 0)), outcomes.end(row(state, actions - 1))};
   }

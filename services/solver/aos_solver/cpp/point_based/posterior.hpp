@@ -31,7 +31,6 @@ class Posterior {
     return work;
   }
 
-  // The probability of an observation.
   double probability_of(const ObservationBranch& branch) const {
     double total = 0;
     for (const ObservationBranch::Successor& successor : branch.successors) {

@@ -21,7 +21,6 @@ inline std::vector<std::uint32_t> stable_order(std::size_t count, FunctionRef<bo
   return places;
 }
 
-// Sorts as std::stable_sort does.
 template <class Iterator, class IsBefore>
 void sort_stably(Iterator first, Iterator last, IsBefore is_before) {
   const auto at = [first](std::uint32_t place) -> decltype(auto) { return first[static_cast<std::ptrdiff_t>(place)]; };

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -106,7 +105,6 @@ class Belief {
     }
   }
 
-  // The initial belief as particles.
   static Belief drawn(Sampler& random) { return Belief{ParticleFilter<Model>{random}.initial()}; }
 
   // The belief after an action, before any observation.

@@ -32,7 +32,6 @@ struct UpdateEffort {
   }
 };
 
-// That of this thread's update.
 inline thread_local constinit UpdateEffort update_effort;
 
 }  // namespace aos

@@ -158,7 +158,6 @@ class Marginals {
     }
   }
 
-  // The variable of each leaf, for states of this shape.
   const std::vector<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
     const auto [entry, is_new] = shapes_.try_emplace(shape);
     if (is_new) {

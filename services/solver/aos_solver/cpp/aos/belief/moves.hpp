@@ -232,7 +232,6 @@ class Moves {
     passage.note(place, state, {likelihood, weights_drawn_from_.digest()});
   }
 
-  // The values of all draws of a block.
   static void list_values(const Block& block, std::vector<double>& values) {
     values.assign(block.values.begin(), block.values.begin() + std::min<std::ptrdiff_t>(std::ssize(block.values), block.draws));
     for (Sampler later{block.seed}; values.size() < block.draws;) values.push_back(later.uniform());

@@ -25,7 +25,6 @@ bool are_alike(const Belief<Model>& left, const Belief<Model>& right) {
 // A skill by its name, and what it reported: the response and the numbers beside it.
 using Report = std::pair<std::string, std::string>;
 
-// The posteriors of the hypotheses, and of the cautious belief if there is one.
 template <class Model>
 struct Posteriors {
   // A belief after an observation, and the logarithm of the observation's probability. The belief is empty if the

@@ -40,7 +40,6 @@ class RewardTerms {
     return paths;
   }
 
-  // Adds the rewards of a step that is drawn, so many times.
   void add_drawn(typename Model::State state, int action, double times, Sampler& random) {
     RewardLedger ledger;
     const SetForNow using_it{reward_ledger, &ledger};

@@ -54,7 +54,6 @@ struct Uniform : Distribution {
   Uniform(double low, double high) : Distribution(Kind::uniform, low, high) {}
 };
 
-// Draws 0 or 1.
 struct Bernoulli : Distribution {
   explicit Bernoulli(double probability) : Distribution(Kind::bernoulli, probability, 0) {}
 };

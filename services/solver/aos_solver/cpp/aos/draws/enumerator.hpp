@@ -117,7 +117,6 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   [[noreturn]] void cut() override;
 
   void start();
-  // Walks from this head of a loop on.
   void start_from(LoopChain::Number head);
   // Goes to the next path, depth first. Returns false after the last one.
   bool advance();

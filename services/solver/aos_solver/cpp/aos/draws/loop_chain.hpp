@@ -88,7 +88,6 @@ class LoopChain {
   // Ends the list: with `ends` a path ends without another head, and with `lost` it was not walked.
   void end(Number head, double ends, double lost);
 
-  // Whether there are heads that are not listed.
   bool is_waiting() {
     while (!likeliest_.empty() && heads_[likeliest_.top().second].is_listed) likeliest_.pop();
     return !likeliest_.empty();

@@ -53,7 +53,6 @@ int conditions_met(auto&& count) {
 
 }  // namespace detail
 
-// The conditions of special states that hold.
 template <class Environment>
 int special_conditions_met(const auto& state, auto& random) {
   return detail::conditions_met([&](CountingEffect& effect) { Environment::goal_conditions(state, effect, random); });

@@ -79,7 +79,6 @@ struct ProjectDefaults {
   static constexpr int constraint_count = 0;
   static constexpr bool constraints_look_ahead = false;
   static constexpr bool has_costs = false;
-  // The constants that the mission sets.
   static constexpr std::span<const Member> mission_parameters{};
   // Keeps the variables that no state holds.
   static void set_constants(const auto&) {}
@@ -298,7 +297,6 @@ class ModelOf {
     return prepared_.grounded.actions[action];
   }
 
-  // Calls `use` with the type of the action's skill and with the action's parameters.
   static decltype(auto) with_action(int action, auto&& use) {
     const GroundedAction& chosen = grounded(action);
     return with_skill(Skills{}, chosen.skill, [&]<class Skill>(std::type_identity<Skill> skill) -> decltype(auto) {

@@ -83,7 +83,6 @@ constexpr Member member_at(const char* name, std::size_t offset) {
           },
           [](void* variable, StateReader& text) { text.read(*static_cast<T*>(variable)); }};
 }
-// A variable that is a constant of the model.
 template <class T>
 constexpr Member constant_member(const char* name, const T& constant) {
   Member member = member_at<T>(name, 0);
@@ -97,7 +96,6 @@ constexpr Member constant_member(const char* name, const T& constant) {
 class SavedConstants {
  public:
   void add(std::string_view name, AnyValue value);
-  // Adds those of the variables that are constants.
   void add_all(std::span<const Member> members);
   void add_text(std::string_view name, std::string_view text);
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }

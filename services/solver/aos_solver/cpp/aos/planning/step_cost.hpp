@@ -14,7 +14,6 @@
 
 namespace aos {
 
-// Draws at random, and counts what the draws cost.
 class CountedDraws final : public DirectedDraws {
  public:
   explicit CountedDraws(std::uint64_t seed) : random_(seed) { report_to(&ignored_numbers); }

@@ -61,7 +61,6 @@ class JsonWriter {
     text_ += '"';
     return *this;
   }
-  // An array of these values.
   JsonWriter& values(const auto& all) {
     begin_array();
     for (const auto& each : all) value(each);

@@ -21,7 +21,6 @@ inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {
   if (!is_well_visited(best.n, history.max_visits) || actions[a].q > best.q) history.best = a;
 }
 
-// Renews the best action after a visit of one of the history's `count` actions.
 [[gnu::always_inline]] inline void renew_best(HistoryNode& history, const ActionNode* actions, std::uint32_t count,
                                               std::uint32_t visited, bool has_fallen) {
   const bool is_best = visited == history.best;

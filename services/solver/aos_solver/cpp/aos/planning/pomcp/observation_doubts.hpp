@@ -15,7 +15,6 @@
 
 namespace aos {
 
-// The probabilities of what is observed.
 class ObservationOddsOfStep {
  public:
   void clear() { odds_.clear(); }

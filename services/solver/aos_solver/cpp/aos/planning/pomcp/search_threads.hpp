@@ -25,7 +25,6 @@ class SearchThreads {
  public:
   using Tree = TreeSearch<Model>;
 
-  // Makes one tree for each thread.
   void prepare(int threads) {
     simulations_.clear();
     const auto count = static_cast<std::size_t>(threads);

@@ -67,7 +67,6 @@ class LeafCells {
 
   std::size_t size() const { return leaves_.size(); }
 
-  // Writes the cells of a state.
   void write(const State& state, std::uint64_t* cells) const {
     for (const Place& leaf : leaves_) {
       *cells++ = leaf.is_real ? static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(number(leaf, state) / leaf.width)))

@@ -44,7 +44,6 @@ std::vector<double> learned_prior(const LearnedValues<Model>& values, const Beli
   return below_best(std::move(worths));
 }
 
-// The prior by the values of listed states.
 template <class Model>
 std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
   std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));

@@ -23,7 +23,6 @@ class RandomWalk {
 
   // Begins another walk.
   void start() { repeats_ = 0; }
-  // The next action of the walk.
   int next(const State& state, Sampler& random) {
     find_odds(state, random);
     if (repeats_-- > 0 && odds_[static_cast<std::size_t>(action_)] > 0) return action_;

@@ -34,7 +34,6 @@ class StateCells {
   std::size_t size() const { return variables_.size(); }
   const std::vector<CellVariable>& variables() const { return variables_; }
 
-  // Adds the cells of a state to rows.
   void add_row(const State& state, std::vector<std::uint16_t>& rows) const {
     for (const CellVariable& variable : variables_) rows.push_back(variable.cell(Model::bytes_of(state)));
   }
