@@ -1,11 +1,10 @@
 import json
 from fractions import Fraction
 from pathlib import Path
-from random import Random
 
 import pytest
 from commands import aos
-from loop_programs import loop_program, solved
+from loop_programs import loop_program
 from models import engine_of_text
 from texts import write_texts
 
@@ -116,30 +115,6 @@ EXACT: dict[str, tuple[str, dict[int, Fraction]]] = {
     "redrawn": (REDRAWN, sum_of_rolls(2)),
     "utilities": (UTILITIES, ROLL),
 }
-PLACES = 5
-
-
-def machine(seed: int) -> tuple[str, dict[int, Fraction]]:
-    """A loop that goes from place to place at random up to one of two ends, and how often to which."""
-    random = Random(seed)
-    rows = [[random.choice([0, 0, 0, 1, 2, 5]) for _ in range(PLACES + 2)] for _ in range(PLACES)]
-    for place, row in enumerate(rows):
-        row[(place + random.randrange(1, PLACES)) % PLACES] += 1
-        row[PLACES + random.randrange(2)] += random.randrange(2) or place == 0
-    weights = [", ".join(f"{weight}.0" for weight in row) for row in rows]
-    jumps = " else ".join(
-        f"if (place == {place}) place = AOS.SampleDiscrete(-1, {{{its_weights}}});"
-        for place, its_weights in enumerate(weights)
-    )
-    code = f"int place = 0;\nwhile (place < {PLACES}) {{ {jumps} }}\nstate__.spot = place - {PLACES};"
-    first = solved(
-        [
-            [Fraction(i == j) - Fraction(row[j], sum(row)) for j in range(PLACES)]
-            for i, row in enumerate(rows)
-        ],
-        [Fraction(row[PLACES], sum(row)) for row in rows],
-    )[0]
-    return code, {end: odds for end, odds in ((0, first), (1, 1 - first)) if odds}
 
 
 def nested(seed: int) -> tuple[str, dict[int, Fraction]]:
@@ -169,7 +144,6 @@ do { state___.spot = AOS.SampleDiscrete(-1, {0.25, 0.5, 0.25}); } while (state__
 """
 
 
-EXACT |= {f"machine_{seed}": machine(seed) for seed in range(1, 7)}
 EXACT |= {f"nested_{seed}": nested(seed) for seed in range(1, 9)}
 
 

@@ -53,20 +53,6 @@ TEST("A draw that is made again until it fits gives one outcome, exactly") {
   EXPECT(found.runs < 10);
 }
 
-TEST("Two draws in the body leave two states, with the odds of what is kept") {
-  const Outcomes found = outcomes_of([](DirectedDraws& AOS) {
-    int side = 0;
-    DrawingLoop loop{AOS, 1};
-    while (loop.head(std::tie(side), std::tie()), side == 0) {
-      side = (AOS.Bernoulli(0.5) ? 0 : 1) * (AOS.Bernoulli(0.3) ? 1 : 2);
-    }
-    return side;
-  });
-  EXPECT_NEAR(found.odds.at(1), 0.3, 1e-15);
-  EXPECT_NEAR(found.odds.at(2), 0.7, 1e-15);
-  EXPECT_EQUAL(found.left_out, 0);
-}
-
 TEST("A loop that hardly ever ends is as exact as another") {
   const Outcomes found = outcomes_of([](DirectedDraws& AOS) {
     int side = 0;
@@ -78,20 +64,6 @@ TEST("A loop that hardly ever ends is as exact as another") {
   });
   EXPECT_NEAR(found.odds.at(1), 0.25, 1e-13);
   EXPECT_NEAR(found.odds.at(2), 0.75, 1e-13);
-}
-
-TEST("A gambler's ruin: heads that lead to one another in both directions") {
-  constexpr double up = 0.45;
-  constexpr int goal = 10;
-  const Outcomes found = outcomes_of([](DirectedDraws& AOS) {
-    int coins = 3;
-    DrawingLoop loop{AOS, 1};
-    while (loop.head(std::tie(coins), std::tie()), coins > 0 && coins < goal) coins += AOS.Bernoulli(up) ? 1 : -1;
-    return coins;
-  });
-  const double ratio = (1 - up) / up;
-  EXPECT_NEAR(found.odds.at(goal), (1 - std::pow(ratio, 3)) / (1 - std::pow(ratio, goal)), 1e-14);
-  EXPECT_NEAR(found.odds.at(goal) + found.odds.at(0), 1, 1e-14);
 }
 
 TEST("Nested loops, in a function that is called twice, do not mix their calls") {
