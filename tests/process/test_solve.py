@@ -256,6 +256,13 @@ async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path, cache
         await solve(large, QUICK, cache_dir=cache_dir)
 
 
+async def test_without_a_precision_small_rewards_have_near_bounds(problems: Path, cache_dir: Path):
+    model = read_problem(problems / "tiger.pomdp")
+    small = msgspec.structs.replace(model, rewards=model.rewards * 1e-6)
+    bounds = (await solve(small, SolvingLimits(cpu_s=1), cache_dir=cache_dir)).bounds
+    assert bounds.lower == pytest.approx(19.3714e-6, abs=1e-7)
+
+
 @pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
 async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
     problems: Path, cache_dir: Path, value: float, actions: set[int]

@@ -41,7 +41,12 @@ from aos_solver.offline.stopping import with_stopping
 Time = Annotated[
     float, typer.Option("--time", min=0.001, callback=finite, help="Seconds of computing at most")
 ]
-Precision = Annotated[float, typer.Option(min=0, callback=finite, help="Enough when the bounds are so near")]
+Precision = Annotated[
+    float | None,
+    typer.Option(
+        min=0, callback=finite, help="Enough when the bounds are so near; else 0.001, less for small rewards"
+    ),
+]
 Discount = Annotated[
     float | None, typer.Option(min=0, max=1, callback=finite, help="Instead of the documents' own discount")
 ]
@@ -106,7 +111,7 @@ def solve(
         Path, typer.Argument(metavar="TARGET", help="A bundle, a deploy, .pomdpx or .pomdp file")
     ],
     time_s: Time = 60.0,
-    precision: Precision = 1e-3,
+    precision: Precision = None,
     discount: Discount = None,
     stop_value: StopValue = None,
     states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MAX_STATES,

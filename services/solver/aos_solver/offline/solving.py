@@ -24,9 +24,12 @@ _LARGEST = 1e300
 
 
 class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
-    """The limits of solving: bounds nearer than `precision`, `cpu_s` seconds of computing, so much memory."""
+    """The limits of solving: bounds nearer than `precision`, `cpu_s` seconds of computing, so much memory.
 
-    precision: float = 1e-3
+    Without a `precision` it is 0.001, times the largest reward where that is below 1.
+    """
+
+    precision: float | None = None
     cpu_s: float = 60.0
     memory_bytes: int = 2 << 30
 
@@ -76,7 +79,8 @@ async def solve(
     start.
     """
     check_discount(model.name, model.discount)
-    if np.abs(model.rewards).max(initial=0.0) > _LARGEST * (1 - model.discount):
+    largest = np.abs(model.rewards).max(initial=0.0)
+    if largest > _LARGEST * (1 - model.discount):
         hint = "Divide all rewards by one number"
         raise PlanningError(f"returns of {model.name} are too large to be added up", code="AOS320", hint=hint)
     if not model.starts:
@@ -85,7 +89,8 @@ async def solve(
     with tempfile.TemporaryDirectory(prefix="aos-solve-") as folder:
         flat, found = Path(folder) / "model.flat", Path(folder) / "vectors"
         await asyncio.to_thread(model.write_flat, flat)
-        numbers = [repr(limits.precision), repr(limits.cpu_s), str(limits.memory_bytes)]
+        precision = float(min(largest, 1.0)) * 1e-3 if limits.precision is None else limits.precision
+        numbers = [repr(precision), repr(limits.cpu_s), str(limits.memory_bytes)]
         with found.open("wb") as vectors_file:
             written = vectors_file.fileno()
             command = [str(executable), str(flat), str(written), *numbers]
