@@ -18,6 +18,10 @@ from aos_deploy.processes.endpoint import hold_endpoint
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.record import RunRecord
 from aos_protocol.errors import BusError
+from aos_protocol.messages import MissionBegun
+from aos_protocol.mission_rows import BEGUN
+from aos_runtime.disk.journal import Journal
+from aos_runtime.disk.mission_folders import JOURNAL
 
 BIN = Path(sys.executable).parent
 TIGER = """\
@@ -196,10 +200,8 @@ def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads
             ended = json.loads(place.run("down", place.deploy.name, "--json").stdout)
             assert (ended["robot"], ended["ending"], ended["steps"]) == ("tiger", "cancelled", 1)
             assert up.ended() == (130, "")
-            services = {
-                json.loads(line)["service"] for line in following.communicate(timeout=HANG_S)[0].splitlines()
-            }
-            assert (services, following.returncode) == ({"python", "router"}, 0)
+            services = {json.loads(line)["service"] for line in following.stdout}
+        assert (services, following.wait(HANG_S)) == ({"python", "router"}, 0)
     last = place.run("logs", "router", "--lines", "1").stdout
     assert (last.startswith("router | "), last.count("\n")) == (True, 1)
     assert "Did you mean `router`?" in place.run("logs", "ruter").stderr
@@ -213,13 +215,19 @@ def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path):
     assert codes == {True: 130, False: 3}
 
 
-def test_a_mission_that_was_killed_does_not_run(place: Place, tmp_path: Path):
+def test_a_run_that_was_killed_does_not_run_and_before_its_mission_began_has_not_started(
+    place: Place, tmp_path: Path
+):
     killed = RunDirectory(tmp_path / "20260101T000000Z-tiger")
     killed.path.mkdir()
     # The process id is one that is there: in a new container it soon belongs to somebody else.
     record: dict[str, Any] = {"robot": "tiger", "endpoint": "tcp/127.0.0.1:1", "deploy_file": "x", "seed": 1}
     killed.write_record(RunRecord(**record, started="2026-01-01T00:00:00+00:00", pid=os.getpid()))
     assert not killed.is_running
+    (listed,) = json.loads(place.run("runs", "--runs", str(tmp_path), "--json").stdout)[:1]
+    assert listed["ending"] == "not_started"
+    with Journal.open(killed.path / JOURNAL) as journal:
+        journal.append(BEGUN, MissionBegun(killed.path.name, 1, 1, 1, "digest"))
     (listed,) = json.loads(place.run("runs", "--runs", str(tmp_path), "--json").stdout)[:1]
     assert listed["ending"] == "killed"
 

@@ -12,20 +12,22 @@ import typer
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.end import account_of, beginning_of
+from aos_deploy.runs.end import beginning_of, ending_without_summary
 from aos_deploy.runs.living import living_runs, runs_here
 from aos_deploy.runs.pruning import Pruned, pruned
 from aos_deploy.runs.record import RunRecord
 from aos_deploy.runs.summary import Summary
-from aos_protocol.errors import DeployError, StorageError
+from aos_protocol.errors import DeployError
 from aos_runtime.disk.mission_folders import mission_folder, mission_folders
 
 runs_app = typer.Typer(name="runs", epilog="Example: aos runs --running")
 
+_UNENDED = ("killed", "not_started")
+
 
 class Entry(msgspec.Struct, omit_defaults=True):
     """A run in the output of `aos runs --json`. `ending` is `running`, `waiting` between two missions, or
-    `killed` where there is no other.
+    `killed` or `not_started` where there is no other.
 
     A system that stays has its `missions` with it, each as an entry of its own; its steps are all of theirs.
     """
@@ -109,14 +111,6 @@ def _runs_in(folder: Path) -> list[RunDirectory]:
     return [RunDirectory(record.parent) for record in found if not record.parent.is_symlink()]
 
 
-def _ending_in_journal(folder: Path, otherwise: str = "killed") -> str:
-    """The ending of a mission that has no summary, or not yet: for want of space, or of its aos-up."""
-    try:
-        return account_of(folder).verdict().ending or otherwise
-    except StorageError:
-        return otherwise
-
-
 def entry_of(run: RunDirectory) -> Entry:
     """A run as it is listed."""
     try:
@@ -131,15 +125,16 @@ def entry_of(run: RunDirectory) -> Entry:
 
 def _ending_without_summary(run: RunDirectory, missions: tuple[Entry, ...]) -> str:
     if not run.is_running:
-        return _ending_in_journal(run.path)
+        return ending_without_summary(run.path)
     return "waiting" if missions and missions[-1].ending != "running" else "running"
 
 
 def _mission(run: RunDirectory, number: int, record: RunRecord) -> Entry:
     """A mission of a system that stays."""
     folder, summary = mission_folder(run.path, number), run.read_summary(number)
-    otherwise = "running" if run.is_running else "killed"
-    ending = summary.ending if summary else _ending_in_journal(folder, otherwise)
+    ending = summary.ending if summary else ending_without_summary(folder)
+    if run.is_running and ending in _UNENDED:
+        ending = "running"
     return _entry_of(folder, record, summary, summary.started if summary else "", ending)
 
 

@@ -7,7 +7,7 @@ from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import MissionBegun
 from aos_protocol.mission_rows import BEGUN, STATE
 from aos_runtime.disk.journal import Journal, rows_of
-from aos_runtime.disk.mission_folders import JOURNAL
+from aos_runtime.disk.mission_folders import JOURNAL, journals
 
 
 def account_of(run: Path) -> Account:
@@ -32,6 +32,20 @@ def beginning_of(run: Path) -> MissionBegun | None:
             return None if row is None else row.read_as(MissionBegun)
     except StorageError:
         return None
+
+
+def ending_without_summary(folder: Path) -> str:
+    """The ending of a run, or of one of its missions, that is over and has no summary.
+
+    Where the journal has none either, it is `killed`, or `not_started` where no mission had begun. Its aos-up
+    was killed then, or had no space on the disk.
+    """
+    try:
+        ending = account_of(folder).verdict().ending
+    except AosError:
+        return "killed"
+    has_begun = any(beginning_of(journal.parent) is not None for journal in journals(folder).values())
+    return ending or ("killed" if has_begun else "not_started")
 
 
 def settled(

@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.runs.directory import RunDirectory
-from aos_deploy.runs.end import account_of
+from aos_deploy.runs.end import ending_without_summary
 from aos_deploy.runs.record import RunRecord
 from aos_deploy.runs.summary import Summary
 from aos_deploy.runs.verdict import message_of_row
@@ -38,7 +38,8 @@ _LOOK_S = 0.5
 
 
 class RunEntry(msgspec.Struct, frozen=True, omit_defaults=True):
-    """One run: a start of a system. `ending` is `running` while it goes on, `killed` if nobody ended it.
+    """One run: a start of a system. `ending` is `running` while it goes on, `killed` or
+    `not_started` if nobody ended it.
 
     `missions` are the names of its missions, the oldest first. Of a system at an endpoint `directory` is
     empty.
@@ -192,7 +193,7 @@ class KeptRun(Run):
             run=self.name,
             robot=record.robot,
             is_running=is_running,
-            ending=summary.ending if summary else "running" if is_running else _ending_of(path),
+            ending=summary.ending if summary else "running" if is_running else ending_without_summary(path),
             started=record.started,
             deploy_file=record.deploy_file,
             directory=str(path),
@@ -290,14 +291,6 @@ class RemoteRun(Run):
         async with self.client() as client:
             state = await client.mission_state()
         return state if state.mission == mission else None
-
-
-def _ending_of(folder: Path) -> str:
-    """The ending of a run without a summary: its aos-up was killed, or had no space for one."""
-    try:
-        return account_of(folder).verdict().ending or "killed"
-    except AosError:
-        return "killed"
 
 
 async def _until_not(holds: Callable[[], bool]) -> None:
