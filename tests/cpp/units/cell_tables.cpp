@@ -19,7 +19,7 @@ struct State {
   bool flag = false;
 };
 
-aos::CellVariable variable_at(std::size_t offset, const aos::Leaf& leaf) { return {leaf, offset}; }
+aos::CellVariable variable_at(std::size_t offset, const aos::Leaf& leaf) { return aos::CellVariable{{leaf, offset}}; }
 aos::CellVariable small_variable(const State& any) { return variable_at(offsetof(State, small), aos::leaf_of(any.small)); }
 aos::CellVariable real_variable(const State& any) { return variable_at(offsetof(State, real), aos::leaf_of(any.real)); }
 aos::CellVariable large_variable(const State& any) { return variable_at(offsetof(State, large), aos::leaf_of(any.large)); }

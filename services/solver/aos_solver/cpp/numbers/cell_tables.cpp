@@ -25,7 +25,7 @@ bool CellVariable::divide(std::vector<double>& numbers) {
   lowest_ = numbers.front();
   const double range = numbers.back() - lowest_;
   if (!(range > 0 && std::isfinite(range))) return false;
-  has_ranges_ = leaf_.kind == Leaf::Kind::real || range >= max_cell_values;
+  has_ranges_ = number_.leaf.kind == Leaf::Kind::real || range >= max_cell_values;
   if (has_ranges_) {
     for (std::size_t i = 1; i < max_cell_ranges; ++i) {
       const double limit = numbers[i * numbers.size() / max_cell_ranges];

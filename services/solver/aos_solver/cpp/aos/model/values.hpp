@@ -83,20 +83,26 @@ class NamedLeaves final : public ValueVisitor {
   std::vector<std::size_t> owners_;  // the lengths of the names around the current leaf
 };
 
-// A leaf's number as a real one, in the value that has the leaf at `place`.
-inline double number_at(Leaf leaf, const void* place) {
-  leaf.place = place;
-  double number = 0;
-  with_number(leaf, [&](auto value) { number = static_cast<double>(value); });
-  return number;
-}
+// A number of a state by its place, which is the same in all states.
+struct PlacedNumber {
+  Leaf leaf;  // of any state
+  std::size_t offset;
 
-// Calls `use(name, leaf, offset)` for each number of a state that lies in it.
+  double of(const void* state) const {
+    Leaf own = leaf;
+    own.place = static_cast<const std::byte*>(state) + offset;
+    double number = 0;
+    with_number(own, [&](auto value) { number = static_cast<double>(value); });
+    return number;
+  }
+};
+
+// Calls `use(name, number)` for each number of a state that lies in it.
 template <class Model, class Use>
 void for_each_number(const typename Model::State& state, Use&& use) {
   NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
     const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(state);
-    if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(Model::state_bytes()) && !is_text(leaf)) use(name, leaf, static_cast<std::size_t>(offset));
+    if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(Model::state_bytes()) && !is_text(leaf)) use(name, PlacedNumber{leaf, static_cast<std::size_t>(offset)});
   }};
   Model::visit_values(state, leaves);
 }

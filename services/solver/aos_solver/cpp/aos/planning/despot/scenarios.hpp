@@ -10,12 +10,12 @@
 #include <limits>
 #include <vector>
 
-#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot/despot_constants.hpp"
+#include "aos/planning/same_observation.hpp"
 #include "aos/planning/step_cost.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 
@@ -34,32 +34,6 @@ struct Observed {
   Scenario<Model> scenario;
   Observation observation;
 };
-
-// Mostly there is only one observation, and the elements are sorted already.
-template <class Element>
-void sort_by_observation(std::vector<Element>& elements, std::size_t first, std::size_t last) {
-  const auto begin = elements.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto end = elements.begin() + static_cast<std::ptrdiff_t>(last);
-  const auto is_before = [](const Element& left, const Element& right) { return left.observation < right.observation; };
-  if (!std::is_sorted(begin, end, is_before)) sort_stably(begin, end, is_before);
-}
-
-// The end of the elements that have the observation of the one at `start`.
-template <class Element>
-std::size_t end_of_history(const std::vector<Element>& elements, std::size_t start, std::size_t last) {
-  std::size_t end = start + 1;
-  while (end < last && elements[end].observation == elements[start].observation) ++end;
-  return end;
-}
-
-// Calls `visit(first, last)` for each run of elements with the same observation.
-template <class Element, class Visit>
-void for_each_history(const std::vector<Element>& elements, Visit&& visit) {
-  for (std::size_t first = 0, last = 0; first < elements.size(); first = last) {
-    last = end_of_history(elements, first, elements.size());
-    visit(first, last);
-  }
-}
 
 // The bounds of a scenario's value, discounted from its depth on.
 struct ScenarioBounds {

@@ -20,9 +20,9 @@ namespace aos {
 // A variable of the state as one of few cells. Cell 0 is for values that no example had.
 class CellVariable {
  public:
-  CellVariable(const Leaf& leaf, std::size_t offset) : leaf_(leaf), offset_(offset) {}
+  explicit CellVariable(const PlacedNumber& number) : number_(number) {}
 
-  double number(const void* state) const { return number_at(leaf_, static_cast<const std::byte*>(state) + offset_); }
+  double number(const void* state) const { return number_.of(state); }
 
   // Makes the cells from the numbers of the examples. Returns whether these differ.
   bool divide(std::vector<double>& numbers);
@@ -39,8 +39,7 @@ class CellVariable {
   }
 
  private:
-  Leaf leaf_;
-  std::size_t offset_;
+  PlacedNumber number_;
   double lowest_ = 0;
   bool has_ranges_ = false;
   std::vector<double> limits_;

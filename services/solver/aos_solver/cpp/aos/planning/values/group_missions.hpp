@@ -10,15 +10,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "aos/base/stable_order.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/coming_to_an_end.hpp"
+#include "aos/planning/same_observation.hpp"
 #include "aos/planning/step_cost.hpp"
 #include "aos/planning/values/mdp_values.hpp"
 #include "aos/planning/values/random_walk.hpp"
@@ -165,21 +166,17 @@ class GroupMissions {
       follower.observation = step.observation;
       group_.push_back(follower);
     }
-    const auto is_before = [](const Follower& one, const Follower& other) { return one.observation < other.observation; };
-    sort_stably(group_, is_before);
+    sort_by_observation(group_, 0, group_.size());
     rare_.clear();
-    for (auto start = group_.begin(); start != group_.end();) {
-      const auto end = std::upper_bound(start, group_.end(), *start, is_before);
-      const bool is_rare = static_cast<std::size_t>(end - start) < fewest_alike;
-      if (is_rare) rare_.insert(rare_.end(), start, end);
-      else add_group(start, end);
-      start = end;
-    }
-    if (!rare_.empty()) add_group(rare_.begin(), rare_.end());
+    for_each_history(group_, [&](std::size_t start, std::size_t end) {
+      const std::span<const Follower> alike{&group_[start], end - start};
+      if (alike.size() < fewest_alike) rare_.insert(rare_.end(), alike.begin(), alike.end());
+      else add_group(alike);
+    });
+    if (!rare_.empty()) add_group(rare_);
   }
-  template <class Place>
-  void add_group(Place start, Place end) {
-    next_.insert(next_.end(), start, end);
+  void add_group(std::span<const Follower> group) {
+    next_.insert(next_.end(), group.begin(), group.end());
     next_ends_.push_back(next_.size());
   }
 

@@ -90,9 +90,9 @@ class LeafCells {
   void find_leaves(const State& state) {
     leaves_.clear();
     std::map<std::string, std::size_t> lists;
-    for_each_number<Model>(state, [&](const std::string& name, const Leaf& leaf, std::size_t offset) {
+    for_each_number<Model>(state, [&](const std::string& name, const PlacedNumber& number) {
       const std::size_t list = lists.emplace(switches::whole_lists ? without_indices(name) : name, leaves_.size()).first->second;
-      leaves_.push_back({offset, leaf.size, leaf.kind == Leaf::Kind::real, list});
+      leaves_.push_back({number.offset, number.leaf.size, number.leaf.kind == Leaf::Kind::real, list});
     });
   }
   static std::string without_indices(std::string name) {

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "aos/base/mixed.hpp"
@@ -24,11 +23,10 @@ class RunningDown {
  public:
   using State = typename Model::State;
 
-  // Finds it by random walks from the belief.
   void find(const Belief<Model>& belief, Sampler& random) {
     cells_.prepare(belief, random);
-    const std::vector<PlacedLeaf> leaves = leaves_of(belief.particles().front().state);
-    std::vector<Trend> of_cells(cells_.size()), of_leaves(leaves.size());
+    const std::vector<PlacedNumber> numbers = numbers_of(belief.particles().front().state);
+    std::vector<Trend> of_cells(cells_.size()), of_numbers(numbers.size());
     std::vector<std::uint64_t> cells_before(cells_.size());
     cell_.resize(cells_.size());
     int taken = 0;
@@ -42,15 +40,15 @@ class RunningDown {
         Model::step(state, walk.next(state, random), random);
         cells_.write(state, cell_.data());
         for (std::size_t c = 0; c < cell_.size(); ++c) of_cells[c].note(static_cast<double>(static_cast<std::int64_t>(cell_[c] - cells_before[c])));
-        for (std::size_t l = 0; l < leaves.size(); ++l) of_leaves[l].note(number(leaves[l], state) - number(leaves[l], before));
+        for (std::size_t n = 0; n < numbers.size(); ++n) of_numbers[n].note(numbers[n].of(Model::bytes_of(state)) - numbers[n].of(Model::bytes_of(before)));
       }
     }
     runs_.clear();
     for (const Trend& trend : of_cells) runs_.push_back(trend.only_runs(taken));
     lasts_.assign(Model::state_bytes(), true);
-    for (std::size_t l = 0; l < leaves.size(); ++l) {
-      if (!of_leaves[l].only_runs(taken)) continue;
-      std::fill_n(lasts_.begin() + static_cast<std::ptrdiff_t>(leaves[l].first), leaves[l].second.size, false);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      if (!of_numbers[n].only_runs(taken)) continue;
+      std::fill_n(lasts_.begin() + static_cast<std::ptrdiff_t>(numbers[n].offset), numbers[n].leaf.size, false);
     }
   }
 
@@ -83,7 +81,6 @@ class RunningDown {
   }
 
  private:
-  using PlacedLeaf = std::pair<std::size_t, Leaf>;  // with its place in a state
   static constexpr int walks = 50;
   static constexpr int longest = 20;
 
@@ -97,12 +94,11 @@ class RunningDown {
     bool only_runs(int taken) const { return std::min(ups, downs) == 0 && 2 * std::max(ups, downs) > taken; }
   };
 
-  static std::vector<PlacedLeaf> leaves_of(const State& state) {
-    std::vector<PlacedLeaf> leaves;
-    for_each_number<Model>(state, [&](const std::string&, const Leaf& leaf, std::size_t offset) { leaves.emplace_back(offset, leaf); });
-    return leaves;
+  static std::vector<PlacedNumber> numbers_of(const State& state) {
+    std::vector<PlacedNumber> numbers;
+    for_each_number<Model>(state, [&](const std::string&, const PlacedNumber& number) { numbers.push_back(number); });
+    return numbers;
   }
-  static double number(const PlacedLeaf& leaf, const State& state) { return number_at(leaf.second, Model::bytes_of(state) + leaf.first); }
 
   LeafCells<Model> cells_;
   std::vector<std::uint64_t> cell_;  // of the state that is looked at

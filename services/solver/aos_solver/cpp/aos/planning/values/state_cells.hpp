@@ -21,8 +21,8 @@ class StateCells {
   bool find(const std::vector<State>& examples) {
     variables_.clear();
     std::vector<double> numbers;
-    for_each_number<Model>(examples.front(), [&](const std::string&, const Leaf& leaf, std::size_t offset) {
-      CellVariable variable{leaf, offset};
+    for_each_number<Model>(examples.front(), [&](const std::string&, const PlacedNumber& number) {
+      CellVariable variable{number};
       numbers.clear();
       for (const State& example : examples) numbers.push_back(variable.number(Model::bytes_of(example)));
       if (variable.divide(numbers)) variables_.push_back(variable);
