@@ -224,8 +224,10 @@ def test_a_run_that_was_killed_does_not_run_and_before_its_mission_began_has_not
     record: dict[str, Any] = {"robot": "tiger", "endpoint": "tcp/127.0.0.1:1", "deploy_file": "x", "seed": 1}
     killed.write_record(RunRecord(**record, started="2026-01-01T00:00:00+00:00", pid=os.getpid()))
     assert not killed.is_running
+    (killed.path / JOURNAL).touch()  # Its solver had no space for more.
     (listed,) = json.loads(place.run("runs", "--runs", str(tmp_path), "--json").stdout)[:1]
     assert listed["ending"] == "not_started"
+    (killed.path / JOURNAL).unlink()
     with Journal.open(killed.path / JOURNAL) as journal:
         journal.append(BEGUN, MissionBegun(killed.path.name, 1, 1, 1, "digest"))
     (listed,) = json.loads(place.run("runs", "--runs", str(tmp_path), "--json").stdout)[:1]

@@ -40,11 +40,15 @@ def ending_without_summary(folder: Path) -> str:
     Where the journal has none either, it is `killed`, or `not_started` where no mission had begun. Its aos-up
     was killed then, or had no space on the disk.
     """
+    # A solver on a full disk has made a file, and written nothing to it.
+    written = [path for path in journals(folder).values() if path.exists() and path.stat().st_size]
+    if not written:
+        return "not_started"
     try:
         ending = account_of(folder).verdict().ending
     except AosError:
         return "killed"
-    has_begun = any(beginning_of(journal.parent) is not None for journal in journals(folder).values())
+    has_begun = any(beginning_of(path.parent) is not None for path in written)
     return ending or ("killed" if has_begun else "not_started")
 
 
