@@ -131,9 +131,12 @@ def test_no_variable_is_left_out_that_matters():
     assert not wrong
 
 
+@pytest.mark.parametrize(("planner", "simulations"), [("auto", 500), ("pomcp", 100_000)])
 @pytest.mark.parametrize("seed", range(4))
-async def test_compiled_documents_mean_what_they_say(seed: int, truth: Driver, cache_dir: Path):
-    found = await examined(documents(seed), truth, cache_dir, "auto", simulations=500)
+async def test_compiled_documents_mean_what_they_say(
+    seed: int, planner: str, simulations: int, truth: Driver, cache_dir: Path
+):
+    found = await examined(documents(seed), truth, cache_dir, planner, simulations=simulations)
     assert not found.false
     assert found.decisions > 0
     assert found.worst <= 100 * WORST_TARGET
