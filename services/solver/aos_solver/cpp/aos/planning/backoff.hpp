@@ -18,8 +18,6 @@ class Backoff {
   }
   void fail() { put_off_ = (1 << std::min(++in_vain_, most_in_vain)) - 1; }
   void succeed() { in_vain_ = -harmless_; }
-  // Whether the last tries were in vain, and put others off.
-  bool is_in_vain() const { return in_vain_ > 0; }
 
  private:
   static constexpr int most_in_vain = 4;  // 15 decisions pass then; nobody has varied it

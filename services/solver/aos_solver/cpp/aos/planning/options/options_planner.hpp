@@ -46,16 +46,19 @@ class OptionsPlanner final : public Planner<Model> {
       return false;
     }
     has_looked_ = true;
-    const std::string obstacle = look(question, Sampler{Sampler{random}.bits()}, choosing);
+    const bool is_short = budget.seconds > 0 && budget.seconds < first_look_s;
+    const std::string obstacle = look(question, is_short && !finds_nothing_, Sampler{Sampler{random}.bits()}, choosing);
     if (!obstacle.empty()) choosing.why += "; " + obstacle;
     // Where no way at all is known, the next look is put off, each time for longer.
-    if (policy_.knows_ways() && !policy_.earns_anyway()) looks_.succeed();
-    else looks_.fail();
+    const bool is_in_vain = !policy_.knows_ways() || policy_.earns_anyway();
+    if (is_in_vain) looks_.fail();
+    else looks_.succeed();
+    finds_nothing_ = is_in_vain && (!is_short || finds_nothing_.value_or(true));
     return obstacle.empty();
   }
 
-  // Whether the last look has found no way that tells what to do, from any state.
-  bool finds_nothing() const { return looks_.is_in_vain(); }
+  // Whether the last look has found no way that tells what to do, from any state. A short one does not outweigh a longer one.
+  bool finds_nothing() const { return finds_nothing_.value_or(false); }
   // Whether the last decision has looked for ways.
   bool has_looked() const { return has_looked_; }
 
@@ -77,16 +80,23 @@ class OptionsPlanner final : public Planner<Model> {
     promises_ = {};
     policy_.start_over();
     looks_ = Backoff{};
+    finds_nothing_.reset();
     is_neglect_dear_.reset();
   }
 
  private:
-  // Looks for ways. Returns why these cannot decide; empty if they can.
-  std::string look(const Question<Model>& question, Sampler random, Choosing& choosing) {
-    const SearchTime time{choosing};
+  // What the first look of a mission finds decides what is prepared for all of it (docs/lab/budgets.md).
+  static constexpr double first_look_s = 0.1;
+
+  // Looks for ways, `longer` than the budget if that is short. Returns why these cannot decide; empty if they can.
+  std::string look(const Question<Model>& question, bool longer, Sampler random, Choosing& choosing) {
+    Budget budget = question.budget;
+    std::optional<SearchTime> time;
+    if (longer) budget.seconds = first_look_s;
+    else time.emplace(choosing);
     const auto start = PlanningClock::now();
-    const double affordable = affordable_.of(question.budget, question.horizon);
-    std::string obstacle = policy_.prepare(question.belief, affordable, question.budget.seconds, random);
+    const double affordable = affordable_.of(budget, question.horizon);
+    std::string obstacle = policy_.prepare(question.belief, affordable, budget.seconds, random);
     affordable_.note(policy_.taken(), PlanningClock::now() - start);
     if (!obstacle.empty() || question.is_by_name) return obstacle;
     const ForgottenTexts forgotten;
@@ -119,6 +129,7 @@ class OptionsPlanner final : public Planner<Model> {
   AffordableSteps<Model> affordable_;
   Backoff looks_;
   bool has_looked_ = false;
+  std::optional<bool> finds_nothing_;  // by the looks of a mission
   std::optional<bool> is_neglect_dear_;  // by the first decision of a mission that has ways
 };
 
