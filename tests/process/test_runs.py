@@ -202,8 +202,9 @@ def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads
             assert up.ended() == (130, "")
             services = {json.loads(line)["service"] for line in following.stdout}
         assert (services, following.wait(HANG_S)) == ({"python", "router"}, 0)
-    last = place.run("logs", "router", "--lines", "1").stdout
-    assert (last.startswith("router | "), last.count("\n")) == (True, 1)
+    last = place.run("logs", "router", "--lines", "1")
+    assert (last.stdout.startswith("router | "), last.stdout.count("\n")) == (True, 1)
+    assert last.stderr == f"Logs of {ended['directory']}\n"
     assert "Did you mean `router`?" in place.run("logs", "ruter").stderr
 
 

@@ -10,6 +10,7 @@ import typer
 
 from aos_deploy.marked_commands import command
 from aos_deploy.options import Run, Runs
+from aos_deploy.printing import from_here
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import chosen_run
 from aos_protocol.errors import DeployError
@@ -33,10 +34,12 @@ def logs(
 ) -> None:
     """Print the logs of a run.
 
-    Each line begins with the name of its service. What the functions of an adapter print is in its log.
+    Each line begins with the name of its service. What the functions of an adapter print is in its log. The
+    error output names the run.
     """
     directory = chosen_run(run, runs)
     _refuse_unknown(services or [], directory)
+    typer.echo(f"Logs of {from_here(directory.path)}", err=True)
     shown: dict[Path, _Log] = {}
     most, goes_on = lines, True
     while goes_on:
