@@ -1,7 +1,7 @@
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of, engine_of_text
+from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
@@ -158,6 +158,20 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
     async with engine_of_text(larger, cache_dir) as engine:
         plan = await engine.plan(simulations=simulations, seed=1, planner="auto")
     assert plan.planner == planner, plan.why
+    assert why in plan.why
+
+
+@pytest.mark.parametrize(
+    ("problem", "planner", "why"),
+    # Behind two doors, and on 49 cells with 8 rocks: what the rover has learnt does not count.
+    [("bench/tiger", "exact", "2 states"), ("bench/rocksample-7-8", "sarsop", f"{49 * 2**8} states")],
+)
+async def test_auto_chooses_by_states_and_budget_and_says_so(
+    problem: str, planner: str, why: str, bundles: Path, cache_dir: Path
+):
+    async with engine_of_bundle(bundles / problem, cache_dir) as engine:
+        plan = await engine.plan(simulations=2000, seed=1, planner="auto")
+    assert plan.planner == planner
     assert why in plan.why
 
 
