@@ -57,7 +57,7 @@ async def test_a_budget_in_time_ends_a_decision_of_options_after_a_first_look_th
     cache_dir: Path,
 ):
     """A mission is prepared by what its first look finds."""
-    built = await built_text(parcels(14), cache_dir)
+    built = await built_text(parcels(40), cache_dir)
     async with engine_of(built) as engine, engine_of(built) as other:
         hurried = await engine.plan(simulations=1, time_s=1e-6, seed=1)
         unhurried = await other.plan(simulations=1, time_s=2, seed=1)
