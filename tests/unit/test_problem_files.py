@@ -190,6 +190,25 @@ def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path, name, change, 
     assert text.startswith(finding), text
 
 
+@pytest.mark.parametrize(
+    ("rule", "word", "hint"),
+    [
+        ("T: 0 identty", "identty", "Did you mean `identity`?"),
+        ("O: 0 : left unifrom", "unifrom", "Did you mean `uniform`?"),
+        ("T: 0 even", "even", "Write numbers, or one of uniform, identity, reset"),
+    ],
+)
+def test_a_word_in_place_of_probabilities_is_told_what_it_was_meant_to_be(
+    problems: Path, tmp_path, rule, word, hint
+):
+    broken = tmp_path / "tiger.pomdp"
+    broken.write_text(f"{(problems / 'tiger.pomdp').read_text()}\n{rule}\n")
+    with pytest.raises(DocumentError) as caught:
+        read_problem(broken)
+    [first] = [one for one in caught.value.diagnostics if one.code == "AOS106"]
+    assert (first.message, first.hint) == (f"{word} stands for no probabilities here", hint)
+
+
 def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(problems: Path, tmp_path):
     broken = tmp_path / "rover.pomdpx"
     text = (problems / "rover.pomdpx").read_text()

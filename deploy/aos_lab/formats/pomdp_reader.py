@@ -10,6 +10,7 @@ from aos_lab.formats.pomdp_statements import KEYWORDS, Statement, statements_of
 from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_model
 from aos_lab.formats.problem_text import ProblemFindings, Word
 from aos_protocol.errors import IntractableError
+from aos_protocol.spelling import did_you_mean
 from aos_solver.offline.explicit_model import ExplicitModel
 
 _SUM_TOLERANCE = 1e-4
@@ -195,6 +196,11 @@ class _Reader:
             return [{state: 1.0} for state in states]
         if keyword == "reset" and kind == "states":
             return [self._start or self._uniform(kind)] * len(states)
+        if keyword[:1].isalpha():
+            known = ("uniform", *(("identity", "reset") if kind == "states" else ()))
+            hint = did_you_mean(keyword, known) or f"Write numbers, or one of {', '.join(known)}"
+            self._error("AOS106", f"{keyword} stands for no probabilities here", words[0], hint)
+            return [{} for _ in states]
         width = len(self._names[kind])
         if not is_matrix:
             return [self._distribution(kind, words, statement)] * len(states)
