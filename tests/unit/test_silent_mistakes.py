@@ -214,3 +214,23 @@ def test_a_mistyped_key_that_others_build_on_is_one_mistake():
         files[changed] = files[changed].replace(f'"{name}"'.encode(), f'"{name}x"'.encode(), 1)
         (only,) = load_files(files).diagnostics
         assert (only.code, only.hint, only.span.file) == ("AOS102", f"Did you mean `{name}`?", changed)
+
+
+@pytest.mark.parametrize(
+    ("rule", "told"),
+    [
+        ('steps == "3"', ["`steps` is of the type int, and '3' is a text"]),
+        ("'3' < steps", ["`steps` is of the type int, and '3' is a text"]),
+        ("place == 3", ["`place` is a text, and 3 is none"]),
+        ("steps == 3 and place == '3' and steps in ('3', 3) and many == '3'", []),
+    ],
+)
+def test_a_number_compared_with_a_text_in_a_mapping_is_told(rule, told):
+    mapping = MAPPING.replace(
+        "response_rule: True", f"response_rule: {rule}\nresponse: walked\nresponse_rule: True"
+    )
+    for name, kind in (("place", "string"), ("many", "int[]")):
+        declared = f"local_variable: {name}\ntype: {kind}\nfrom_ros_service_response: true"
+        mapping += f"\n{declared}\ncode:\n{name} = __input\n"
+    texts = [one.message for one in found(mapping=mapping) if one.code == "AOS149"]
+    assert texts == told

@@ -1,10 +1,12 @@
-"""Mappings see an enum's value as the text of its name and a compound as a dict: other uses are told."""
+"""Mappings see an enum's value as the text of its name, a compound as a dict, and a number as no text: other
+uses are told."""
 
 import ast
 from collections.abc import Iterator
 
 from aos_language.check.scope import Scope
 from aos_language.findings import Findings
+from aos_language.local_types import ELEMENTS, local_type
 from aos_language.python_syntax import tree_of
 from aos_protocol import documents
 from aos_protocol.spelling import nearest, quoted
@@ -20,19 +22,21 @@ def check_enum_texts(
     scope: Scope,
     findings: Findings,
 ) -> None:
-    """Reports AOS149 for comparisons with what no value is called and for calculations, and AOS121 for
-    fields of a compound that are taken as attributes."""
+    """Reports AOS149 for comparisons with what no value is called, of numbers with texts, and for
+    calculations, and AOS121 for fields of a compound that are taken as attributes."""
     kinds = {variable.name: _type_of(variable, model, scope) for variable in mapping.local_variables}
     enums = {name: scope.enums[kind] for name, kind in kinds.items() if kind in scope.enums}
     compounds = {name: scope.compounds[kind] for name, kind in kinds.items() if kind in scope.compounds}
+    plain = {name: kind for name, kind in kinds.items() if kind in ELEMENTS}
     # A skill may take some of the values alone.
     takes_all = not model.possible_parameters and not any(v.is_constant for v in scope.variables.values())
-    for snippet in snippets if enums or compounds else ():
+    for snippet in snippets if enums or compounds or plain else ():
         tree, lines_above = _tree(snippet)
         nodes = list(ast.walk(tree))
         own = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
         own |= {node.arg for node in nodes if isinstance(node, ast.arg)}
         known = {name: enum for name, enum in enums.items() if name not in own}
+        known_plain = {name: kind for name, kind in plain.items() if name not in own}
         for node in nodes:
             if isinstance(node, ast.Attribute) and isinstance(value := node.value, ast.Name):
                 compound = None if value.id in own else compounds.get(value.id)
@@ -40,7 +44,7 @@ def check_enum_texts(
                     span = snippet.locate(value.lineno - lines_above, value.col_offset + 1)
                     message = f"`{value.id}` is a dict of the fields of {compound.name}"
                     findings.error("AOS121", message, span, f"Write `{value.id}['{node.attr}']`")
-            for name, message, hint in _mistakes(node, known, takes_all):
+            for name, message, hint in (*_mistakes(node, known, takes_all), *_unlike(node, known_plain)):
                 span = snippet.locate(name.lineno - lines_above, name.col_offset + 1)
                 findings.warning("AOS149", message, span, hint)
 
@@ -59,9 +63,11 @@ def _tree(snippet: documents.Snippet) -> tuple[ast.AST, int]:
 
 
 def _type_of(variable: documents.LocalVariable, model: documents.SkillModel, scope: Scope) -> str:
-    """The type of the skill's parameter, or of a part of it, that a local variable takes."""
+    """The type of the skill's parameter, or of a part of it, that a local variable takes; of another variable
+    its own where that is a number's or a text's."""
     if variable.source is not documents.LocalSource.PARAMETER:
-        return ""
+        own = local_type(variable.type)
+        return own.element if own is not None and not own.is_array else ""
     name, *fields = variable.parameter_path.split(".")
     kind = next((parameter.type for parameter in model.parameters if parameter.name == name), "")
     for field in fields:
@@ -100,6 +106,22 @@ def _mistakes(
         and (name := name_of(node.slice)) is not None
     ):
         yield name, *_no_number(name.id, enums[name.id])
+
+
+def _unlike(node: ast.AST, kinds: dict[str, str]) -> Iterator[tuple[ast.expr, str, str]]:
+    """Comparisons of a number with a text: they are never equal, and have no order."""
+    if not (isinstance(node, ast.Compare) and len(node.ops) == 1 and isinstance(node.ops[0], _ORDERINGS)):
+        return
+    sides = (node.left, node.comparators[0])
+    for name, other in (sides, sides[::-1]):
+        if not (isinstance(name, ast.Name) and name.id in kinds and isinstance(other, ast.Constant)):
+            continue
+        kind, value = kinds[name.id], other.value
+        if kind == "string" and isinstance(value, int | float):
+            yield name, f"`{name.id}` is a text, and {value!r} is none", f"Write it in quotes: `'{value}'`"
+        elif kind != "string" and isinstance(value, str):
+            message = f"`{name.id}` is of the type {kind}, and {value!r} is a text"
+            yield name, message, "Write the value without quotes"
 
 
 def _looked_up(
