@@ -47,6 +47,7 @@ ENVIRONMENT = json_text(
              "DefaultCode": "state.cost[std::make_tuple(par1, par2)] = int(par1) * 10 + par2;"},
             {"Name": "sum", "Type": "int",
              "DefaultCode": "for (auto& c : state.cost) state.sum += c.second;"},
+            {"Name": "known", "Type": "anyValue"},
             {"Name": "red", "Type": "tColour", "Default": "eRed", "IsActionParameterValue": True},
             {"Name": "blue", "Type": "tColour", "Default": "eBlue", "IsActionParameterValue": True},
             {"Name": "p_box", "Type": "tBox", "IsActionParameterValue": True,
@@ -161,6 +162,14 @@ for (int i = 0; i < 2; i++) __moduleResponseStr[i] = 'X';""",
         ),
         (),
     ),
+    "speak": (
+        skill_text(
+            "speak",
+            """AOS.Initialize(state__.known);
+__moduleResponseStr = "a"; if (state.sum) return; __moduleResponseStr = "b";""",
+        ),
+        (),
+    ),
     "fail": (
         skill_text(
             "fail",
@@ -232,6 +241,10 @@ def test_return_ends_the_dynamic_model_early(model: ScriptedModel):
     assert model.play("paint(colour=red, box=p_box)|0").rewards == [1]
 
 
+def test_a_text_that_was_set_before_return_is_the_response(model: ScriptedModel):
+    assert model.play("speak").observations == ["a"]
+
+
 def test_lists_of_objects_read_like_vectors_of_pointers(model: ScriptedModel):
     played = model.play("count")
     assert played.values("sum")[1] == str(2 + 1 + 10 + 100 + 200)
@@ -248,6 +261,10 @@ def test_draws_over_declared_local_and_numbered_enums_and_over_lists(model: Scri
 def test_a_value_without_meaning_here_can_be_set_and_asked_for(model: ScriptedModel):
     played = model.play("draw", "draw")
     assert played.rewards == [1, 0]
+
+
+def test_a_variable_that_only_initialize_changes_is_no_constant(model: ScriptedModel):
+    assert model.play("speak").values("known") == ["false", "true"]
 
 
 def test_containers_take_what_documents_do_with_the_standard_ones(model: ScriptedModel):

@@ -21,7 +21,7 @@ from aos_language.cpp.facts import (
 from aos_language.cpp.nodes import below, child_of, names_of, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
-_CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
+_CHANGING_FUNCTIONS = frozenset({"Initialize", "SetNull", "Uninitialize", "exchange", "iota", "swap", "tie"})
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
 """Expressions that do nothing but have a value."""
 
