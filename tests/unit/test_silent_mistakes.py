@@ -234,3 +234,10 @@ def test_a_number_compared_with_a_text_in_a_mapping_is_told(rule, told):
         mapping += f"\n{declared}\ncode:\n{name} = __input\n"
     texts = [one.message for one in found(mapping=mapping) if one.code == "AOS149"]
     assert texts == told
+
+
+def test_a_missing_semicolon_before_a_copy_of_the_state_is_told_once():
+    code = "float far = state.first.x\nstate__.second.x ="
+    (only,) = found(skill=SKILL.replace("state__.second.x =", code))
+    assert (only.code, only.span.line) == ("AOS108", 10)
+    assert only.hint == "Is a semicolon missing at the end of the line above?"

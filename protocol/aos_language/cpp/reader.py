@@ -73,9 +73,13 @@ class TreeReader:
             return
         if node.is_error:
             text = text_of(node).strip().splitlines() or [""]
-            after = node.next_sibling
+            before, after = node.prev_sibling, node.next_sibling
             is_cut = after and after.type != "}" and after.start_point[0] > node.end_point[0]
-            hint = "Is a semicolon missing at the end of this line?" if is_cut else ""
+            is_behind = (
+                before and before.type not in ("{", "}", ";") and before.end_point[0] < node.start_point[0]
+            )
+            line = "this line" if is_cut else "the line above" if is_behind else ""
+            hint = f"Is a semicolon missing at the end of {line}?" if line else ""
             self.faults.append(
                 Fault(FaultKind.SYNTAX, f"unexpected {text[0][:40]!r}", self.extent(node), hint)
             )
@@ -136,6 +140,9 @@ class TreeReader:
                 extent = self.extent(chosen)
                 self.mentions.append(Mention((text_of(chosen),), Access.READ, extent, extent))
                 current = child_of(current, "argument")
+            elif current.type == "field_expression" and any(child.is_error for child in current.children):
+                self._push(current.children)  # Such as two paths without the semicolon between them.
+                return (), None
             elif current.type == "field_expression":
                 parts += reversed(names_of(current.child_by_field_name("field")))
                 is_arrow = text_of(current.children[1]) == "->"
