@@ -22,13 +22,15 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Returns the findings without those that follow from others.
 
     Left out are warnings and remarks on a file with errors. Where text is not taken up, so is what its file
-    lacks, and names that nothing declares and no other name is near, in files that use what it declares. A
-    compiler's error is left out where another error stands before it in its line. A name that stands at
-    several places is told at the first, with the others in the hint.
+    lacks. Where it is not, or an object of JSON lacks a key, so are names that nothing declares and no other
+    name is near, in files that use what it declares. A compiler's error is left out where another error
+    stands before it in its line. A name that stands at several places is told at the first, with the others
+    in the hint.
     """
     found = tuple(diagnostics)
     errors = [one for one in found if one.is_error]
     unread = {one.span.file for one in errors if one.code in _UNREAD}
+    partial = unread | {one.span.file for one in errors if _may_leave_out(one)}
     wrong = {one.span.file for one in errors}
     lines: dict[tuple[str, int], Diagnostic] = {}
     for error in errors:
@@ -42,8 +44,8 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
                 return one.span.file in unread
             case "AOS201":
                 return lines[one.span.file, one.span.line] is not one
-        is_of_unread = any(_declares_for(file, one.span.file) for file in unread)
-        return one.code in _NEEDS_DECLARATION and is_of_unread and not _has_near_name(one)
+        is_of_partial = any(_declares_for(file, one.span.file) for file in partial)
+        return one.code in _NEEDS_DECLARATION and is_of_partial and not _has_near_name(one)
 
     groups: dict[Hashable, list[Diagnostic]] = {}
     for number, one in enumerate(found):
@@ -57,6 +59,12 @@ def _key(one: Diagnostic) -> Hashable | None:
     if one.code in _OF_NAMES:
         return one.code, one.message, one.hint
     return (one.code, one.message, one.span.file) if one.code == _STRAY else None
+
+
+def _may_leave_out(one: Diagnostic) -> bool:
+    """Returns whether an object of a JSON document lacks a key, such as its name, without which it declares
+    nothing."""
+    return one.code == "AOS105" and one.span.file.endswith(".json")
 
 
 def _declares_for(file: str, user: str) -> bool:

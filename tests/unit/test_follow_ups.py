@@ -1,7 +1,10 @@
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, found
+from test_reading_rules import JSON
+from texts import encoded
 
 from aos_language.follow_ups import told_once
+from aos_language.load import load_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 
 TEXTS = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}
@@ -93,3 +96,10 @@ def test_what_a_compiler_says_of_one_line_or_one_name_is_told_once():
         (first, said(20, 9, "`in` was not declared"), name, said(41, 1, "`far` was not declared"))
     )
     assert [(one.span.line, one.hint) for one in found] == [(20, ""), (40, "Also: line 41")]
+
+
+@pytest.mark.parametrize("name", ["at", "door", "closed"])
+def test_a_variable_of_a_json_document_that_lacks_its_name_is_one_error(name: str):
+    nameless = JSON["room.json"].replace(f'"Name": "{name}"', '"Name": ""', 1)
+    (only,) = told_once(load_files(encoded(JSON | {"room.json": nameless})).diagnostics)
+    assert (only.span.file, only.code) == ("room.json", "AOS105")
