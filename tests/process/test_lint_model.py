@@ -247,6 +247,21 @@ def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(hall: Callable
     assert linted(hall(widens, goal="64000000", door="-1")) == {}
 
 
+def test_a_search_that_ends_for_its_time_is_told_wherever_it_was(
+    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+):
+    """Some of the searches end in code of the documents, and the others between two pieces of it."""
+    monkeypatch.setattr(reachability, "MAX_CPU_S", 0.05)
+    widens = "state__.place = state.place * 300 + AOS.SampleDiscrete(vector<double>(300, 1.0 / 300));"
+    folder = hall(widens, goal="-1", door="-1")
+    for _ in range(10):
+        ((code, (severity, place, _hint)),) = linted(folder).items()
+        assert (code, severity, place) in {
+            ("AOS132", "remark", "hall.ef:1"),
+            ("AOS211", "warning", "walk.sd:4"),
+        }
+
+
 def test_an_initial_belief_that_cannot_be_enumerated_is_no_reason_for_remarks(hall: Callable[..., Path]):
     folder = hall("state__.place = state.place;", goal="-1", door="-1")
     environment = folder / "hall.ef"

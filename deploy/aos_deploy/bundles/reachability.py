@@ -30,7 +30,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     remark with the search's extent if that is at least the horizon, and nothing is said of preconditions.
     Loops that never end there are warnings, too. Nothing more is said where the initial belief cannot be
     enumerated. Where not all is looked at, random actions are tried as well. A fault of model code on the way
-    is an error at its place.
+    is an error at its place, and a look that took too long a remark.
     """
     try:
         async with await Engine.start(built, seed=1) as engine:
@@ -42,6 +42,8 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         is_fault = not isinstance(error, OverdueError)
         if is_fault and not error.diagnostics:
             raise
+        if not error.diagnostics:
+            return (_not_looked_at(project.environment.span),)
         return tuple(_reached(diagnostic, is_fault) for diagnostic in error.diagnostics)
     if reach.states == 0:
         return endless
@@ -60,6 +62,13 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
             message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
             findings.warning("AOS131", message, skill.model.precondition[0].span, _extent(reach))
     return (*endless, *findings.diagnostics)
+
+
+def _not_looked_at(place: Span) -> Diagnostic:
+    """A search that ended for its time in no code of the documents."""
+    message = f"the search for what the actions lead to has ended: it took more than {MAX_CPU_S:g} s"
+    hint = "Nothing is told of goals and preconditions that nothing leads to, nor of faults behind it"
+    return Diagnostic(Severity.REMARK, "AOS132", message, place, hint)
 
 
 def _reached(diagnostic: Diagnostic, is_fault: bool) -> Diagnostic:
