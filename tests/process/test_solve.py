@@ -228,6 +228,18 @@ def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path):
             Policy.load(path)
 
 
+async def test_what_is_a_goal_at_the_start_is_part_of_the_start_belief(cache_dir: Path):
+    files = {
+        "gauge.ef": "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: bool high\n"
+        "initial_belief:\nstate.high = AOS.Bernoulli(0.25);\n"
+        "reward_code:\nif (state.high) { __reward = 1; __isGoalState = true; }\n",
+        "push.sd": "project: gauge\n\ndynamic_model:\nstate__.high = AOS.Bernoulli(0.5);\n",
+    }
+    async with engine_of_text(files, cache_dir) as engine:
+        model = (await enumerate_model(engine)).model
+    assert list(model.start_distribution()) == [0.75, 0.25]
+
+
 async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path):
     skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = state__.level;\n__moduleResponse = high;\n"
     environment = "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: {kind} level\n"

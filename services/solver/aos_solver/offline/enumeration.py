@@ -1,6 +1,6 @@
 """A bundle's model as numbers, from its compiled engine."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import msgspec
 import numpy as np
@@ -8,7 +8,14 @@ import numpy as np
 from aos_protocol.errors import IntractableError
 from aos_solver.child.answers.models import Listed
 from aos_solver.child.engine import Engine
-from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Floats, read_flat, with_more_outcomes
+from aos_solver.offline.explicit_model import (
+    ExplicitModel,
+    FlatModel,
+    Floats,
+    StartBelief,
+    read_flat,
+    with_more_outcomes,
+)
 
 MAX_STATES = 1_000_000
 ENDED = "ended"
@@ -62,6 +69,17 @@ async def enumerate_model(
     return Enumeration(model, states, written.left_out)
 
 
+def _with_ended_share(starts: tuple[StartBelief, ...], ended: int) -> Iterator[StartBelief]:
+    """The beliefs at the start: what is missing from their probabilities is over from the start."""
+    for start in starts:
+        missing = 1 - start.probabilities.sum()
+        if missing <= _NEXT_TO_NOTHING:
+            yield start
+            continue
+        states = np.append(start.states, np.array([ended], start.states.dtype))
+        yield StartBelief(start.weight, states, np.append(start.probabilities, missing))
+
+
 def _with_an_end(
     name: str, numbers: FlatModel, actions: tuple[str, ...], observations: tuple[str, ...]
 ) -> ExplicitModel:
@@ -84,5 +102,5 @@ def _with_an_end(
         outcomes=outcomes,
         sensings=sensings,
         likelihoods=numbers.likelihoods.with_certain_row(len(observations)),
-        starts=numbers.starts,
+        starts=tuple(_with_ended_share(numbers.starts, ended)),
     )
