@@ -201,7 +201,8 @@ def _end_descendants(grace_s: float) -> None:
             os.kill(child, signal.SIGKILL if is_late else signal.SIGTERM)
             if is_late and kill_at_s and child not in told:
                 told.add(child)
-                _tell(f"{child} ({_name(child)}) went on after SIGTERM, and is killed")
+                name = _told_by_kernel(f"{child}/comm")
+                _tell(f"{child} ({name}) went on after SIGTERM, and is killed")
         if _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, 0.05)):
             kill_at_s = 0.0
         _reap()
@@ -213,13 +214,12 @@ def _is_told_at_once(received: signal.struct_siginfo | None) -> bool:
 
 def _children() -> list[int]:
     _reap()
-    with open(f"/proc/self/task/{os.getpid()}/children", "rb") as listing:  # noqa: PTH123
-        return [int(pid) for pid in listing.read().split()]
+    return [int(pid) for pid in _told_by_kernel(f"self/task/{os.getpid()}/children").split()]
 
 
-def _name(child: int) -> str:
-    with open(f"/proc/{child}/comm", errors="replace") as name:  # noqa: PTH123
-        return name.read().strip()
+def _told_by_kernel(file: str) -> str:
+    with open(f"/proc/{file}", errors="replace") as told:  # noqa: PTH123
+        return told.read().strip()
 
 
 def _reap() -> None:
