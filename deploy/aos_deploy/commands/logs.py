@@ -16,8 +16,8 @@ from aos_deploy.runs.living import chosen_run
 from aos_protocol.errors import DeployError
 from aos_protocol.spelling import did_you_mean
 
-_READ_BYTES = 1024**2
-"""The end of a longer log that is looked at."""
+_END_BYTES = 1024**2
+"""The part of a longer log that is read."""
 _LOOK_S = 0.2
 
 
@@ -41,18 +41,19 @@ def logs(
     _refuse_unknown(services or [], directory)
     typer.echo(f"Logs of {from_here(directory.path)}", err=True)
     shown: dict[Path, _Log] = {}
-    most, goes_on = lines, True
+    is_first = goes_on = True
     while goes_on:
         goes_on = follow and directory.is_held  # Before the logs are read: they are complete then.
         for path in _logs_of(directory):
             if services and path.stem not in services:
                 continue
-            log = shown.setdefault(path, _Log(path))
-            new = log.new_lines(is_last=not goes_on)
-            for line in new[max(0, len(new) - most) :]:
+            if path not in shown:
+                shown[path] = _Log(path)
+            new = shown[path].new_lines(is_last=not goes_on)
+            for line in new[max(0, len(new) - lines) :] if is_first else new:
                 told = {"service": path.stem, "line": line}
                 typer.echo(msgspec.json.encode(told) if as_json else f"{path.stem} | {line}")
-        most = _READ_BYTES
+        is_first = False
         if goes_on:
             time.sleep(_LOOK_S)
 
@@ -60,18 +61,18 @@ def logs(
 class _Log:
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._at = max(0, path.stat().st_size - _READ_BYTES)
+        self._at = max(0, path.stat().st_size - _END_BYTES)
         self._begun = b""
 
     def new_lines(self, *, is_last: bool) -> list[str]:
-        """Returns lines that came to their end since the last call, the one that has not where it `is_last`.
+        """Returns lines that ended since the last call, and where it `is_last` also the one that has not.
 
         Of a log that was cut since then, only what comes from now on.
         """
         with self._path.open("rb") as file:
             size = file.seek(0, os.SEEK_END)
             file.seek(min(self._at, size))
-            text = self._begun + file.read(_READ_BYTES)
+            text = self._begun + file.read()
             self._at = file.tell()
         *ended, self._begun = text.split(b"\n")
         if is_last and self._begun:
