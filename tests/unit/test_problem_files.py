@@ -154,7 +154,16 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
 @pytest.mark.parametrize(
     ("name", "change", "finding"),
     [
-        ("tiger.pomdp", replaced("R: 1 : left", "R: 1 : lft"), "21:8 AOS110 there is no state lft"),
+        (
+            "tiger.pomdp",
+            replaced("R: 1 : left", "R: 1 : lft"),
+            "21:8 AOS110 there is no state lft. Did you mean `left`?",
+        ),
+        (
+            "tiger.pomdp",
+            replaced("uniform", "unifrom"),
+            "7:8 AOS110 there is no state unifrom. Did you mean `u",
+        ),
         ("tiger.pomdp", replaced("0.85 0.15", "0.85 0.3"), "15:1 AOS122 the probabilities of `O:"),
         ("tiger.pomdp", replaced("0.85 0.15", "0.85 1.5"), "16:6 AOS122 1.5 is no probability"),
         ("tiger.pomdp", replaced("0.15 0.85", "0.15"), "15:1 AOS106 3 numbers where 2 rows of 2 are needed"),
@@ -186,7 +195,7 @@ def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path, name, change, 
     with pytest.raises(DocumentError) as caught:
         read_problem(broken)
     first = caught.value.diagnostics[0]
-    text = f"{first.span.line}:{first.span.column} {first.code} {first.message}"
+    text = f"{first.span.line}:{first.span.column} {first.code} {first.message}. {first.hint}"
     assert text.startswith(finding), text
 
 

@@ -134,7 +134,7 @@ class _Reader:
         elif len(words) == 1 and words[0].text == "uniform":
             self._start = self._uniform("states")
         elif len(words) == 1 and (len(self._names["states"]) > 1 or words[0].text in self._names["states"]):
-            self._start = dict.fromkeys(self._some("states", words[0]), 1.0)
+            self._start = dict.fromkeys(self._some("states", words[0], ("uniform",)), 1.0)
         else:
             row = self._distribution("states", words, statement)
             self._start = row and self._scaled(row, statement.keyword)
@@ -266,7 +266,7 @@ class _Reader:
     def _uniform(self, kind: str) -> Distribution:
         return dict.fromkeys(self._all(kind), 1 / len(self._names[kind]))
 
-    def _some(self, kind: str, word: Word) -> Sequence[int]:
+    def _some(self, kind: str, word: Word, keywords: tuple[str, ...] = ()) -> Sequence[int]:
         """Returns the numbers that a name, a number or `*` stands for."""
         if word.text == "*":
             return self._all(kind)
@@ -274,7 +274,7 @@ class _Reader:
         if number is None and (count := word.count) is not None and count < len(self._names[kind]):
             number = count
         if number is None:
-            self._findings.unknown(kind.rstrip("s"), word, self._names[kind])
+            self._findings.unknown(kind.rstrip("s"), word, self._names[kind], keywords)
             return ()
         return (number,)
 

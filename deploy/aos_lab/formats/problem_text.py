@@ -9,6 +9,7 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import DocumentError
+from aos_protocol.spelling import did_you_mean
 
 M = TypeVar("M")
 
@@ -16,6 +17,8 @@ _WORD = re.compile(r"\S+")
 _MAX_FINDINGS = 50
 _EXCERPT_LENGTH = 200
 _MAX_DIGITS = 18
+_COMPARED = 1000
+"""So many names are compared with an unknown one."""
 
 
 class Placed(Protocol):
@@ -72,11 +75,12 @@ class ProblemFindings:
         if len(self._found) >= _MAX_FINDINGS:
             raise TooManyFindingsError
 
-    def unknown(self, kind: str, word: Word, known: Iterable[str]) -> None:
-        """A name that nothing has."""
+    def unknown(self, kind: str, word: Word, known: Iterable[str], keywords: tuple[str, ...] = ()) -> None:
+        """A name that nothing has, where these keywords may stand, too."""
         names = list(known)
         shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-        self.error("AOS110", f"there is no {kind} {word.text}", word, f"There is: {shown}")
+        hint = did_you_mean(word.text, (*keywords, *names[:_COMPARED])) or f"There is: {shown}"
+        self.error("AOS110", f"there is no {kind} {word.text}", word, hint)
 
     @property
     def has_any(self) -> bool:
