@@ -126,7 +126,7 @@ CODE = {
         "std::pair<int, int> spot{1, 2}; bool is_kept = state.kept.find(spot) != state.kept.end();"
         "if (is_kept && !state__.sorted.count(Blue)) __reward += mine.size();"
         "state__.kept = state.kept; state__.kept.erase(spot); __reward += 100 * (state__.kept < state.kept);"
-        "spot = state.spot; __reward += spot.second + 1000 * state.kept.contains(state.spot);"
+        "spot = state.spot; __reward += std::get<1>(state.spot) + 1000 * state.kept.contains(state.spot);"
         "try { state__.sorted.at(Blue).insert(1); } catch (const std::out_of_range& told) "
         '{ __reward += 0.5 * (std::string(told.what()).find("map") == 2); }',
         20 + 2 + 2 + 0 + 5 + 0.5,

@@ -12,7 +12,7 @@
 
 namespace aos {
 
-// It converts from and to std::pair.
+// It converts from and to std::pair, and has std::get.
 template <class First, class Second>
 struct Pair {
   First first{};
@@ -154,3 +154,15 @@ class Map : public Sorted<Store, std::remove_cvref_t<decltype(Store::value_type:
 };
 
 }  // namespace aos
+
+namespace std {
+template <size_t index, class First, class Second>
+auto& get(aos::Pair<First, Second>& pair) {
+  if constexpr (index == 0) return pair.first;
+  else return pair.second;
+}
+template <size_t index, class First, class Second>
+const auto& get(const aos::Pair<First, Second>& pair) {
+  return get<index>(const_cast<aos::Pair<First, Second>&>(pair));
+}
+}  // namespace std
