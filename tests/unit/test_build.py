@@ -228,6 +228,11 @@ async def test_a_mistake_with_a_map_names_its_keys(
             "`int&` may change what it is given, and this is only read",
             "no matching function for call to object of type a lambda",
         ),
+        (
+            "bool a = true\nbool b = a;\nstate__.total = b;",
+            "expected `,` or `;` before `bool`",
+            "expected `;` at end of declaration",
+        ),
     ],
 )
 async def test_types_are_told_by_their_names_in_documents(
@@ -242,6 +247,8 @@ async def test_types_are_told_by_their_names_in_documents(
         hint = "Write `(Side)` before it; a draw is `AOS.SampleDiscrete(Side, {...})`"
     if only.message.endswith("only read"):
         hint = "Write `const int&`, or give a copy of the state that may change here"
+    if only.message.endswith("before `bool`"):
+        hint = "Is a semicolon missing at the end of the line above?"
     assert (only.message, only.hint) == (await said(by_gcc, by_clang), hint)
 
 

@@ -9,6 +9,7 @@ import typer
 from aos_deploy.bundles.files import project_at, with_mission
 from aos_deploy.bundles.reachability import endless_findings
 from aos_deploy.places import cache_dir
+from aos_language.follow_ups import told_once
 from aos_language.load import with_excerpts
 from aos_protocol.diagnostics import Severity, render
 from aos_protocol.documents import Constraint, MissionValue
@@ -56,5 +57,5 @@ async def engine_of_bundle(
             for finding in with_excerpts(await endless_findings(engine), planned.files):
                 typer.echo(render(finding), err=True)
     except ModelError as error:
-        error.diagnostics = with_excerpts(error.diagnostics, planned.files)
+        error.diagnostics = told_once(with_excerpts(error.diagnostics, planned.files))
         raise

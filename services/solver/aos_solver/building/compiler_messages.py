@@ -39,6 +39,8 @@ _BOUND = re.compile(r"binding reference of type `(.+?)&?` to (?:value of type )?
 _CONSEQUENCES = ("<expression error>", "cannot be set to a list in braces", "and these are others")
 """Said too where a name within was not declared."""
 _FAULTS = ("error", "fatal error", "Error")
+_ENDLESS = re.compile(r"expected .*`;`.* before .*")
+"""g++ tells a missing semicolon where it reads on, and skips what comes before the next one."""
 
 
 class CompilerReport(msgspec.Struct, frozen=True):
@@ -69,6 +71,8 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
     """Reads the text that g++ and clang write, for the emitted file compiled as `source_name`."""
     diagnostics: list[Diagnostic] = []
     outside: list[str] = []
+    lines = emitted.cpp.encode().split(b"\n")
+    unread: set[str] = set()
     for message in _messages(output):
         places = [(message.file, message.line, message.column), *message.related]
         spans = (_document_place(place, source_name, emitted) for place in places)
@@ -79,6 +83,12 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
         text, hint = _plain(message.text)
         unknown = _NOT_DECLARED.fullmatch(text)
         name = unknown[1] or unknown[2] if unknown is not None else ""
+        if name in unread:
+            continue  # Its declaration was not taken up.
+        if _ENDLESS.fullmatch(text) and message.file.endswith(source_name):
+            line, start = lines[message.line - 1], message.column - 1
+            unread.update(re.findall(r"[A-Za-z_]\w*", line[start:].decode()))
+            hint = "" if line[:start].strip() else "Is a semicolon missing at the end of the line above?"
         if name in emitted.layout.shapes:
             hint = f"Did you mean `state.{name}`?"
         elif not _may_be_meant(hint, emitted):
