@@ -255,7 +255,8 @@ def test_a_search_that_ends_for_its_time_is_told_wherever_it_was(
     widens = "state__.place = state.place * 300 + AOS.SampleDiscrete(vector<double>(300, 1.0 / 300));"
     folder = hall(widens, goal="-1", door="-1")
     for _ in range(10):
-        ((code, (severity, place, _hint)),) = linted(folder).items()
+        ((code, (severity, place, hint)),) = linted(folder).items()
+        assert "Looked at " in hint
         told = (code, severity, place == "hall.ef:1")
         assert told in {("AOS132", "remark", True), ("AOS211", "warning", False)}
 

@@ -8,7 +8,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers.models import Reach
+from aos_solver.child.answers.models import Progress, Reach
 from aos_solver.child.engine import Engine
 from aos_solver.child.process.engine_child import OverdueError
 
@@ -32,9 +32,18 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     enumerated. Where not all is looked at, random actions are tried as well. A fault of model code on the way
     is an error at its place, and a look that took too long a remark.
     """
+    extent = "Looked at no state"
+
+    def tell(progress: Progress) -> None:
+        nonlocal extent
+        extent = f"Looked at {progress.done} of {progress.all} states that were found"
+
     try:
         async with await Engine.start(built, seed=1) as engine:
+            engine.on_progress = tell
+            await engine.tell_progress(0)
             reach = await engine.reach(_TIME_S, MAX_CPU_S)
+            extent = _extent(reach)
             if not reach.is_whole:
                 await engine.rate(_DRAWN_TIME_S, seed=1, max_seconds=MAX_CPU_S)
             endless = await endless_findings(engine)
@@ -43,8 +52,9 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         if is_fault and not error.diagnostics:
             raise
         if not error.diagnostics:
-            return (_not_looked_at(project.environment.span),)
-        return tuple(_reached(diagnostic, is_fault) for diagnostic in error.diagnostics)
+            return (_not_looked_at(project.environment.span, extent),)
+        cheaper = f"Make steps cheaper: a search makes many thousand of them. {extent}"
+        return tuple(_reached(one, "" if is_fault else cheaper) for one in error.diagnostics)
     if reach.states == 0:
         return endless
     findings = Findings()
@@ -64,19 +74,22 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     return (*endless, *findings.diagnostics)
 
 
-def _not_looked_at(place: Span) -> Diagnostic:
+def _not_looked_at(place: Span, extent: str) -> Diagnostic:
     """A search that ended for its time in no code of the documents."""
     message = f"the search for what the actions lead to has ended: it took more than {MAX_CPU_S:g} s"
-    hint = "Nothing is told of goals and preconditions that nothing leads to, nor of faults behind it"
+    hint = (
+        f"{extent}. Nothing is told of goals and preconditions that nothing leads to, nor of faults behind it"
+    )
     return Diagnostic(Severity.REMARK, "AOS132", message, place, hint)
 
 
-def _reached(diagnostic: Diagnostic, is_fault: bool) -> Diagnostic:
-    """A fault is an error. What only takes too long to look at everything is a warning."""
-    severity = Severity.ERROR if is_fault else Severity.WARNING
-    hint = diagnostic.hint if is_fault else "Make steps cheaper: a search makes many thousand of them"
+def _reached(diagnostic: Diagnostic, cheaper: str) -> Diagnostic:
+    """A fault is an error. What only takes too long to look at everything is a warning, with its own hint."""
+    severity = Severity.WARNING if cheaper else Severity.ERROR
     message = f"in a state that can be reached: {diagnostic.message}"
-    return msgspec.structs.replace(diagnostic, severity=severity, message=message, hint=hint)
+    return msgspec.structs.replace(
+        diagnostic, severity=severity, message=message, hint=cheaper or diagnostic.hint
+    )
 
 
 def _goal_span(environment: Environment) -> Span | None:
