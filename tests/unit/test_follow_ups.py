@@ -44,7 +44,6 @@ def told(*changes: tuple[str, str, str], texts: dict[str, str] = TEXTS) -> list[
         (("mapping", "response: walked\n", ""), "walk.am:2 AOS102"),
         (("mapping", "response: stayed\n", "response: stayed\n" * 2), "walk.am:4 AOS105"),
         (("skill", "dynamic_model:\n", ""), "walk.sd:8 AOS104"),
-        (("skill", "dynamic_model:", "dynamic model:"), "walk.sd:8 AOS104 Did you mean `dynamic_model:`?"),
         (("skill", "= AOS.Bernoulli(0.5)", "AOS.Bernoulli(0.5))"), "walk.sd:10 AOS108"),
         (("environment", "__reward = 10", "__reard = 10"), "hall.ef:23 AOS110"),
         (("environment", "state_variable: Cell second\n", ""), "hall.ef:8 AOS103"),

@@ -241,3 +241,16 @@ def test_a_missing_semicolon_before_a_copy_of_the_state_is_told_once():
     (only,) = found(skill=SKILL.replace("state__.second.x =", code))
     assert (only.code, only.span.line) == ("AOS108", 10)
     assert only.hint == "Is a semicolon missing at the end of the line above?"
+
+
+def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
+    changed = ENVIRONMENT.replace(
+        "x 0\n", "x 0\nvariable: float width\nvariable: double far\nvariable: double at 0.3\n"
+    )
+    code = "state__.first.far += 0.1;\n__reward = (state.second.width == 0.3) + (state.first.far == 0.3);\n"
+    exact = "__reward += (state.second.width == 0.5) + (state.first.at == 0.3) + (state.first.far == 0.25);\n"
+    told = found(environment=changed, skill=SKILL.replace("state__.second", f"{code}{exact}state__.second"))
+    assert [(one.span.column, one.severity, one.hint) for one in told] == [
+        (13, "warning", "Write `std::abs(state.second.width - 0.3) < 1e-6`"),
+        (43, "remark", "Write `std::abs(state.first.far - 0.3) < 1e-6`"),
+    ]
