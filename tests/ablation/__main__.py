@@ -113,7 +113,7 @@ def _bundles(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _print_rows(rows: Iterable[dict[str, Any]], as_json: bool) -> None:
+def _print_rows(rows: Iterable[dict[str, Any]], as_json: bool):
     is_first = True
     for row in rows:
         _tell_progress("")
@@ -126,7 +126,7 @@ def _print_rows(rows: Iterable[dict[str, Any]], as_json: bool) -> None:
         print("nothing was measured", file=sys.stderr)
 
 
-def _tell_progress(text: str) -> None:
+def _tell_progress(text: str):
     if sys.stderr.isatty():
         print(f"\r{text}\033[K", end="", file=sys.stderr, flush=True)
     elif text:

@@ -8,12 +8,12 @@ from .mechanisms import Route
 class Losses:
     """Regret of each variant of the routes' planners, by model."""
 
-    def __init__(self, routes: list[Route]) -> None:
+    def __init__(self, routes: list[Route]):
         self._routes = routes
         self._regrets: dict[str, dict[str, float]] = defaultdict(dict)  # by variant and model
         self.models = 0
 
-    def add(self, model: str, report: dict[str, Any]) -> None:
+    def add(self, model: str, report: dict[str, Any]):
         """Takes the driver's report on a model; one without a known optimum tells nothing."""
         if not report.get("planners"):
             return

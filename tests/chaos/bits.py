@@ -80,13 +80,13 @@ def what_becomes_of(run: Path, whole: list[JournalRow], usual: Mapping[str, str]
     return "all rows are there" if rows == whole else "the last rows are lost, and nobody was asked for them"
 
 
-def _call(words: list[str]) -> None:
+def _call(words: list[str]):
     said = io.TextIOWrapper(io.BytesIO())
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         aos_app(words)(words, standalone_mode=False)
 
 
-def _take_up(run: Path) -> None:
+def _take_up(run: Path):
     _, taken_up = take_up(run)
     taken_up.run.close()
 
@@ -136,7 +136,7 @@ def main() -> int:
     return int(faults > 0)
 
 
-def clear_log(journal: Path) -> None:
+def clear_log(journal: Path):
     """Moves the rows out of the write-ahead log into the journal, as its writer does when it ends."""
     database = sqlite3.connect(journal)
     database.execute("PRAGMA wal_checkpoint(TRUNCATE)")

@@ -82,7 +82,7 @@ def _disturb(folder: Path, up: Up, kind: str, victims: list[int], frozen_s: floa
     return up
 
 
-def _let_it_end(folder: Path, up: Up) -> None:
+def _let_it_end(folder: Path, up: Up):
     """Ends a mission that goes on, as Ctrl-C does, after one more decision."""
     if up.until_decision():
         send(up.process.pid, signal.SIGINT)

@@ -36,7 +36,7 @@ class Report(msgspec.Struct):
 
 def judge(
     folder: Path, report: Report, status: int | None, processes: Iterable[Process], allowed: Iterable[str]
-) -> None:
+):
     """Adds to the report's faults what breaks a promise. The ending has to be one of `allowed`.
 
     Without a `status` aos-up has died after the end of the mission, and may have left no summary.

@@ -9,7 +9,7 @@ from typing import Any
 MOVES_S = float(os.environ.get("AOS_MOVES_S", "0.15"))
 
 
-async def _move(call: Any) -> None:
+async def _move(call: Any):
     """Moves for a while. Begun, ended and cancelled motions are each a line of $AOS_MOTIONS."""
     _note("begun", call)
     try:
@@ -26,10 +26,10 @@ async def listen(call: Any) -> dict[str, str]:
     return {"loudest": "left"}
 
 
-async def open_door(call: Any, door: str) -> None:
+async def open_door(call: Any, door: str):
     await _move(call)
 
 
-def _note(what: str, call: Any) -> None:
+def _note(what: str, call: Any):
     with Path(os.environ["AOS_MOTIONS"]).open("a") as motions:
         motions.write(f"{what} {call.id} {time.time()}\n")

@@ -41,7 +41,7 @@ def twins(folder: Path, name: str, seed: int, cache: Path) -> Report:
     return report
 
 
-async def _compare(bundle: Path, seed: int, cache: Path, report: Report) -> None:
+async def _compare(bundle: Path, seed: int, cache: Path, report: Report):
     project = load_bundle(bundle).project
     assert project is not None
     built = await build_project(project, cache)
@@ -89,7 +89,7 @@ async def _started(built: BuiltModel, seed: int) -> Engine:
     return await Engine.start(built, seed=seed)
 
 
-def _kill(engine: Engine, chance: random.Random) -> None:
+def _kill(engine: Engine, chance: random.Random):
     """Kills the engine or its guard, which takes it along, unless the one before it has just ended."""
     with contextlib.suppress(FileNotFoundError):
         if engine.pid is not None:

@@ -88,7 +88,7 @@ QUIET_S = 90.0
 """A mission that tells nothing for so long hangs."""
 
 
-def write_deploy_file(folder: Path, seed: int, steps: int, *, is_sampled: bool = False) -> None:
+def write_deploy_file(folder: Path, seed: int, steps: int, *, is_sampled: bool = False):
     """Writes `tester.yaml` and its bundle: a tiger that is heard `steps` times."""
     (folder / "tiger").mkdir()
     for document in (_ROOT / "deploy/bundles/bench/tiger").iterdir():
@@ -100,7 +100,7 @@ def write_deploy_file(folder: Path, seed: int, steps: int, *, is_sampled: bool =
     (folder / "tester.yaml").write_text(_DEPLOY.format(robot=robot, seed=seed, steps=steps))
 
 
-def compile_bundles(folder: Path) -> None:
+def compile_bundles(folder: Path):
     """Compiles both bundles into the cache, so that no mission waits for that."""
     for is_sampled in (False, True):
         place = folder / str(is_sampled)
@@ -120,7 +120,7 @@ class Up:
         *arguments: str | Path,
         moves_s: float = 0.05,
         environment: Mapping[str, str] | None = None,
-    ) -> None:
+    ):
         robot = {"AOS_MOTIONS": str(folder / "motions"), "AOS_MOVES_S": str(moves_s)}
         with (folder / "aos-up.log").open("a") as log:
             self.process = subprocess.Popen(
@@ -137,7 +137,7 @@ class Up:
         self._events: queue.Queue[dict[str, object] | None] = queue.Queue()
         threading.Thread(target=self._read, daemon=True).start()
 
-    def _read(self) -> None:
+    def _read(self):
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self.told += line
@@ -152,7 +152,7 @@ class Up:
             self._events.put(None)
         return event
 
-    def forget(self) -> None:
+    def forget(self):
         """Passes over what was told up to now."""
         while not self._events.empty() and self.next() is not None:
             pass
@@ -189,7 +189,7 @@ class Up:
                 found.append(pid)
         return found[:1]
 
-    def end(self) -> None:
+    def end(self):
         """Kills what is left of it."""
         pids = [self.process.pid, *self.below()]
         for pid in pids:
@@ -197,6 +197,6 @@ class Up:
         self.process.wait()
 
 
-def send(pid: int, number: signal.Signals) -> None:
+def send(pid: int, number: signal.Signals):
     with contextlib.suppress(ProcessLookupError):
         os.kill(pid, number)

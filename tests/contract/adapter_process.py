@@ -29,7 +29,7 @@ async def started_adapter(keys: Keys, endpoint: str, run_dir: Path, service: str
 class AdapterProcess:
     """A process with one adapter, and how the middleware speaks to it."""
 
-    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path) -> None:
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path):
         self.bus = bus
         self.keys = keys
         self.endpoint = endpoint
@@ -48,7 +48,7 @@ class AdapterProcess:
     async def cancel(self, path: str) -> Cancelled:
         return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=HANG_S)
 
-    async def stop(self) -> None:
+    async def stop(self):
         """Ends the process, where one was started."""
         if self.child is not None:
             await self.child.stop(10.0)

@@ -60,7 +60,7 @@ return __input.data
 class Registry:
     """Answers for one project, and announces its revisions."""
 
-    def __init__(self, bus: Bus, keys: Keys, project: Project) -> None:
+    def __init__(self, bus: Bus, keys: Keys, project: Project):
         self._bus = bus
         self._keys = keys
         self.current = messages.ProjectRevision(1, "digest 1", project)
@@ -69,7 +69,7 @@ class Registry:
         assert query.project == "armadillo"
         return self.current
 
-    def announce(self, project: Project) -> None:
+    def announce(self, project: Project):
         number = self.current.revision + 1
         self.current = messages.ProjectRevision(number, f"digest {number}", project)
         self._bus.tell(self._keys.announced, self.current)
@@ -78,7 +78,7 @@ class Registry:
 class Adapter:
     """Answers calls as the test says, and remembers them and its motions."""
 
-    def __init__(self, bus: Bus, keys: Keys) -> None:
+    def __init__(self, bus: Bus, keys: Keys):
         self._bus = bus
         self._keys = keys
         self._sent: dict[str, int] = {}
@@ -93,7 +93,7 @@ class Adapter:
         path: str,
         answer: Callable[[messages.SkillCall], Awaitable[dict[str, Any]]],
         changed: Callable[[messages.SkillResult], messages.SkillResult] = lambda result: result,
-    ) -> None:
+    ):
         async def run(call: messages.SkillCall, _: str) -> messages.SkillResult:
             self.calls.append(call)
             self.is_called.set()
@@ -106,15 +106,15 @@ class Adapter:
         await self._bus.answer(self._keys.call(path), messages.SkillCall, run)
         await self.announce(path)
 
-    async def announce(self, path: str, adapter: str = "scripted") -> None:
+    async def announce(self, path: str, adapter: str = "scripted"):
         """Says that calls of the path are answered."""
         await self._bus.announce(self._token(path, adapter))
 
-    def withdraw(self, path: str, adapter: str = "scripted") -> None:
+    def withdraw(self, path: str, adapter: str = "scripted"):
         """Says that they no longer are."""
         self._bus.withdraw(self._token(path, adapter))
 
-    async def lack(self, path: str, reason: str) -> None:
+    async def lack(self, path: str, reason: str):
         """Tells why it does not serve a path."""
         await self._bus.announce(self._keys.lack(Lack("scripted", reason, path)))
 
@@ -126,7 +126,7 @@ class Adapter:
     def _token(self, path: str, adapter: str) -> str:
         return self._keys.serve(Serving(adapter, "1", self.instance, path))
 
-    async def serve_cancel(self, path: str, is_still: asyncio.Event | None = None) -> None:
+    async def serve_cancel(self, path: str, is_still: asyncio.Event | None = None):
         """Answers cancellations, once the robot stands still."""
 
         async def cancel(request: messages.Cancel, _: str) -> messages.Cancelled:
@@ -138,7 +138,7 @@ class Adapter:
 
         await self._bus.answer(self._keys.cancel(path), messages.Cancel, cancel)
 
-    def publish(self, topic: str, fields: dict[str, Any]) -> None:
+    def publish(self, topic: str, fields: dict[str, Any]):
         self._sent[topic] = self._sent.get(topic, 0) + 1
         self._bus.tell(self._keys.topic(topic), messages.TopicMessage(self._sent[topic], fields))
 
@@ -146,9 +146,7 @@ class Adapter:
 class System:
     """A middleware with its surroundings, and how the solver speaks to it."""
 
-    def __init__(
-        self, bus: Bus, keys: Keys, settings: Settings, registry: Registry, adapter: Adapter
-    ) -> None:
+    def __init__(self, bus: Bus, keys: Keys, settings: Settings, registry: Registry, adapter: Adapter):
         self.bus = bus
         self.keys = keys
         self.run_dir = Path(settings.run_dir)
@@ -160,7 +158,7 @@ class System:
         self._has_logged = asyncio.Event()
         self._running: asyncio.Task[None] | None = None
 
-    async def start(self) -> None:
+    async def start(self):
         """Starts the service as a process; returns when it answers."""
         path = self.run_dir / "middleware.json"
         path.write_bytes(msgspec.json.encode(self._settings))
@@ -168,12 +166,12 @@ class System:
             self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=PIPE)
             self._running = asyncio.create_task(self._read_log(self.child))
 
-    async def host(self) -> None:
+    async def host(self):
         """Starts the service in this process, which has imported it already; returns when it answers."""
         async with until_present(self.bus, self.keys.live("middleware")):
             self._running = asyncio.create_task(self._serve())
 
-    async def stop(self) -> None:
+    async def stop(self):
         """Ends the service; raises what it has failed with."""
         if self._running is None:
             return
@@ -238,15 +236,15 @@ class System:
                 await self._has_logged.wait()
             return self._log
 
-    def _note(self, text: str) -> None:
+    def _note(self, text: str):
         self._log += text
         self._has_logged.set()
 
-    async def _read_log(self, child: Child) -> None:
+    async def _read_log(self, child: Child):
         while line := await child.stderr.readline():
             self._note(line.decode())
 
-    async def _serve(self) -> None:
+    async def _serve(self):
         log = logging.getLogger("aos")
         handler = _Lines(self._note)
         log.addHandler(handler)
@@ -261,11 +259,11 @@ class System:
 class _Lines(logging.Handler):
     """Hands over each line of a log."""
 
-    def __init__(self, note: Callable[[str], None]) -> None:
+    def __init__(self, note: Callable[[str], None]):
         super().__init__()
         self._note = note
 
-    def emit(self, record: logging.LogRecord) -> None:
+    def emit(self, record: logging.LogRecord):
         self._note(f"{record.getMessage()}\n")
 
 

@@ -134,7 +134,7 @@ async def outsider_on(endpoint: str) -> AsyncIterator[zenoh.Session]:
 class Holder:
     """Serves a key and answers nothing: it holds what it is asked."""
 
-    def __init__(self, session: zenoh.Session, key: str) -> None:
+    def __init__(self, session: zenoh.Session, key: str):
         loop = asyncio.get_running_loop()
         self.held: asyncio.Queue[zenoh.Query] = asyncio.Queue()
         self._key = key
@@ -143,7 +143,7 @@ class Holder:
             Callback(lambda query: loop.call_soon_threadsafe(self.held.put_nowait, query), indirect=False),
         )
 
-    async def until_asked(self, bus: Bus) -> None:
+    async def until_asked(self, bus: Bus):
         """The router has taken in the declaration; the questions that showed it are dropped."""
         while self.held.empty():
             with suppress(LateAnswerError, NobodyAnswersError):
@@ -151,7 +151,7 @@ class Holder:
         while not self.held.empty():
             self.held.get_nowait().drop()
 
-    async def leave(self, bus: Bus) -> None:
+    async def leave(self, bus: Bus):
         """Returns when the router knows; what is held stays so."""
         self._queryable.undeclare()
         error = None
@@ -179,7 +179,7 @@ async def test_a_question_is_lost_whose_server_left_before_it_was_watched_and_an
         queryable = outsider.declare_queryable(keys.project, Callback(questions.put, indirect=False))
         watch, held, is_missed = ServerWatch.__init__, [], asyncio.Event()
 
-        def watch_late(self: ServerWatch, session: zenoh.Session, key: str) -> None:
+        def watch_late(self: ServerWatch, session: zenoh.Session, key: str):
             held.append(questions.get(timeout=HANG_S))
             queryable.undeclare()
             list(outsider.liveliness().get(ROUND_TRIP))
@@ -242,7 +242,7 @@ async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
         queryable.undeclare()
 
 
-async def until_answered(bus: Bus, key: str) -> None:
+async def until_answered(bus: Bus, key: str):
     """The router has taken in the outsider's declaration, and the answer is the one it gives."""
     async with asyncio.timeout(HANG_S):
         while True:

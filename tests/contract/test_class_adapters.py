@@ -59,7 +59,7 @@ class StopsLate:
 
     version = "1"
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.is_called, self.is_given_up = asyncio.Event(), asyncio.Event()
 
     async def start(self) -> None: ...

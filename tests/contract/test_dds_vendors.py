@@ -33,7 +33,7 @@ def fast_dds_program(cache_dir: Path) -> Path:
     command = [compiler, "-std=c++17", str(source), "-o", "peer", "-lfastrtps", "-lfastcdr"]
     version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
 
-    async def make(folder: Path) -> None:
+    async def make(folder: Path):
         await asyncio.to_thread(subprocess.run, command, cwd=folder, check=True, timeout=COMMAND_S)
 
     library = find_library("fastrtps") or ""  # with its version

@@ -19,7 +19,7 @@ def record(sequence: int, mission: str = "m") -> DecisionRecord:
 class Storyteller:
     """A solver as far as its decisions go."""
 
-    def __init__(self, bus: Bus, keys: Keys) -> None:
+    def __init__(self, bus: Bus, keys: Keys):
         self.records: list[DecisionRecord] = []
         self.state = MissionState("m", "acting", 1, 0.5)
         self.page = 1000
@@ -28,18 +28,18 @@ class Storyteller:
         self._bus = bus
         self._keys = keys
 
-    async def appear(self) -> None:
+    async def appear(self):
         await self._bus.answer(self._keys.decision_history, HistoryQuery, self._history)
         await self._bus.answer(self._keys.mission_state, MissionQuery, self._state)
         await self._bus.announce(self._keys.live("solver"))
 
-    def decide(self, *, is_lost: bool = False) -> None:
+    def decide(self, *, is_lost: bool = False):
         """The next record, which the stream may lose on its way."""
         self.records.append(record(len(self.records)))
         if not is_lost:
             self._bus.tell(self._keys.decisions, self.records[-1])
 
-    def end(self) -> None:
+    def end(self):
         self.state = MissionState("m", "ended", 3, 0.95, ending="goal")
         self._bus.tell(self._keys.mission_state, self.state)
 

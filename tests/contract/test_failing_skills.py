@@ -28,7 +28,7 @@ max_duration: 0.3
 """
 
 
-async def with_mapping(system: System, text: str) -> None:
+async def with_mapping(system: System, text: str):
     project = system.registry.current.project
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
     await system.state(system.registry.current.revision)
@@ -223,7 +223,7 @@ async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_dou
     assert (await system.activate("sense", 2)).status == "observed"
 
 
-def assert_refused(outcome: Outcome, code: str, text: str) -> None:
+def assert_refused(outcome: Outcome, code: str, text: str):
     assert outcome.status == "refused"
     assert outcome.fault is not None
     assert outcome.fault.code == code

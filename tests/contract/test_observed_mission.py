@@ -140,7 +140,7 @@ RUNS: tuple[dict[str, Any], ...] = (
 class Robot(QuietPorts):
     """A middleware, and an adapter that answers from `RUNS`; the ports of a mission."""
 
-    def __init__(self, bus: Bus, keys: Keys) -> None:
+    def __init__(self, bus: Bus, keys: Keys):
         self._bus = bus
         self._keys = keys
         self.calls: list[dict[str, Any]] = []
@@ -151,11 +151,11 @@ class Robot(QuietPorts):
         self.calls.append(call.fields)
         return SkillResult(call.id, RUNS[len(self.calls) - 1])
 
-    def journal(self, kind: str, payload: Message) -> None:
+    def journal(self, kind: str, payload: Message):
         if isinstance(payload, Outcome):
             self.outcomes.append(payload)
 
-    def publish_record(self, record: DecisionRecord) -> None:
+    def publish_record(self, record: DecisionRecord):
         if record.outcome is not None:
             self.records.append(record)
 
@@ -163,7 +163,7 @@ class Robot(QuietPorts):
         key = self._keys.activate(request.skill)
         return await self._bus.ask(key, request, Outcome, timeout_s=HANG_S)
 
-    async def await_mappings(self) -> None:
+    async def await_mappings(self):
         await state_when(
             self._bus,
             self._keys.mapping_state,

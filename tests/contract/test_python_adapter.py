@@ -113,7 +113,7 @@ class Robot(AdapterProcess):
             cancel_s=2.0,
         )
 
-    async def start(self, **bound: str) -> None:
+    async def start(self, **bound: str):
         await self.launch(**bound)
         async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_serve) as present:
             paths: set[str] = set()

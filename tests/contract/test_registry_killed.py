@@ -26,7 +26,7 @@ Accepted = dict[int, bytes]
 """The content of pick.sd in each accepted revision."""
 
 
-async def push_on(bus: Bus, keys: Keys, pick: bytes, accepted: Accepted) -> None:
+async def push_on(bus: Bus, keys: Keys, pick: bytes, accepted: Accepted):
     """Pushes one changed document after the other, for as long as it is answered."""
     while True:
         document = pick + f"// {os.urandom(8).hex()}\n".encode()

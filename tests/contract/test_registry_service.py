@@ -67,7 +67,7 @@ def codes(report: messages.BundleReport) -> set[str]:
     return {error.code for error in errors(report)}
 
 
-def drop(registry: Path, name: str, files: dict[str, bytes]) -> None:
+def drop(registry: Path, name: str, files: dict[str, bytes]):
     """Puts a folder into the watched folder, at once."""
     folder = registry / name
     folder.mkdir()

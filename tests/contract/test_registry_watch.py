@@ -17,7 +17,7 @@ from aos_runtime.parties.registry_watch import RegistryWatch
 class Registry:
     """A registry that answers some questions too late, and then with revision 3 or with a refusal."""
 
-    def __init__(self, late: int, project: Project | None) -> None:
+    def __init__(self, late: int, project: Project | None):
         self.late = late
         self.project = project
         self.questions = 0

@@ -13,16 +13,16 @@ from aos_runtime.parties.reported_state import state_when
 class Teller:
     """Tells its states on a bus, and answers with the newest."""
 
-    def __init__(self, bus: Bus, keys: Keys) -> None:
+    def __init__(self, bus: Bus, keys: Keys):
         self._bus = bus
         self._key = keys.mapping_state
         self.state = MappingState(0, ())
         self.was_asked = asyncio.Event()
 
-    async def serve(self) -> None:
+    async def serve(self):
         await self._bus.answer(self._key, MappingQuery, self._answer)
 
-    def tell(self, revision: int) -> None:
+    def tell(self, revision: int):
         self.state = MappingState(revision, ())
         self._bus.tell(self._key, self.state)
 

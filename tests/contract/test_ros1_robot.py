@@ -131,7 +131,7 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
 async def test_of_whatever_answers_in_place_of_a_master_little_is_told():
     skip_without_ros1()
 
-    async def answer(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def answer(_: asyncio.StreamReader, writer: asyncio.StreamWriter):
         writer.write(b"noise " * 1000 + b"\n")
         await writer.drain()
         writer.close()
@@ -154,7 +154,7 @@ async def test_without_a_master_or_rospy_it_is_said_what_to_do(master: str):
     assert missing.value.code == "AOS805"
 
 
-async def until(node: Ros1Node, name: str, kind: str) -> None:
+async def until(node: Ros1Node, name: str, kind: str):
     async with asyncio.timeout(HANG_S):
         while node.kind_of(name) != kind:
             await node.changed()

@@ -157,7 +157,7 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
     assert ended.is_set()
 
 
-def serve_goals(robot: Node, send_goal: Handler, get_result: Handler) -> None:
+def serve_goals(robot: Node, send_goal: Handler, get_result: Handler):
     robot.publisher("/lab/fibonacci/_action/feedback", f"{FIBONACCI}_FeedbackMessage")
     robot.serve("/lab/fibonacci/_action/send_goal", f"{FIBONACCI}_SendGoal", send_goal)
     robot.serve("/lab/fibonacci/_action/get_result", f"{FIBONACCI}_GetResult", get_result)

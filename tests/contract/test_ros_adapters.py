@@ -89,17 +89,17 @@ response_rule: True
 class Lab(AdapterProcess):
     """An adapter's process and the robot behind it."""
 
-    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, robot: RosNode) -> None:
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, robot: RosNode):
         super().__init__(bus, keys, endpoint, folder)
         self.robot = robot
 
-    async def start(self, adapter: str, options: dict[str, Any], **settings: Any) -> None:
+    async def start(self, adapter: str, options: dict[str, Any], **settings: Any):
         folder = str(INTERFACES.parent)
         await self.launched(
             "robot", folder=folder, project="lab", adapter=adapter, options=options, **settings
         )
 
-    async def until_served(self, path: str) -> None:
+    async def until_served(self, path: str):
         async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_serve) as present:
             async for key, is_alive in present:
                 if key.endswith(path) and is_alive:

@@ -31,7 +31,7 @@ FAR_AWAY = {"x": 4.0, "y": 0.0, "yaw": 0.0}
 
 
 class Robot(AdapterProcess):
-    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, world: Path) -> None:
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path, world: Path):
         super().__init__(bus, keys, endpoint, folder)
         self.world = world
 
@@ -40,7 +40,7 @@ class Robot(AdapterProcess):
         adapter = "aos_skills.pybullet.adapter:PybulletAdapter"
         return await self.launched("pybullet", adapter=adapter, **(shipped | settings))
 
-    async def start(self) -> None:
+    async def start(self):
         """Starts the process; returns when it answers."""
         async with until_present(self.bus, self.keys.live("pybullet")):
             await self.launch()
@@ -64,7 +64,7 @@ class Robot(AdapterProcess):
             await self.call(path, step, fields, **how)
         return error.value
 
-    async def moving(self) -> None:
+    async def moving(self):
         """Returns when simulated time passes: the sensors publish while a skill runs."""
         async with (
             asyncio.timeout(HANG_S),

@@ -35,7 +35,7 @@ class Driving:
     It answers so many cancellations as if it knew no such call as `has_missed` says.
     """
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System):
         self.system = system
         self.is_called = asyncio.Event()
         self.asked: list[Cancel] = []
@@ -43,19 +43,19 @@ class Driving:
         self._end: asyncio.Future[SkillResult] | None = None
         self._sent = 0
 
-    async def serve(self) -> None:
+    async def serve(self):
         bus, keys = self.system.adapter._bus, self.system.keys
         await bus.answer(keys.call("/drive"), SkillCall, self._call)
         await bus.answer(keys.cancel("/drive"), Cancel, self._cancel)
         await self.system.adapter.announce("/drive")
         await self.system.state_when(lambda state: "drive" not in state.unavailable)
 
-    def say(self, distance_m: object) -> None:
+    def say(self, distance_m: object):
         self._sent += 1
         message = TopicMessage(self._sent, {"data": distance_m})
         self.system.adapter._bus.tell(self.system.keys.topic("/laser"), message)
 
-    def arrive(self, call: SkillCall) -> None:
+    def arrive(self, call: SkillCall):
         assert self._end is not None
         self._end.set_result(SkillResult(call.id, {"success": True}, {"/laser": self._sent}))
 

@@ -64,7 +64,7 @@ def main() -> int:
     return examine_engine(arguments)
 
 
-def _add_models(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def _add_models(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"):
     for name, text in (
         ("bounds", "hold claims against the truth"),
         ("regret", "play missions"),
@@ -108,7 +108,7 @@ def _add_models(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
             )
 
 
-def _add_others(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def _add_others(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"):
     """Adds the commands about documents, robots and bundles."""
     command = commands.add_parser("documents", help="bundles of documents, compiled")
     command.add_argument("--models", type=int, default=40, metavar="N")

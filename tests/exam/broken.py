@@ -88,13 +88,13 @@ async def _mission(
 class _Robot(QuietPorts):
     """The mission's ports: skills act in the engine's world, but for the broken one."""
 
-    def __init__(self, job: Job, broken: str = "") -> None:
+    def __init__(self, job: Job, broken: str = ""):
         self._job = job
         self._broken = broken
         self.is_at_goal = False
         self.used: set[str] = set()
 
-    async def start(self, engine: Engine) -> None:
+    async def start(self, engine: Engine):
         self._engine = engine
         start = await engine.reset_world(random.Random(self._job.name).randrange(2**31))
         self.is_at_goal = start.ending == "goal"

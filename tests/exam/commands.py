@@ -81,7 +81,7 @@ async def examine_solver(arguments: argparse.Namespace) -> int:
     return 1 if wrong else 0
 
 
-def _write_bundle(directory: Path | None, bundle: Documents) -> None:
+def _write_bundle(directory: Path | None, bundle: Documents):
     if directory is None:
         return
     folder = directory / bundle.name.replace("/", "-")
@@ -90,7 +90,7 @@ def _write_bundle(directory: Path | None, bundle: Documents) -> None:
         (folder / name).write_text(text)
 
 
-def _tell_progress(text: str) -> None:
+def _tell_progress(text: str):
     if sys.stderr.isatty():
         print(f"\r{text}\033[K", end="", file=sys.stderr, flush=True)
 
@@ -174,7 +174,7 @@ def _problems(arguments: argparse.Namespace) -> list[Problem]:
     return problems(families, arguments.models, arguments.seed, arguments.needles, arguments.max_states)
 
 
-def _dump(directory: Path, problem: Problem, answer: dict[str, Any]) -> None:
+def _dump(directory: Path, problem: Problem, answer: dict[str, Any]):
     directory.mkdir(parents=True, exist_ok=True)
     name = problem.name.replace("/", "-")
     (directory / f"{name}.pomdp").write_text(pomdp_text(problem))
@@ -182,6 +182,6 @@ def _dump(directory: Path, problem: Problem, answer: dict[str, Any]) -> None:
     (directory / f"{name}.json").write_text(json.dumps(answer, indent=2))
 
 
-def _clear_line() -> None:
+def _clear_line():
     if sys.stderr.isatty():
         print("\r\033[K", end="", file=sys.stderr)

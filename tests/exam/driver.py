@@ -22,7 +22,7 @@ async def built_driver(cache_dir: Path) -> Path:
 class Driver:
     """A process that reports on problems; one that dies or hangs is started again."""
 
-    def __init__(self, executable: Path, what: str, options: Mapping[str, object], patience_s: float) -> None:
+    def __init__(self, executable: Path, what: str, options: Mapping[str, object], patience_s: float):
         self._command = [str(executable), what, *(str(word) for item in options.items() for word in item)]
         self._patience_s = patience_s
         self._process: subprocess.Popen[str] | None = None
@@ -52,7 +52,7 @@ class Driver:
         ending = f"no report within {self._patience_s:.0f} s" if is_late else f"ended with status {status}"
         return {"problem": problem.name, "crash": ending}
 
-    def close(self) -> None:
+    def close(self):
         if self._process is not None:
             self._process.kill()
             self._process.communicate()

@@ -65,7 +65,7 @@ Idiom = Callable[[Register, Register, str], str | None]
 IDIOMS: dict[str, Idiom] = {}
 
 
-def _text(name: str, code: str, *, source: str = "", target: str = "", alike: bool = False) -> None:
+def _text(name: str, code: str, *, source: str = "", target: str = "", alike: bool = False):
     """An idiom as a template: READ a number, WRITE(...) a statement, PLACE and FROM places.
 
     It is for registers of these kinds: `number` is any number, and "" anything. If they are `alike`, both are

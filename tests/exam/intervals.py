@@ -67,7 +67,7 @@ class Intervals(Answers):
             self.counts["wrong signs"] += truth < -_ROUNDING
         return margin
 
-    def _take_line(self, margin: Margin, line: list[Any]) -> None:
+    def _take_line(self, margin: Margin, line: list[Any]):
         """The line has the probability now, places with values of both actions, whether the truth is known,
         and between which probabilities the exact choice changes.
         """

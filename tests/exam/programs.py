@@ -25,7 +25,7 @@ async def built_program(cache_dir: Path, source: Path, *options: str, includes: 
     more = [*options, *compiler.without_collections, *(f"-I{folder}" for folder in folders)]
     engine = await build_engine(cache_dir, compiler=compiler)
 
-    async def make(staging: Path) -> None:
+    async def make(staging: Path):
         compilation = compiler.compilation(str(source), "part.o", str(SOURCES), *more)
         await asyncio.to_thread(run, compilation, staging)
         numbers = str(engine / object_of(NUMBERS))
@@ -47,7 +47,7 @@ def _texts(folder: Path) -> list[str]:
     return [path.read_text() for path in sorted(folder.rglob("*.[ch]pp"))]
 
 
-def run(command: list[str], folder: Path) -> None:
+def run(command: list[str], folder: Path):
     """Runs a compiler's command; its messages are the error."""
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S)
     if done.returncode != 0:

@@ -14,7 +14,7 @@ from aos_middleware.mappings.revisions import emit_project
 EXPECTED = Path(__file__).parent / "python"
 
 
-def compare(folder: Path, expected: Path) -> None:
+def compare(folder: Path, expected: Path):
     generated = {mapping.file_name: mapping.python for mapping in emit_project(project_in(folder))}
     if os.environ.get("AOS_PROMOTE"):
         expected.mkdir(parents=True, exist_ok=True)

@@ -60,7 +60,7 @@ class Playground:
     an empty cache but for the engine, and starts commands as programs of their own.
     """
 
-    def __init__(self, folder: Path, engines: Path, *, fresh: bool = False) -> None:
+    def __init__(self, folder: Path, engines: Path, *, fresh: bool = False):
         self.folder = folder
         self._fresh = fresh
         self._engines = engines
@@ -202,7 +202,7 @@ class Playground:
         place = self.folder / "documents"
         return Command(words, place, environment, self._said / what, fresh=self._fresh)
 
-    def _empty_cache(self) -> None:
+    def _empty_cache(self):
         for entry in self._cache.glob("model-*"):
             entry.rename(self.folder / "tmp" / f"{entry.name}.{time.monotonic_ns()}")
         link_engines(self._engines, self._cache)

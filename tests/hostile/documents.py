@@ -62,7 +62,7 @@ def write_system(place: Path, *, times: int = _OFTEN) -> Path:
     return bundle
 
 
-def write_hostile(bundle: Path, kind: str, skills: Mapping[str, str], *, deeper: int = 0) -> None:
+def write_hostile(bundle: Path, kind: str, skills: Mapping[str, str], *, deeper: int = 0):
     """Writes skills with hostile code into a bundle. Code of a mapping stands so many lines `deeper`."""
     bundle.mkdir(exist_ok=True)
     for skill, code in skills.items():

@@ -27,7 +27,7 @@ class Line(msgspec.Struct, frozen=True, array_like=True):
 class Log:
     """The lines of one who plays. They are printed, and added to a file that others may use as well."""
 
-    def __init__(self, path: Path | None, who: str) -> None:
+    def __init__(self, path: Path | None, who: str):
         self._path = path
         self._who = who
         kept = path.read_bytes().splitlines() if path is not None and path.exists() else []
@@ -43,7 +43,7 @@ class Log:
         wanted = (number, kind, name, way)
         return any((line.round, line.kind, line.name, line.way) == wanted for line in self.lines)
 
-    def add(self, number: int, attempt: Attempt) -> None:
+    def add(self, number: int, attempt: Attempt):
         told_s = None if attempt.told_s is None else round(attempt.told_s, 2)
         at = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
         case = (attempt.kind, attempt.name, attempt.way)

@@ -62,7 +62,7 @@ def is_possible(place: str) -> bool:
         return placed(place, [sys.executable, "-c", ""], Path(folder)).returncode == 0
 
 
-def _copy_engines(cache: Path) -> None:
+def _copy_engines(cache: Path):
     """Saves the user minutes of compiling: what root has compiled he cannot reach."""
     for state_bytes in (STATE_BYTES[0], ANY_SIZE):
         engine = asyncio.run(build_engine(cache_dir(), state_bytes=state_bytes))

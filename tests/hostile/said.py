@@ -34,7 +34,7 @@ _LOOKS_S = 0.02
 _END_S = 240.0
 
 
-def import_commands() -> None:
+def import_commands():
     """Imports what the commands import when they are called."""
     for name in _IMPORTED:
         import_module(name)
@@ -51,7 +51,7 @@ class Command:
 
     def __init__(
         self, words: Sequence[str], folder: Path, environment: dict[str, str], said: Path, *, fresh: bool
-    ) -> None:
+    ):
         self._said = said
         self._status: int | None = None
         with said.open("wb") as output:
@@ -134,7 +134,7 @@ class Command:
             return f"{self.said}\n{DID_NOT_END}"
         return self.said
 
-    def _wait(self, at_most_s: float) -> None:
+    def _wait(self, at_most_s: float):
         ends_s = time.monotonic() + at_most_s
         while not self.has_ended and time.monotonic() < ends_s:
             time.sleep(_LOOKS_S)

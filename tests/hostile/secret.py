@@ -12,7 +12,7 @@ class Secret:
     """A file with a canary, alone in a folder. Each attempt has a canary of its own, all with one head:
     whatever an attempt gets is found, also when it comes out later."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path):
         self.file = folder / "secret"
         self._head = f"canary{secrets.token_hex(12)}"
         folder.mkdir()
@@ -20,7 +20,7 @@ class Secret:
         self.canary = ""
         self.renew()
 
-    def renew(self) -> None:
+    def renew(self):
         """Writes another canary into the file."""
         self.canary = f"{self._head}-{secrets.token_hex(8)}"
         self.file.write_text(self.canary)

@@ -51,7 +51,7 @@ exec "$3" --system --log-level=warning
 class Machine:
     """A systemd, by the number of its process here."""
 
-    def __init__(self, pid: int, said: Path) -> None:
+    def __init__(self, pid: int, said: Path):
         self._pid = pid
         self._said = said
 

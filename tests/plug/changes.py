@@ -37,7 +37,7 @@ class _Facts(msgspec.Struct):
 class Project:
     """The documents as they are, and one change of them after the other."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int):
         self._chance = random.Random(seed)
         self._facts = _Facts()
         self._number = 0

@@ -39,7 +39,7 @@ def small_problems(count: int, seed: int) -> Iterator[Problem]:
 class Weather:
     """The variable that the newer documents have: values 0, 1 and 2."""
 
-    def __init__(self, source: random.Random) -> None:
+    def __init__(self, source: random.Random):
         self.start = [_odds(source) for _ in range(2)]
         self.change = [_odds(source) for _ in range(3)]
         self.spoils = [0.0, round(source.uniform(0.1, 0.9), 2), round(source.uniform(0.1, 0.9), 2)]

@@ -114,7 +114,7 @@ async def _up(folder: Path) -> AsyncIterator[None]:
 
 
 class _Game:
-    def __init__(self, client: AosClient, project: Project, result: Played, chance: random.Random) -> None:
+    def __init__(self, client: AosClient, project: Project, result: Played, chance: random.Random):
         self._client, self._project, self._result = client, project, result
         self._chance = chance
         self._decided = asyncio.Event()
@@ -122,7 +122,7 @@ class _Game:
         self._mapped: list[tuple[int, ...]] = []
         self._is_over = False
 
-    async def play(self, kinds: Sequence[str], undisturbed: int, superseded: float) -> None:
+    async def play(self, kinds: Sequence[str], undisturbed: int, superseded: float):
         """Pushes one of each kind, or until the mission is over."""
         async with asyncio.TaskGroup() as tasks:
             followers = [tasks.create_task(self._follow()), tasks.create_task(self._follow_mappings())]
@@ -136,7 +136,7 @@ class _Game:
             self._result.faults.append(f"the mission ended as {self._result.ending} among the pushes")
         self._judge()
 
-    async def _follow(self) -> None:
+    async def _follow(self):
         async for event in self._client.follow():
             if isinstance(event, DecisionRecord):
                 self._records.append((time.monotonic(), event))
@@ -145,12 +145,12 @@ class _Game:
                 self._is_over = True
             self._decided.set()
 
-    async def _follow_mappings(self) -> None:
+    async def _follow_mappings(self):
         async with self._client.bus.listen(self._client.keys.mapping_state, MappingState) as told:
             async for _, state in told:
                 self._mapped.append(state.revisions)
 
-    async def _push(self, change: Change, superseded: float) -> None:
+    async def _push(self, change: Change, superseded: float):
         """Pushes at a random moment, and waits until a decision uses it, but not always."""
         await self._steps(self._chance.randint(0, 3))
         await self._until(self._chance.uniform(0.0, _STEPS_S))
@@ -189,24 +189,24 @@ class _Game:
         bundle = PushBundle(change.files, change.kind)
         return await bus.ask(keys.push_bundle, bundle, BundleReport, timeout_s=_PUSH_TIMEOUT_S)
 
-    async def _steps(self, count: int) -> None:
+    async def _steps(self, count: int):
         enough = len(self._records) + 2 * count
         while len(self._records) < enough and not self._is_over:
             await self._next_event(_USED_TIMEOUT_S)
 
-    async def _until(self, seconds: float) -> None:
+    async def _until(self, seconds: float):
         """Lets so much time pass."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 await asyncio.Event().wait()
 
-    async def _next_event(self, timeout_s: float) -> None:
+    async def _next_event(self, timeout_s: float):
         self._decided.clear()
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(max(timeout_s, 0.0)):
                 await self._decided.wait()
 
-    def _judge(self) -> None:
+    def _judge(self):
         result = self._result
         records = [record for _, record in self._records]
         had = {revision for kept in self._mapped for revision in kept}
@@ -229,7 +229,7 @@ def between(records: Sequence[DecisionRecord]) -> list[float]:
     return found
 
 
-async def _drained(stream: asyncio.StreamReader) -> None:
+async def _drained(stream: asyncio.StreamReader):
     """Returns at the end of a stream that nobody reads."""
     while await stream.read(2**16):
         pass

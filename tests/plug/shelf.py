@@ -43,7 +43,7 @@ class _Engine:
     description = SimpleNamespace(responses={"act": ("done",)}, mission_parameters={})
     parameters = MappingProxyType[str, Any]({})
 
-    def __init__(self, world: _World, digest: str) -> None:
+    def __init__(self, world: _World, digest: str):
         self._world = world
         self.is_closed = False
         self.model_digest = digest
@@ -52,13 +52,13 @@ class _Engine:
         # The steps that its belief is the posterior of; an imported one tells those of the engine before.
         self.known = 0
 
-    async def start_with(self, _: object) -> None:
+    async def start_with(self, _: object):
         await self._works()
 
     def has_action(self, _: str) -> bool:
         return True
 
-    async def _works(self, may_fail: bool = True) -> None:
+    async def _works(self, may_fail: bool = True):
         if self.is_closed:
             self._world.faults.append(f"model {self.model_digest} was asked after its end")
         await self._world.turn()
@@ -102,7 +102,7 @@ class _Engine:
         self.known += 1
         return BeliefUpdate(0.0, self._world.chance.random() < self._world.failing, SUMMARY)
 
-    async def close(self) -> None:
+    async def close(self):
         self.is_closed = True
         await self._world.turn()
 
@@ -122,14 +122,14 @@ class _Shelf(ModelShelf):
 class _NoBuilds(ThoroughBuilds):
     """Thorough builds that begin nothing: there is no text to compile."""
 
-    def begin(self, _: object) -> None:
+    def begin(self, _: object):
         pass
 
 
 class _World:
     """A registry, a middleware and a mission, in one loop, that do what they do at random."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int):
         self.chance = random.Random(seed)
         self.failing = self.chance.choice((0.0, 0.05, 0.3))
         self.faults: list[str] = []
@@ -143,7 +143,7 @@ class _World:
         self.shelf.world = self
         self.shelf._thorough = _NoBuilds(Path())
 
-    async def turn(self) -> None:
+    async def turn(self):
         """Lets the others go on, for some turns of the loop."""
         for _ in range(self.chance.randrange(4)):
             await asyncio.sleep(0)
@@ -160,11 +160,11 @@ class _World:
             raise
         return engine
 
-    async def make(self, revision: int) -> None:
+    async def make(self, revision: int):
         project = SimpleNamespace(digest=str(self.chance.randrange(1000)), emitted=None)
         await self.shelf.make(ProjectRevision(revision, "", project))
 
-    async def mission(self) -> None:
+    async def mission(self):
         """Decides, step by step, with the newest model; a model that fails ends it."""
         running = await self.shelf.first()
         past = Past()
@@ -181,7 +181,7 @@ class _World:
             await running.engine.update("act", "done", None, {}, refuted_below=0.01)
             past.steps.append(Evidence("act", "act", "done"))
 
-    def _check(self, running: RunningModel, past: Past) -> None:
+    def _check(self, running: RunningModel, past: Past):
         engine: Any = running.engine
         if engine.is_closed:
             self.faults.append(f"revision {running.revision} runs with an engine that has ended")
@@ -230,7 +230,7 @@ async def interleaved(seed: int) -> Interleaving:
     return Interleaving(seed, world.faults, world.taken)
 
 
-async def _settle(world: _World, mission: asyncio.Task[None], revision: int) -> None:
+async def _settle(world: _World, mission: asyncio.Task[None], revision: int):
     """Pushes another revision, after which nothing fails, and looks whether the mission comes to run it."""
     world.failing = 0.0
     await world.make(revision)

@@ -28,7 +28,7 @@ UNDISTURBED_STEPS = 200
 EXACT, KEPT, STANDARD_ERRORS = 1e-9, 1e-12, 3.0
 
 
-def add_truth_options(parser: argparse.ArgumentParser) -> None:
+def add_truth_options(parser: argparse.ArgumentParser):
     parser.add_argument("--models", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
 
@@ -39,7 +39,7 @@ def measure_truth(options: argparse.Namespace) -> int:
     return int(not asyncio.run(_truth(options.models, options.seed)))
 
 
-def add_shelf_options(parser: argparse.ArgumentParser) -> None:
+def add_shelf_options(parser: argparse.ArgumentParser):
     parser.add_argument("--interleavings", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
 
@@ -50,7 +50,7 @@ def measure_shelf(options: argparse.Namespace) -> int:
     return int(not asyncio.run(_shelf(options.interleavings, options.seed)))
 
 
-def add_push_options(parser: argparse.ArgumentParser) -> None:
+def add_push_options(parser: argparse.ArgumentParser):
     parser.add_argument("--pushes", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
 
@@ -152,5 +152,5 @@ def _share(seconds: Sequence[float], share: float) -> float:
     return ordered[min(int(share * len(ordered)), len(ordered) - 1)]
 
 
-def _say(text: str) -> None:
+def _say(text: str):
     print(text, flush=True)

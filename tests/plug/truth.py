@@ -42,7 +42,7 @@ class Examined(msgspec.Struct, frozen=True):
 class _LongClock(SystemClock):
     """Each look at it takes an hour, so that a replay takes too long."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self._now_s = 0.0
 
     def monotonic_s(self) -> float:

@@ -56,7 +56,7 @@ SHARED_BEFORE: set[Path] = set()
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _shared_before() -> None:
+def _shared_before():
     """Notes what programs of others have left, such as a killed node that lets Zenoh share memory."""
     SHARED_BEFORE.update(Path("/dev/shm").iterdir())
 
@@ -70,7 +70,7 @@ def files_left(scratch: Path) -> list[Path]:
 class Up:
     """A running aos-up that prints JSON events."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
+    def __init__(self, process: subprocess.Popen[str]):
         self.process = process
         self.events: list[dict[str, Any]] = []
         self.pids: list[int] = []
@@ -86,7 +86,7 @@ class Up:
                 return event
         pytest.fail(f"aos-up ended before any {kind}: {self.events}\n{self.error_text()}")
 
-    def until_ready(self, service: str) -> None:
+    def until_ready(self, service: str):
         while True:
             event = self.until("service")
             if (event["service"], event["state"]) == (service, "ready"):

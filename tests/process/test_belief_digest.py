@@ -38,7 +38,7 @@ async def take_step(engine: Engine, step: int) -> str:
     return update.summary.digest
 
 
-async def kill(engine: Engine) -> None:
+async def kill(engine: Engine):
     await kill_engine(engine.pid)
 
 

@@ -26,7 +26,7 @@ def braces(values: list[float]) -> str:
 class RandomModel:
     """A chain of hidden states with as many skills as it has actions, drawn from a seed."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int):
         dice = random.Random(seed)
         self.start = weights(dice, STATES)
         self.moves = [[weights(dice, STATES) for _ in range(STATES)] for _ in range(ACTIONS)]
@@ -196,7 +196,7 @@ async def turn(engine: Engine, card: int, hand: list[bool]) -> BeliefUpdate:
     return update
 
 
-async def turn_and_look(engine: Engine, card: int, hand: list[bool]) -> None:
+async def turn_and_look(engine: Engine, card: int, hand: list[bool]):
     """Turns a card and holds the belief in it against what was seen."""
     update = await turn(engine, card, hand)
     marginals = {marginal.variable: marginal.values for marginal in update.summary.marginals}

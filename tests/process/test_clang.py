@@ -57,21 +57,21 @@ def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_
     once([part], clang, cache_dir, lambda folder: run(command, folder))
 
 
-def compile_model(project: Project, compiler: Compiler, cache_dir: Path) -> None:
+def compile_model(project: Project, compiler: Compiler, cache_dir: Path):
     """Compiles the emitted model; RuntimeError with the compiler's messages if that fails."""
     emitted, _ = lowered(project)
 
-    def make(folder: Path) -> None:
+    def make(folder: Path):
         (folder / MODEL_FILE).write_text(emitted.cpp)
         run(compiler.compilation(MODEL_FILE, "model.o", str(SOURCES), *UNOPTIMIZED), folder)
 
     once([emitted.cpp], compiler, cache_dir, make)
 
 
-def once(parts: list[str], compiler: Compiler, cache_dir: Path, make: Callable[[Path], None]) -> None:
+def once(parts: list[str], compiler: Compiler, cache_dir: Path, make: Callable[[Path], None]):
     """Compiles what these parts, this compiler and the engine's headers have not compiled yet."""
 
-    async def in_folder(folder: Path) -> None:
+    async def in_folder(folder: Path):
         make(folder)
 
     name = f"clang-{digest_of([*parts, *what_decides(compiler)])}"

@@ -187,7 +187,7 @@ async def test_beliefs_and_values_after_loops_are_closed_forms(cache_dir: Path):
         await check_counter(engine)
 
 
-async def check_values(engine: Engine) -> None:
+async def check_values(engine: Engine):
     values = {value.action: value.q for value in (await engine.exact_values(1)).actions}
     for name, (_, odds) in EXACT.items():
         mean = sum((value * probability for value, probability in odds.items()), Fraction())
@@ -196,7 +196,7 @@ async def check_values(engine: Engine) -> None:
     assert values["paid"] == pytest.approx(-4, abs=1e-5)
 
 
-async def check_sensor(engine: Engine) -> None:
+async def check_sensor(engine: Engine):
     update = await engine.update("heard", "yes")
     odds = SIDES[1] * Fraction(4, 5) / (SIDES[1] * Fraction(4, 5) + SIDES[2] * Fraction(1, 5))
     assert update.summary.error_bound == 0
@@ -204,14 +204,14 @@ async def check_sensor(engine: Engine) -> None:
     await engine.reset_belief()
 
 
-async def check_correction(engine: Engine) -> None:
+async def check_correction(engine: Engine):
     after = (await engine.update("given", "yes", {"response": '"yes"'})).summary
     assert after.error_bound == 0
     assert spots(after) == approximately({0: Fraction(1, 2), 2: Fraction(1, 2)})
     await engine.reset_belief()
 
 
-async def check_counter(engine: Engine) -> None:
+async def check_counter(engine: Engine):
     """A counter makes every round another one: what is left out is negligible, and the belief is exact."""
     after = (await engine.update_without_observation("counter", ran_probability=1)).summary
     assert after.is_exact

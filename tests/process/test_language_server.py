@@ -53,12 +53,12 @@ success = __input.success
 class Editor(LanguageClient):
     """An editor that keeps the latest findings of each file."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         super().__init__("test", "1")
         self.published: asyncio.Queue[tuple[str, list[types.Diagnostic]]] = asyncio.Queue()
 
         @self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
-        def on_findings(params: types.PublishDiagnosticsParams) -> None:
+        def on_findings(params: types.PublishDiagnosticsParams):
             name = params.uri.rpartition("/")[2]
             self.published.put_nowait((name, list(params.diagnostics)))
 
@@ -70,11 +70,11 @@ class Editor(LanguageClient):
                 if file == name:
                     return found
 
-    def open(self, path: Path) -> None:
+    def open(self, path: Path):
         item = types.TextDocumentItem(path.as_uri(), "aos", 1, path.read_text())
         self.text_document_did_open(types.DidOpenTextDocumentParams(item))
 
-    def change(self, path: Path, text: str) -> None:
+    def change(self, path: Path, text: str):
         document = types.VersionedTextDocumentIdentifier(2, path.as_uri())
         whole = types.TextDocumentContentChangeWholeDocument(text)
         self.text_document_did_change(types.DidChangeTextDocumentParams(document, [whole]))

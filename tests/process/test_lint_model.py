@@ -211,7 +211,7 @@ def test_a_model_whose_goal_and_doors_can_be_reached_is_clean_and_its_documents_
 ):
     calls: Counter[str] = Counter()
 
-    def counted(module: ModuleType, name: str) -> None:
+    def counted(module: ModuleType, name: str):
         original = getattr(module, name)
 
         def call(*arguments: Any, **options: Any) -> Any:

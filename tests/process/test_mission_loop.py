@@ -142,7 +142,7 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
     why = "navigate(destination=easy_table) cannot be chosen now: its adapter has left"
     assert why in around.records[0].why
 
-    def come_back() -> None:
+    def come_back():
         around.unavailable = {}
 
     around = Surroundings(good)
@@ -208,7 +208,7 @@ async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_
             around.unavailable = {"flood": "its adapter has left"}
         return done(request)
 
-    def come_back() -> None:
+    def come_back():
         waits.append(len(around.decisions))
         if len(waits) == 3:
             around.unavailable = {}
@@ -228,7 +228,7 @@ async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_
 async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for_any_more(
     field: BuiltModel, changes_every_s: float
 ):
-    def wait() -> None:
+    def wait():
         waits.append(len(around.decisions))
         clock.now_s += changes_every_s  # Something else comes or goes, such as another adapter's skill.
 
@@ -256,7 +256,7 @@ async def test_a_mission_that_ends_since_a_skill_has_left_names_it(field: BuiltM
 
 
 async def test_an_adapter_that_is_started_again_is_waited_for_as_long_as_that_takes(field: BuiltModel):
-    def come_back() -> None:
+    def come_back():
         waits.append(len(around.decisions))
         if len(waits) == 25:
             around.unavailable = {}
@@ -273,7 +273,7 @@ async def test_an_adapter_that_is_started_again_is_waited_for_as_long_as_that_ta
 
 
 async def test_an_adapter_that_is_expected_back_is_not_waited_for_for_ever(field: BuiltModel):
-    def wait() -> None:
+    def wait():
         clock.now_s += 30
 
     around = Surroundings(done)
@@ -289,7 +289,7 @@ async def test_an_adapter_that_is_expected_back_is_not_waited_for_for_ever(field
 async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(
     field: BuiltModel, monkeypatch: pytest.MonkeyPatch
 ):
-    async def until_changed(timeout_s: float) -> None:
+    async def until_changed(timeout_s: float):
         around.mission.steer(Steer("stop", by="ana"))
         await asyncio.Event().wait()  # Only a stop ends it.
 
@@ -322,7 +322,7 @@ async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_
 async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_no_step_is_spent(
     field: BuiltModel,
 ):
-    def come_back() -> None:
+    def come_back():
         around.unavailable = {}
 
     around = Surroundings(done)

@@ -139,7 +139,7 @@ async def test_defaults_and_initial_values_follow_from_what_is_set(
 class Shelf(ModelShelf):
     """A shelf for a mission with these values, on a middleware that runs every revision."""
 
-    def __init__(self, cache_dir: Path, *options: str) -> None:
+    def __init__(self, cache_dir: Path, *options: str):
         async def start(built: BuiltModel) -> Engine:
             return await Engine.start(built, seed=1)
 

@@ -53,7 +53,7 @@ async def open_door(call, door):
 class System:
     """A running `aos-up --stay`, and the commands beside it."""
 
-    def __init__(self, folder: Path, process: subprocess.Popen[str], environment: dict[str, str]) -> None:
+    def __init__(self, folder: Path, process: subprocess.Popen[str], environment: dict[str, str]):
         self.folder = folder
         self.process = process
         self._environment = environment
@@ -61,7 +61,7 @@ class System:
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
 
-    def _read(self) -> None:
+    def _read(self):
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self._said.put(json.loads(line))
@@ -82,7 +82,7 @@ class System:
     def record(self) -> dict[str, Any]:
         return json.loads((self.run / "run.json").read_text())
 
-    def be_slow(self, is_slow: bool) -> None:
+    def be_slow(self, is_slow: bool):
         """Lets the robot listen for ever, or not."""
         slow = self.folder / "slow"
         slow.touch() if is_slow else slow.unlink(missing_ok=True)

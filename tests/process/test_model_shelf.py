@@ -43,7 +43,7 @@ def lamp(revision: int) -> ProjectRevision:
 class Workshop:
     """A shelf whose engines are real and remembered, and a middleware that has what the test says."""
 
-    def __init__(self, cache_dir: Path) -> None:
+    def __init__(self, cache_dir: Path):
         self.engines: list[Engine] = []
         self.mapped = {1, 2, 3}
         self.past = Past()
@@ -91,7 +91,7 @@ async def running_lamp(made: Workshop) -> RunningModel:
 class Slowed:
     """An engine's import that waits until the test lets it go on."""
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engine):
         self.begun, self.may_go_on = asyncio.Event(), asyncio.Event()
         self._import = engine.import_beliefs
         engine.import_beliefs = self

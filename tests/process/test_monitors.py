@@ -81,7 +81,7 @@ def marginals(summary: BeliefSummary) -> dict[str, dict[str, float]]:
     return {marginal.variable: marginal.values for marginal in summary.marginals}
 
 
-def assert_is(summary: BeliefSummary, belief: Belief, *, within: float = 1e-12) -> None:
+def assert_is(summary: BeliefSummary, belief: Belief, *, within: float = 1e-12):
     charges: dict[str, float] = defaultdict(float)
     for (charge, _), weight in belief.items():
         charges[charge] += weight

@@ -15,7 +15,7 @@ from aos_language.load import load_bundle
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
 
 
@@ -137,7 +137,7 @@ def test_a_written_program_tells_a_late_skill_and_a_result_that_cannot_be_sent_f
     names["RESULTS"]["/look"] = {"bearing_rad": 10**30}
     assert code(60.0) == "AOS504"
 
-    def is_cancelled(path: str, fields: object) -> None:
+    def is_cancelled(path: str, fields: object):
         names["STOP"].wait()
         raise names["Failure"]("AOS507", "cancelled")
 

@@ -147,7 +147,7 @@ async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
     endless = ("sh", "-c", "echo up; sleep 1000")
     nav = own(*endless, ready=ReadyPart(line="up"), on_exit=on_exit, is_restarted=on_exit == "restart")
 
-    async def work() -> None:
+    async def work():
         async with asyncio.timeout(HANG_S), system.up(nav, ADAPTER) as supervisor:
             await system.until("robot", "ready")
             kill(descendants(supervisor.pids["nav"])[0])
@@ -285,7 +285,7 @@ def test_a_skill_that_leaves_in_mid_mission_and_comes_again_is_told_once_each(pr
     said = ""
     with ExitStack() as given, subprocess.Popen(up, stdout=subprocess.PIPE, text=True) as running:
 
-        def give(sign: str) -> None:
+        def give(sign: str):
             given.callback(os.close, os.open(sign, os.O_RDWR))  # The robot opens it now, or later.
 
         assert running.stdout is not None

@@ -54,7 +54,7 @@ def opened(browser: Browser, served: Gateway, width: int = 1440) -> Page:
     return page
 
 
-def kept(page: Page, name: str) -> None:
+def kept(page: Page, name: str):
     """Keeps a picture of the page for people, where AOS_PAGE_PICTURES names a folder for them."""
     if folder := os.environ.get("AOS_PAGE_PICTURES"):
         page.screenshot(path=Path(folder) / f"{name}.png", full_page=True)
@@ -80,7 +80,7 @@ FITS = """() => new Promise(told => {
 })"""
 
 
-def wait_for_width(page: Page) -> None:
+def wait_for_width(page: Page):
     """Waits until nothing is wider than the screen, which charts follow a frame later."""
     assert page.evaluate(FITS), "something stays wider than the screen"
 
@@ -157,7 +157,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
     expect(page.locator(".stepper-place")).to_have_text("3 of 3")
     kept(page, "living")
 
-    def answer_late(route: Route) -> None:
+    def answer_late(route: Route):
         """Keeps the answer, given while the skill runs, until the page shows that the mission holds."""
         answer = route.fetch()
         expect(page.locator(".phase")).to_contain_text("Holding")

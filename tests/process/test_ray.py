@@ -77,10 +77,10 @@ def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Pat
 class HeadWithFaults:
     """A head whose first processes for clients do not come up."""
 
-    def __init__(self, faults: int) -> None:
+    def __init__(self, faults: int):
         self.faults = faults
 
-    def init(self, address: str, **options: object) -> None:
+    def init(self, address: str, **options: object):
         self.faults -= 1
         if self.faults >= 0:
             raise ConnectionAbortedError("Initialization failure from server:\n\nno process came up")

@@ -30,7 +30,7 @@ def files_of(bundle: Path) -> dict[str, bytes]:
     return read_bundle_files(bundle)[0]
 
 
-async def kill_at_step_2(engine: Engine, step: int) -> None:
+async def kill_at_step_2(engine: Engine, step: int):
     if step == 2:
         await kill_engine(engine.pid)
 
@@ -82,7 +82,7 @@ async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_nee
     """The hold comes when the third search has begun; without a grace it is given up."""
     monkeypatch.setattr(abandoning, "GRACE_S", 0.0)
 
-    def steer(mission: Mission) -> None:
+    def steer(mission: Mission):
         state = mission.state
         if state.phase == "planning" and state.step == 2 and not state.remark:
             mission.steer(Steer("hold", by="ana", request="1"))

@@ -50,7 +50,7 @@ async def replay_of(rows: Rows, run: Path, bundles: Path) -> Replay:
     return await replayed(run, lambda _: None)
 
 
-def write_run(rows: Rows, run: Path, bundles: Path) -> None:
+def write_run(rows: Rows, run: Path, bundles: Path):
     (run / "settings").mkdir(parents=True)
     settings = Settings(
         robot="t", service="solver", endpoint="", run_dir=str(run), project="tiger", cache_dir="", seed=3

@@ -48,7 +48,7 @@ def robot(request: Activate) -> Outcome:
 class Growing(Surroundings):
     """Surroundings whose documents change after some steps."""
 
-    def __init__(self, successors: dict[int, Successor]) -> None:
+    def __init__(self, successors: dict[int, Successor]):
         super().__init__(robot)
         self._successors = successors
 
@@ -119,7 +119,7 @@ def digests(rows: Rows) -> list[str]:
     return [record.belief.digest for record in records]
 
 
-def write_run(rows: Rows, run: Path, cache_dir: Path) -> None:
+def write_run(rows: Rows, run: Path, cache_dir: Path):
     (run / "settings").mkdir(parents=True)
     (run / "settings" / "solver.json").write_bytes(msgspec.json.encode(settings(run, cache_dir)))
     catalogue = Catalogue.open(run / "catalogue.db")

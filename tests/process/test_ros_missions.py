@@ -125,7 +125,7 @@ def original_on_our_robot(root: Path, corpus: Path, folder: Path) -> str:
     return text.replace("../../deploy/worlds/armadillo.yaml", str(world))
 
 
-def assert_whole_mission(events: list[dict[str, Any]], run: Path) -> None:
+def assert_whole_mission(events: list[dict[str, Any]], run: Path):
     """Every skill that was chosen was observed, and the mission came to an ending that is defined."""
     steps = [event for event in events if event["event"] == "decision" and event.get("outcome")]
     assert steps, events

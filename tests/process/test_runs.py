@@ -49,13 +49,13 @@ async def open_door(call, door):
 class Up:
     """A running aos-up. What it prints is read all the time, since it would wait for a reader."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
+    def __init__(self, process: subprocess.Popen[str]):
         self._process = process
         self._said: queue.Queue[str] = queue.Queue()
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
 
-    def _read(self) -> None:
+    def _read(self):
         assert self._process.stdout is not None
         for line in self._process.stdout:
             self._said.put(json.loads(line)["event"])
@@ -87,7 +87,7 @@ class Place:
     Missions are noted in `running`, so that those of other tests are not seen.
     """
 
-    def __init__(self, root: Path, folder: Path, endpoint: str, running: Path) -> None:
+    def __init__(self, root: Path, folder: Path, endpoint: str, running: Path):
         self.folder = folder
         self.endpoint = endpoint
         own = {"AOS_RUNNING_DIR": str(running), "PYTHONUNBUFFERED": "1"}

@@ -42,7 +42,7 @@ runs: runs
 class Running:
     """A mission, and commands beside it."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
+    def __init__(self, process: subprocess.Popen[str]):
         self.process = process
         self.events: list[dict[str, Any]] = []
 

@@ -125,7 +125,7 @@ async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
     model = read_problem(published / f"{name}.pomdpx")
     stop = asyncio.Event()
 
-    def look(bounds: Bounds) -> None:
+    def look(bounds: Bounds):
         if bounds.lower >= lower:
             stop.set()
 

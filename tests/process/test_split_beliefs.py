@@ -46,7 +46,7 @@ __moduleResponse = responses[seen];
 class Workshop:
     """The exact marginals, and a mission that is drawn from them."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int):
         self.dice = random.Random(seed)
         self.wear: NDArray[np.float64] = np.tile([NEW, 1 - NEW, 0.0, 0.0], (MACHINES, 1))
         self.moves = np.diag([1 - WEARS] * 3 + [1.0]) + np.diag([WEARS] * 3, 1)

@@ -38,7 +38,7 @@ def hears_right(request: Activate) -> Outcome:
 class Steered(Surroundings):
     """Surroundings with an operator: `on_act` is called in mid-action, `on_hold` while the mission waits."""
 
-    def __init__(self, robot: Callable[[Activate], Outcome] = hears_left) -> None:
+    def __init__(self, robot: Callable[[Activate], Outcome] = hears_left):
         super().__init__(robot)
         self.on_act: Callable[[Activate], None] = lambda request: None
         self.on_hold = in_turn()  # A hold that nobody expects is an error.
@@ -48,7 +48,7 @@ class Steered(Surroundings):
         self.on_act(request)
         return outcome
 
-    def steer(self, verb: str, *actions: str, name: str = "") -> None:
+    def steer(self, verb: str, *actions: str, name: str = ""):
         request = f"{verb} {' '.join(actions)} {name} {self.mission.state.step}"
         self.mission.steer(Steer(verb, actions, name, by="ana", request=request))
 
@@ -120,7 +120,7 @@ async def test_a_hold_during_a_search_is_told_and_nothing_of_the_search_is_done(
     wishes = in_turn(lambda: None, lambda: around.steer("hold"), lambda: None, *[lambda: None] * 9)
     told: list[MissionState] = []
 
-    def publish_state(state: MissionState) -> None:
+    def publish_state(state: MissionState):
         told.append(state)
         if state.phase == "planning":
             wishes()
@@ -142,7 +142,7 @@ async def test_a_search_without_end_is_given_up_by_a_hold_and_by_an_action_of_th
     around = Steered()
     wishes = in_turn(lambda: around.steer("act", "listen"), lambda: around.steer("hold"))
 
-    def publish_state(state: MissionState) -> None:
+    def publish_state(state: MissionState):
         if state.phase == "planning" and not state.held_by and not (state.remark or state.asked):
             wishes()
 
@@ -195,7 +195,7 @@ def _index(engine: Engine, action: str) -> int:
 async def test_a_mission_without_anything_left_holds_until_something_is_taken_back(tiger: BuiltModel):
     around = Steered()
 
-    def leave_all_out(request: Activate) -> None:
+    def leave_all_out(request: Activate):
         if request.id.step == 1:
             around.steer("leave_out", name="listen")
             around.steer("leave_out", name="open")
@@ -222,7 +222,7 @@ async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_
     around = Steered()
     said: list[SteeringError] = []
 
-    async def ask() -> None:
+    async def ask():
         try:
             await around.mission.until_decided(f"act {OPEN_LEFT}  1")
         except SteeringError as error:
@@ -230,7 +230,7 @@ async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_
 
     waiting: list[asyncio.Task[None]] = []
 
-    def at_first(request: Activate) -> None:
+    def at_first(request: Activate):
         if request.id.step == 1:
             around.steer("act", OPEN_LEFT)
             waiting.append(asyncio.ensure_future(ask()))
@@ -263,7 +263,7 @@ async def test_stop_ends_a_search_that_would_take_minutes(tiger: BuiltModel):
     around = Steered()
     loop = asyncio.get_running_loop()
 
-    def soon(state: MissionState) -> None:
+    def soon(state: MissionState):
         around.states.append(state)
         if state.phase == "planning" and state.step == 0:
             loop.call_soon(around.steer, "stop")
@@ -280,7 +280,7 @@ async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltMod
         around = Steered()
         wishes = [("act", OPEN_LEFT), ("step",), ("leave_out",), ("resume",)]
 
-        def wish() -> None:
+        def wish():
             for number, (verb, *actions) in enumerate(wishes):
                 before = len(around.journalled)
                 name = OPEN_RIGHT if verb == "leave_out" else ""

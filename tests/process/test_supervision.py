@@ -116,7 +116,7 @@ async def test_a_frozen_router_is_killed_and_those_behind_it_are_not(system: Sys
 
 
 async def test_a_service_that_ends_again_and_again_ends_the_system_with_the_count(system: System):
-    async def work() -> None:
+    async def work():
         async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
             await supervisor.until_ready()
             for times in range(1, STARTS + 1):
@@ -133,7 +133,7 @@ async def test_cancelling_stops_everything_and_its_children(system: System):
     up = asyncio.Event()
     pids: list[int] = []
 
-    async def work() -> None:
+    async def work():
         async with system.up(small("registry"), small("solver", "parental")) as supervisor:
             await supervisor.until_ready()
             for pid in supervisor.pids.values():

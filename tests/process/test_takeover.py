@@ -53,7 +53,7 @@ return __input.is_ringing
 
 
 class SlowClock(SystemClock):
-    def __init__(self, step_s: float = 4.0) -> None:
+    def __init__(self, step_s: float = 4.0):
         self._now_s, self._step_s = 0.0, step_s
 
     def monotonic_s(self) -> float:

@@ -42,7 +42,7 @@ async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold(cach
     around.unavailable = {"look": "the camera is away"}
     async with engine_of_text(with_peek(HALL), cache_dir) as engine:
 
-        def push() -> None:
+        def push():
             around.successor = Successor(RunningModel(2, engine), SystemClock())
 
         around.on_hold = push

@@ -85,7 +85,7 @@ class _World(QuietPorts):
 
     keeps_beliefs = True
 
-    def __init__(self, world: Engine, beside: Beside) -> None:
+    def __init__(self, world: Engine, beside: Beside):
         self.clock = SystemClock()
         self._world = world
         self._disturbance, self._steering = beside
@@ -96,15 +96,15 @@ class _World(QuietPorts):
         self.next: tuple[int, Successor] | None = None
         self.steps = 0
 
-    def journal(self, kind: str, payload: Message) -> None:
+    def journal(self, kind: str, payload: Message):
         text = msgspec.json.encode(payload).decode()
         self.rows.append(JournalRow(len(self.rows) + 1, 0, kind, text))
 
-    def publish_state(self, state: MissionState) -> None:
+    def publish_state(self, state: MissionState):
         if self._steering is not None and self.mission is not None:
             self._steering(self.mission)
 
-    async def until_changed(self, timeout_s: float) -> None:
+    async def until_changed(self, timeout_s: float):
         assert self._steering is not None
         assert self.mission is not None
         self._steering(self.mission)

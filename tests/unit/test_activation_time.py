@@ -14,7 +14,7 @@ LOOK = "project: fetch\nresponse: seen\nresponse_rule: True\nmodule_activation: 
 async def test_the_start_of_a_mappings_process_takes_nothing_of_it():
     clock = Clock()
 
-    async def start() -> None:
+    async def start():
         clock.now_s += 9.0
 
     async def begin(*_: Any) -> dict[str, Any]:

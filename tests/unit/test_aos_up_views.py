@@ -346,7 +346,7 @@ def test_the_screen_that_is_left_behind_turns_no_more(monkeypatch):
 def test_a_screen_is_drawn_by_one_thread_while_another_tells_it_events():
     screen, is_drawn, shown_on = Screen("armadillo"), threading.Event(), Console(file=io.StringIO())
 
-    def tell() -> None:
+    def tell():
         for number in itertools.cycle(range(3000)):
             if number == 0:
                 screen.services = {}

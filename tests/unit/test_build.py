@@ -331,7 +331,7 @@ async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(tmp
 
 
 async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path):
-    async def fail(staging: Path) -> None:
+    async def fail(staging: Path):
         (staging / "half").write_text("half")
         raise ModelError("no")
 

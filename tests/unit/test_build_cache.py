@@ -45,7 +45,7 @@ def names(folder: Path) -> list[str]:
     return [path.name for path in folder.iterdir()]
 
 
-async def make(staging: Path) -> None:
+async def make(staging: Path):
     (staging / "part").write_text("whole")
 
 
@@ -53,13 +53,13 @@ async def test_one_makes_an_entry_and_the_others_wait_for_it(tmp_path):
     makers: list[Path] = []
     others_wait = asyncio.Event()
 
-    async def make_slowly(staging: Path) -> None:
+    async def make_slowly(staging: Path):
         makers.append(staging)
         await others_wait.wait()
 
     waiting: list[None] = []
 
-    def on_wait() -> None:
+    def on_wait():
         waiting.append(None)
         if len(waiting) == 2:
             others_wait.set()
@@ -77,7 +77,7 @@ async def test_what_another_process_makes_is_waited_for(tmp_path):
     entry = tmp_path / "model-b"
     with another_process_makes(entry) as holder:
 
-        def finish() -> None:
+        def finish():
             entry.mkdir()
             holder.communicate()
 
@@ -101,7 +101,7 @@ async def test_a_process_that_does_not_get_on_is_waited_for_until_a_deadline(tmp
 async def test_who_waits_for_a_failure_tries_by_itself(tmp_path):
     somebody_waits = asyncio.Event()
 
-    async def fail(_: Path) -> None:
+    async def fail(_: Path):
         await somebody_waits.wait()
         raise RuntimeError("no")
 
@@ -122,7 +122,7 @@ async def test_a_cache_that_cannot_be_written_is_told_with_the_way_to_another(tm
 async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path, monkeypatch):
     monkeypatch.setattr(build_cache, "_MOST_USED", 0)  # The process that has made them has ended.
 
-    async def make_large(staging: Path) -> None:
+    async def make_large(staging: Path):
         (staging / "headers").mkdir()
         (staging / "headers" / "part").write_bytes(bytes(100_000))
 
@@ -142,7 +142,7 @@ async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longes
 
 
 async def test_what_may_be_running_or_is_being_made_stays_whatever_the_clock_says(tmp_path):
-    async def make_beside_others(staging: Path) -> None:
+    async def make_beside_others(staging: Path):
         for name in names(tmp_path):
             os.utime(tmp_path / name, (0, 0))
         await BuildCache(tmp_path, size_bytes=1).fill("model-d", make)

@@ -29,7 +29,7 @@ def call(world: CleanLab, path: str, fields: dict[str, Any] | None = None) -> di
     return answer
 
 
-def go(world: CleanLab, place: Place) -> None:
+def go(world: CleanLab, place: Place):
     assert call(world, "/navigate", {"x": place.x, "y": place.y, "yaw": place.yaw})["success"]
 
 

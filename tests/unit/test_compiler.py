@@ -8,14 +8,14 @@ from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_run import run_compiler
 
 
-def fake(directory: Path, name: str, text: str, status: int = 0) -> None:
+def fake(directory: Path, name: str, text: str, status: int = 0):
     path = directory / name
     path.write_text(f"#!/bin/sh\necho '{text}'\nexit {status}\n")
     path.chmod(0o755)
 
 
 @pytest.fixture
-def no_wheel(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_wheel(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
 
 

@@ -162,12 +162,12 @@ def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
 
 def test_a_folder_that_is_being_made_is_not_taken_for_one_that_was_left(
     short_folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
     run = short_folder / ("long" * 30)
     stopping = threading.Event()
 
-    def remove() -> None:
+    def remove():
         while not stopping.is_set():
             remove_left_sockets()
 

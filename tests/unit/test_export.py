@@ -104,7 +104,7 @@ def make_run(folder: Path) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 
 

@@ -25,7 +25,7 @@ def outcome(skill: str, status: str, fault: Fault | None = FAULT) -> Outcome:
 class Mission:
     """Takes outcomes at a time that the test sets."""
 
-    def __init__(self, **rules: Any) -> None:
+    def __init__(self, **rules: Any):
         self.failures = Failures(FailureRules(**rules))
         self.now_s = 0.0
         self.announced: dict[str, int] = {}
@@ -48,7 +48,7 @@ class Mission:
             announced=self.announced,
         )
 
-    def works(self, skill: str) -> None:
+    def works(self, skill: str):
         assert not self.take(skill, "observed", fault=None)
 
     @property

@@ -20,7 +20,7 @@ async def test_others_have_their_turn_while_a_long_past_is_told():
     async def page(mission: str, since: int) -> History:
         return History(mission, tuple(decision_record(number) for number in range(RECORDS)))
 
-    async def wait_for_turns() -> None:
+    async def wait_for_turns():
         nonlocal turns
         while True:
             turns += 1
@@ -44,7 +44,7 @@ async def test_what_is_told_before_a_system_is_heard_comes_from_its_history():
     async def page(mission: str, since: int) -> History:
         return History(mission, tuple(records[since:]))
 
-    async def last_state(mission: str) -> None:
+    async def last_state(mission: str):
         # A step ends after the past was read, and before the gateway hears the bus.
         records.append(decision_record(0))
         viewer.push(Frame("service", b"{}", is_after_gap=True))

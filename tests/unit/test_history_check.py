@@ -62,7 +62,7 @@ class Entry(NamedTuple):
 class History:
     """A mission of three steps that held before the third; tests change its rows."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.journal: list[Entry] = []
         self.middleware: list[Entry] = []
         self.robot: list[Entry] = []
@@ -75,7 +75,7 @@ class History:
             self._add_step(step)
         self._write(1000, "mission", state("ended", STEPS, "goal"))
 
-    def _add_step(self, step: int) -> None:
+    def _add_step(self, step: int):
         now = 100 * step
         if step == STEPS:
             self._write(now - 20, "mission", state("holding", step - 1))
@@ -91,7 +91,7 @@ class History:
         self._write(now + 70, "outcome", outcome(step))
         self._write(now + 80, "decision", observed(step))
 
-    def _write(self, stamp_ns: int, kind: str, payload: messages.Message) -> None:
+    def _write(self, stamp_ns: int, kind: str, payload: messages.Message):
         self.journal.append(Entry(stamp_ns, kind, payload))
 
     def place(self, kind: str, number: int, entries: list[Entry] | None = None) -> int:
@@ -99,7 +99,7 @@ class History:
         entries = self.journal if entries is None else entries
         return [place for place, entry in enumerate(entries) if entry.kind == kind][number]
 
-    def change(self, kind: str, number: int, entries: list[Entry] | None = None, **changes: Any) -> None:
+    def change(self, kind: str, number: int, entries: list[Entry] | None = None, **changes: Any):
         """Changes fields of the message in a row."""
         entries = self.journal if entries is None else entries
         place = self.place(kind, number, entries)
@@ -327,7 +327,7 @@ def _motion_while_it_holds(history: History):
     history.robot[place] = history.robot[place]._replace(stamp_ns=290)
 
 
-def _steer(history: History, place: int, *steers: messages.Steer) -> None:
+def _steer(history: History, place: int, *steers: messages.Steer):
     """Puts what somebody wants before a row."""
     stamp_ns = history.journal[place].stamp_ns
     history.journal[place:place] = [Entry(stamp_ns, "steered", steer) for steer in steers]

@@ -98,7 +98,7 @@ def test_what_commands_a_terminal_is_spelt_out_in_messages(capsys):
 
 
 async def test_a_watched_folder_that_cannot_be_looked_into_is_told(tmp_path):
-    async def take(_: Path) -> None:
+    async def take(_: Path):
         raise AssertionError
 
     with pytest.raises(BaseExceptionGroup) as caught:

@@ -10,7 +10,7 @@ async def test_messages_keep_their_order_and_leave_time_for_the_rest():
     taken: list[int] = []
     inbox = Inbox(loop)
 
-    def put() -> None:
+    def put():
         for number in range(1000):
             inbox.put(partial(taken.append, number))
         inbox.put(partial(done.set_result, None))

@@ -22,7 +22,7 @@ def intended(step: int) -> Activate:
     return Activate(ActivationId(MISSION, step), "go", {}, 10.0, 1)
 
 
-def write_run(run: Path, journalled_steps: int, ledger: str) -> None:
+def write_run(run: Path, journalled_steps: int, ledger: str):
     """A run whose ledger was asked for `STEPS` steps, and one call by hand."""
     run.mkdir()
     record = RunRecord(robot="r", endpoint="", deploy_file=str(run / "gone.yaml"), seed=1, started="", pid=1)

@@ -13,7 +13,7 @@ class RosMessage:
 
     __slots__ = ("_connection", "header", "x")
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.header = {"seq": 1}
         self.x = 2.5
         self._connection = object()

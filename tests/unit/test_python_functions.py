@@ -46,7 +46,7 @@ class Hosted:
 def adapter_of(folder: Path, **bound: str) -> PythonAdapter:
     (folder / "robot.py").write_text(ROBOT)
 
-    async def serve(*paths: str) -> None:
+    async def serve(*paths: str):
         return
 
     bindings = {f"/{path}": Binding(target=f"robot.py:{name}") for path, name in bound.items()}
@@ -54,7 +54,7 @@ def adapter_of(folder: Path, **bound: str) -> PythonAdapter:
     return PythonAdapter(cast("Host", host))
 
 
-async def end(adapter: PythonAdapter) -> None:
+async def end(adapter: PythonAdapter):
     """Closes the adapter, and its event loop, which else ends with the process."""
     await adapter.close()
     adapter._thread.join()

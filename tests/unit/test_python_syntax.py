@@ -15,10 +15,10 @@ TEXT = "\n".join(
 class Yielding:
     """Garbage whose finalizer lets other threads run."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.itself = self
 
-    def __del__(self) -> None:
+    def __del__(self):
         time.sleep(0)
 
 
@@ -34,7 +34,7 @@ def _frequent_collections() -> Iterator[None]:
 def test_threads_that_parse_at_once_do_not_disturb_each_other():
     faults: list[BaseException] = []
 
-    def parse() -> None:
+    def parse():
         try:
             for _ in range(20):
                 for _ in range(20):

@@ -47,7 +47,7 @@ def answer(program: bytes, number: int, arguments: tuple[int, ...] = (), archite
 
 
 class Filter:
-    def __init__(self, profile: str, machine: str) -> None:
+    def __init__(self, profile: str, machine: str):
         self.program = program_of(profile, machine, PID, START)
         self.numbers = numbers_of(machine)
         self.architecture = ARCHITECTURES[machine]

@@ -105,7 +105,7 @@ def test_schema_and_reader_know_the_same_keys(kind, monkeypatch):
     known: set[str] = set()
     finish = Record.finish
 
-    def noting(record: Record) -> None:
+    def noting(record: Record):
         known.update(record._known)
         finish(record)
 

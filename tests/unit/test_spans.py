@@ -59,7 +59,7 @@ def end(ending: str = "goal", remark: str = "") -> MissionState:
     return MissionState("a-run", "ended", 2, 0.9, ending, remark, epoch=1)
 
 
-def write(run: Path, *rows: DecisionRecord | MissionState) -> None:
+def write(run: Path, *rows: DecisionRecord | MissionState):
     run.mkdir(exist_ok=True)
     record = {"robot": "r", "endpoint": "e", "deploy_file": "d", "seed": 1, "started": "", "pid": 1}
     (run / "run.json").write_text(json.dumps(record))

@@ -124,10 +124,10 @@ def test_a_hold_for_a_skill_is_over_once_somebody_has_resumed_the_mission():
 
 
 class Journal(QuietPorts):
-    def __init__(self) -> None:
+    def __init__(self):
         self.rows: list[tuple[str, Message]] = []
 
-    def journal(self, kind: str, payload: Message) -> None:
+    def journal(self, kind: str, payload: Message):
         self.rows.append((kind, payload))
 
 

@@ -19,8 +19,8 @@ def greeting(folder: Path) -> str:
     return templates_in(folder).get_template("greeting.jinja").render(name="robot")
 
 
-def forbid_compiling(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> None:
+def forbid_compiling(monkeypatch: pytest.MonkeyPatch):
+    def refuse(*_: object):
         raise AssertionError("a template is compiled")
 
     monkeypatch.setattr(Environment, "_parse", refuse)

@@ -13,7 +13,7 @@ def test_builds_that_are_ended_twice_leave_no_process_behind(tmp_path):
     gc.collect()  # Python warns here of processes that nobody has waited for, and the test fails.
 
 
-async def _ended_twice(cache_dir: Path, turns: int) -> None:
+async def _ended_twice(cache_dir: Path, turns: int):
     builds = ThoroughBuilds(cache_dir, after_s=0.0)
     builds.begin(emitted_skill(""))
     await _turn(turns)
@@ -24,7 +24,7 @@ async def _ended_twice(cache_dir: Path, turns: int) -> None:
     assert not builds.tasks
 
 
-async def _turn(times: int) -> None:
+async def _turn(times: int):
     """Lets the build go on for some turns of the loop."""
     for _ in range(times):
         await asyncio.sleep(0)

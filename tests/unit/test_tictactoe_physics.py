@@ -156,7 +156,7 @@ def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make):
     person = PersonAtTerminal(0, world.scene)
     said: list[str] = []
 
-    def sit_at_the_terminal() -> None:
+    def sit_at_the_terminal():
         with socket.create_connection(("127.0.0.1", person.port), timeout=HANG_S) as terminal:
             for answer in ("10", "1", "2"):
                 said.append(terminal.recv(1000).decode())

@@ -45,7 +45,7 @@ def run(tmp_path: Path) -> Path:
     return path
 
 
-def write(run: Path, *messages: DecisionRecord | MissionState) -> None:
+def write(run: Path, *messages: DecisionRecord | MissionState):
     with Journal.open(run / "journal.db") as journal:
         for message in messages:
             journal.append("decision" if isinstance(message, DecisionRecord) else "mission", message)

@@ -25,7 +25,7 @@ _STEPS = 120  # at most, in a mission
 _MISSIONS = 200  # by hand
 
 
-def main() -> None:
+def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -73,7 +73,7 @@ class Gauges(World):
 
     discount = 0.98
 
-    def __init__(self, count: int, rng: random.Random) -> None:
+    def __init__(self, count: int, rng: random.Random):
         super().__init__(rng)
         self.bad = [rng.random() < _BAD for _ in range(count)]
         self.told = [False] * count

@@ -65,7 +65,7 @@ class Survey(World):
 
     discount = _DISCOUNT
 
-    def __init__(self, sites: int, rng: random.Random) -> None:
+    def __init__(self, sites: int, rng: random.Random):
         super().__init__(rng)
         self.good = [rng.random() < _GOOD for _ in range(sites)]
         self.taken = [False] * sites
@@ -142,7 +142,7 @@ class Questions(World):
 
     discount = _DISCOUNT
 
-    def __init__(self, lamps: int, rng: random.Random) -> None:
+    def __init__(self, lamps: int, rng: random.Random):
         super().__init__(rng)
         self.number, self.lamps = rng.randrange(_NUMBERS), lamps
 

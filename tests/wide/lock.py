@@ -67,7 +67,7 @@ class Lock(World):
 
     discount = _DISCOUNT
 
-    def __init__(self, count: int, rng: random.Random) -> None:
+    def __init__(self, count: int, rng: random.Random):
         super().__init__(rng)
         self.digits = [rng.randrange(_DIGITS) for _ in range(count)]
         self.dials = [0] * count
@@ -113,7 +113,7 @@ def lock_rule(count: int, rng: random.Random) -> float:
     return world.earned
 
 
-def _turn(world: Lock, which: int, digit: int) -> None:
+def _turn(world: Lock, which: int, digit: int):
     up = (digit - world.dials[which]) % _DIGITS <= _DIGITS // 2
     while world.dials[which] != digit and not world.is_over:
         world.act("turn", 2 * which + up)

@@ -36,7 +36,7 @@ class Played:
 
     first: Plan | None = None
 
-    def take(self, plan: Plan) -> None:
+    def take(self, plan: Plan):
         self.first = self.first or plan
         self.decisions.append(Decision(plan.planner, plan.search_s, plan.preparation_s))
 

@@ -87,7 +87,7 @@ class Photo(World):
 
     discount = _DISCOUNT
 
-    def __init__(self, size: int, rng: random.Random) -> None:
+    def __init__(self, size: int, rng: random.Random):
         super().__init__(rng)
         self.size, self.charge, self.has_photo = size, _CHARGE, False
         self.x = self.y = 0
@@ -129,14 +129,14 @@ class Photo(World):
 class _Track:
     """Odds of the drone's column and of the cell, as the rule knows them, and the cells of its sweep."""
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int):
         self.size = size
         self.odds = np.zeros((size, size, size))  # x of the drone, x and y of the cell
         self.odds[0] = 1 / size**2
         rows = [range(1, size, 3), range(size - 2, 0, -3), range(1, size, 3)]
         self.ways = [(x, y) for y, row in zip((1, 5, 9), rows, strict=True) for x in row]
 
-    def fly(self, east: int, told: str) -> None:
+    def fly(self, east: int, told: str):
         after = np.zeros_like(self.odds)
         for x in range(self.size):
             for is_blown in (False, True):
@@ -146,7 +146,7 @@ class _Track:
                 after[max(0, min(x + east + is_blown, self.size - 1))] += odds * self.odds[x]
         self.odds = after / after.sum()
 
-    def weigh(self, likelihood: np.ndarray) -> None:
+    def weigh(self, likelihood: np.ndarray):
         self.odds *= likelihood
         self.odds /= self.odds.sum()
 
@@ -176,14 +176,14 @@ def photo_rule(size: int, rng: random.Random) -> float:
     return world.earned
 
 
-def _go_home(world: Photo, track: _Track) -> None:
+def _go_home(world: Photo, track: _Track):
     if world.y == 0 and track.odds[0].sum() > 0.85:
         world.act("land")
     else:
         _fly(world, track, 2 if world.y > 0 and track.column == 0 else 3)
 
 
-def _search(world: Photo, track: _Track) -> None:
+def _search(world: Photo, track: _Track):
     x, y = track.column, world.y
     there = track.odds.sum(axis=0)
     best = np.unravel_index(there.argmax(), there.shape)
@@ -201,5 +201,5 @@ def _search(world: Photo, track: _Track) -> None:
     track.weigh(seen if told != "unseen" else np.where(distance <= 2, 1 - _SEEN, 1))
 
 
-def _fly(world: Photo, track: _Track, way: int) -> None:
+def _fly(world: Photo, track: _Track, way: int):
     track.fly((way == 1) - (way == 3), world.act("fly", way))

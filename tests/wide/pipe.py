@@ -60,7 +60,7 @@ class Pipe(World):
 
     discount = 0.99
 
-    def __init__(self, size: int, rng: random.Random) -> None:
+    def __init__(self, size: int, rng: random.Random):
         super().__init__(rng)
         self.size, self.charge, self.has_it = size, float(_CHARGE), False
         self.x, self.leak, self.value = 0, rng.randrange(size), 0.0

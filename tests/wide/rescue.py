@@ -113,7 +113,7 @@ class Rescue(World):
 
     discount = _DISCOUNT
 
-    def __init__(self, high: int, rng: random.Random) -> None:
+    def __init__(self, high: int, rng: random.Random):
         super().__init__(rng)
         self.high, self.rooms = high, _WIDE * high
         self.people = [1 + rng.randrange(self.rooms - 1) for _ in range(2)]

@@ -85,7 +85,7 @@ class Towers(World):
 
     discount = _DISCOUNT
 
-    def __init__(self, count: int, rng: random.Random) -> None:
+    def __init__(self, count: int, rng: random.Random):
         super().__init__(rng)
         self.count, self.on, self.held = count, _start(count), -1
 

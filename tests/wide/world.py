@@ -11,7 +11,7 @@ class World(ABC):
 
     discount = 1.0
 
-    def __init__(self, rng: random.Random) -> None:
+    def __init__(self, rng: random.Random):
         self.rng = rng
         self.earned = 0.0
         self.steps = 0
@@ -29,7 +29,7 @@ class World(ABC):
     def act(self, skill: str, value: int = 0) -> str:
         """Takes an action and returns what is reported."""
 
-    def gain(self, reward: float) -> None:
+    def gain(self, reward: float):
         """Counts the reward of a step, which is over then."""
         self.earned += self.discount**self.steps * reward
         self.steps += 1

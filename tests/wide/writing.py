@@ -4,7 +4,7 @@ Bundle = dict[str, str]  # file name to text
 
 
 class BundleWriter:
-    def __init__(self, project: str, environment: str) -> None:
+    def __init__(self, project: str, environment: str):
         self.project = project
         self.files: Bundle = {"e.ef": f"project: {project}\n{environment}"}
 
@@ -16,7 +16,7 @@ class BundleWriter:
         *,
         over: dict[str, str] | None = None,
         numbers: list[str] | None = None,
-    ) -> None:
+    ):
         over = over or {}
         values = "".join(f"parameter: int {parameter}\n" for parameter in over)
         loops = "".join(
@@ -35,7 +35,7 @@ class BundleWriter:
             *responses, project=self.project, skill=name, parameters=list(over), reports=reports
         )
 
-    def charger(self, battery: int) -> None:
+    def charger(self, battery: int):
         """A skill that fills the battery where `at` is 0."""
         model = f"""__reward = -0.5;
 if (state.at == 0) {{

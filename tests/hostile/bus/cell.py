@@ -67,7 +67,7 @@ runs: runs
 class Cell:
     """The mission that waits. `sessions` of others are closed with it."""
 
-    def __init__(self, folder: Path, process: subprocess.Popen[str]) -> None:
+    def __init__(self, folder: Path, process: subprocess.Popen[str]):
         self.folder = folder
         self.run = (folder / "runs" / "latest").resolve()
         self.record = RunDirectory(self.run).read_record()
@@ -96,7 +96,7 @@ class Cell:
         """The robot's motions so far."""
         return (self.folder / "moved").read_text().split()
 
-    def go_on(self) -> None:
+    def go_on(self):
         """Lets the mission end."""
         for session in self._sessions.values():
             session.close()
@@ -128,7 +128,7 @@ def cell(folder: Path) -> Iterator[Cell]:
                 process.terminate()
 
 
-def _until_it_waits(folder: Path, process: subprocess.Popen[str]) -> None:
+def _until_it_waits(folder: Path, process: subprocess.Popen[str]):
     look = threading.Event()
     while not (folder / "waits").exists():
         if process.poll() is not None:

@@ -81,7 +81,7 @@ def is_possible() -> bool:
 class FarMission:
     """A mission whose robot is in the namespace, at the other end of `link`."""
 
-    def __init__(self, folder: Path, process: subprocess.Popen[str], link: Wire) -> None:
+    def __init__(self, folder: Path, process: subprocess.Popen[str], link: Wire):
         self.link = link
         self._folder = folder
         self._process = process
@@ -147,7 +147,7 @@ class FarMission:
             self._news.wait_for(lambda: found() is not None or self.has_ended, timeout_s)
             return found()
 
-    def _read(self) -> None:
+    def _read(self):
         assert self._process.stdout is not None
         with suppress(ValueError):  # The output is closed when the mission is ended.
             for line in self._process.stdout:

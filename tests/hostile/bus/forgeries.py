@@ -118,7 +118,7 @@ def _answer(
     def attempt(cell: Cell) -> str:
         taken: list[str] = []
 
-        def on_query(query: zenoh.Query) -> None:
+        def on_query(query: zenoh.Query):
             with query:
                 taken.append(str(query.key_expr))
 

@@ -109,7 +109,7 @@ def flooding(cell: Cell, key: str, user: str, is_question: bool, count: int) -> 
     return Flood(key, count, took_s, slowest_s, waited_s, grown)
 
 
-def _ask_all(session: zenoh.Session, key: str, messages: list[bytes], count: int) -> None:
+def _ask_all(session: zenoh.Session, key: str, messages: list[bytes], count: int):
     """Asks, some questions at a time."""
     free = threading.Semaphore(_IN_FLIGHT)
     for number in range(count):
@@ -127,7 +127,7 @@ def _ask_all(session: zenoh.Session, key: str, messages: list[bytes], count: int
 class _Questions:
     """Good questions to registry, middleware and solver, one after the other, until the block ends."""
 
-    def __init__(self, session: zenoh.Session, pids: list[int]) -> None:
+    def __init__(self, session: zenoh.Session, pids: list[int]):
         self._session = session
         self._pids = pids
         self._ended = threading.Event()
@@ -139,11 +139,11 @@ class _Questions:
         self._thread.start()
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, *_: object):
         self._ended.set()
         self._thread.join()
 
-    def _ask(self) -> None:
+    def _ask(self):
         body = {"version": "1.0", "stamp_ns": 1, "sender": "x", "body": {}}
         payload = msgspec.msgpack.encode(body)
         while not self._ended.wait(_LOOKS_S):

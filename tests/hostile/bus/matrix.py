@@ -113,7 +113,7 @@ _OPPOSITE: dict[Act, Act] = {
 def _asked(actor: zenoh.Session, partner: zenoh.Session, key: str) -> bool:
     """The actor asks, the partner answers: has the answer come?"""
 
-    def on_query(query: zenoh.Query) -> None:
+    def on_query(query: zenoh.Query):
         with query:
             query.reply(key, _PAYLOAD)
 

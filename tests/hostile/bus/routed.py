@@ -28,7 +28,7 @@ _PATIENCE_S = 30.0
 class Routed:
     """A router that knows its parties. `sessions` has one for each, by name."""
 
-    def __init__(self, endpoint: str, passes: Passes, log: Path, pid: int) -> None:
+    def __init__(self, endpoint: str, passes: Passes, log: Path, pid: int):
         self.endpoint = endpoint
         self.passes = passes
         self.log = log
@@ -84,7 +84,7 @@ def opened(endpoint: str, credential: Credential | None) -> zenoh.Session:
     return zenoh.open(config)
 
 
-def round_trip(*sessions: zenoh.Session) -> None:
+def round_trip(*sessions: zenoh.Session):
     """Returns when whatever the first session has sent has come to the router, then to the next session."""
     for session in sessions:
         done = threading.Event()
@@ -93,5 +93,5 @@ def round_trip(*sessions: zenoh.Session) -> None:
             raise TimeoutError("the router does not answer")
 
 
-def _ignore(_: Any) -> None:
+def _ignore(_: Any):
     """Takes replies whose end alone matters."""

@@ -24,7 +24,7 @@ _LONGEST_PACKET = 65536
 class Wire:
     """The fate of packets. `delay_s` is that of a round trip, `loss` the share lost on each way."""
 
-    def __init__(self, ends: tuple[int, int]) -> None:
+    def __init__(self, ends: tuple[int, int]):
         self.delay_s = 0.0
         self.loss = 0.0
         self.is_cut = False
@@ -34,14 +34,14 @@ class Wire:
         self._thread = threading.Thread(target=self._carry)
         self._thread.start()
 
-    def close(self) -> None:
+    def close(self):
         """Ends the link, and its devices with it."""
         self._is_over.set()
         self._thread.join()
         for end in self._ends:
             os.close(end)
 
-    def _carry(self) -> None:
+    def _carry(self):
         under_way: list[tuple[float, int, int, bytes]] = []
         other = dict(zip(self._ends, reversed(self._ends), strict=True))
         number = 0
