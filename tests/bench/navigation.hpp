@@ -79,4 +79,4 @@ struct Navigation {
   inline static const std::array<std::array<float, 3>, 4> cost = costs();
 };
 
-}  // namespace bench
+}

@@ -127,4 +127,4 @@ class Pomcp {
   std::uint64_t steps_ = 0;
 };
 
-}  // namespace bench
+}

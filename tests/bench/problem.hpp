@@ -19,4 +19,4 @@ struct Outcome {
 
 enum class PlayOut { legal, promising };
 
-}  // namespace bench
+}

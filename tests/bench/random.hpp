@@ -19,4 +19,4 @@ class Random : public aos::Xoshiro {
 // The threshold below which 32 random bits lie with this probability, which is less than 1.
 constexpr std::uint32_t threshold(double probability) { return static_cast<std::uint32_t>(probability * 0x1p32); }
 
-}  // namespace bench
+}

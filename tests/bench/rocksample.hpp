@@ -143,4 +143,4 @@ struct RockSample {
 
 inline const std::array<RockSample::Cell, RockSample::size * RockSample::size> RockSample::cells = all_cells();
 
-}  // namespace bench
+}

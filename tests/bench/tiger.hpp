@@ -37,4 +37,4 @@ struct Tiger {
   static int promising_action(const State& state, Random& random) { return legal_action(state, random); }
 };
 
-}  // namespace bench
+}

@@ -249,4 +249,4 @@ class Generator {
   std::mt19937_64 random_;
 };
 
-}  // namespace truth
+}

@@ -259,4 +259,4 @@ class Reference {
   std::map<std::vector<std::pair<std::uint32_t, std::uint64_t>>, std::size_t> known_;
 };
 
-}  // namespace truth
+}

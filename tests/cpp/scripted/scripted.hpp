@@ -126,4 +126,4 @@ constexpr ScriptedModel scripted_model_of() {
   };
 }
 
-}  // namespace aos
+}

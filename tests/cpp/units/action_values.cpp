@@ -19,4 +19,4 @@ TEST("An exact value that few missions were played for says so, and one with eno
   EXPECT(aos::unplayed_text(30).empty());
 }
 
-}  // namespace action_values_tests
+}

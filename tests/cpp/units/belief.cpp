@@ -199,4 +199,4 @@ TEST("The error bound holds how far a belief with too many states is from the ex
   EXPECT(1 - overlap <= belief.error_bound() + 1e-9);
 }
 
-}  // namespace belief_tests
+}

@@ -218,4 +218,4 @@ TEST("Responses that hardly ever come twice are refused") {
   EXPECT_EQUAL(tree.obstacle, "hardly a response comes twice");
 }
 
-}  // namespace belief_tree_tests
+}

@@ -117,4 +117,4 @@ TEST("A search by POMCP that ends all at once still comes to an end") {
   EXPECT_EQUAL(corridor.search(PlannerKind::pomcp, 50), 50u);
 }
 
-}  // namespace budgets_tests
+}

@@ -137,4 +137,4 @@ TEST("A cell that no example had adds nothing") {
   EXPECT_NEAR(fitted.tables.value(row), 0, 0.1);
 }
 
-}  // namespace cell_tables_tests
+}

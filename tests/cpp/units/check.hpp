@@ -43,7 +43,7 @@ std::string both(const char* text, const One& one, const Other& other) {
   return out.str();
 }
 
-}  // namespace units
+}
 
 #define UNITS_JOINED(one, other) one##other
 #define UNITS_NAMED(one, other) UNITS_JOINED(one, other)

@@ -132,4 +132,4 @@ TEST("Normal quantiles are those of the normal distribution") {
   }
 }
 
-}  // namespace enumeration_tests
+}

@@ -43,4 +43,4 @@ TEST("A certain value is reliable after few visits, and an uncertain one is not"
   EXPECT(!aos::is_certain({.q = -0.1, .n = 3, .standard_error = 0}, most));
 }
 
-}  // namespace expected_rewards_tests
+}

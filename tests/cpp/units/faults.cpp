@@ -34,4 +34,4 @@ TEST("An exception while no document code runs is the engine's fault") {
   EXPECT_EQUAL(answer_to(std::bad_alloc{}, 0).find("AOS213") != std::string::npos, true);
 }
 
-}  // namespace faults_tests
+}

@@ -82,4 +82,4 @@ TEST("Traces for which the file has no room are not kept, and are once there is 
   ::close(descriptor);
 }
 
-}  // namespace kept_traces_tests
+}

@@ -116,4 +116,4 @@ TEST("Nothing is learned of a belief that has ended, and once of any other") {
   EXPECT_EQUAL(random.bits(), before.bits());
 }
 
-}  // namespace learned_values_tests
+}

@@ -327,4 +327,4 @@ TEST("A walk over a grid of 2500 cells until it meets a corner is eliminated") {
   for (int corner = 0; corner < 4; ++corner) EXPECT_NEAR(found.odds.at(corner), 0.25, 1e-11);
 }
 
-}  // namespace loops_tests
+}

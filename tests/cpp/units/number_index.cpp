@@ -55,4 +55,4 @@ TEST("An index has nothing before anything was added, and nothing after it was c
   EXPECT_EQUAL(words.index.find(3, words.is("three")), aos::NumberIndex::none);
 }
 
-}  // namespace number_index_tests
+}

@@ -48,4 +48,4 @@ TEST("What a known state leaves open is the entropy of its observations, and an 
   EXPECT_NEAR(doubts.of(state, 2).value(), std::log(2), 1e-12);
 }
 
-}  // namespace observation_doubts_tests
+}

@@ -124,4 +124,4 @@ TEST("A reward that an action has earned does not count again where the mission 
   }
 }
 
-}  // namespace option_policy_tests
+}

@@ -114,4 +114,4 @@ TEST("Before an end that can be had at once comes what makes it earn more") {
   EXPECT(search.way_from(belief.particles().front().state, steps, random).empty());
 }
 
-}  // namespace option_search_tests
+}

@@ -198,4 +198,4 @@ TEST("Moves that keep the states which particles have passed are those that repe
   EXPECT_THAT(steps[0] < steps[1], "fewer steps are made");
 }
 
-}  // namespace particles_tests
+}

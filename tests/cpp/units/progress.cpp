@@ -45,4 +45,4 @@ TEST("A decision tells how far its lists and first bounds are") {
   EXPECT(told.empty());
 }
 
-}  // namespace progress_tests
+}

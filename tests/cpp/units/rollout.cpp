@@ -30,4 +30,4 @@ TEST("Rollouts at random get past an exit that is open everywhere and earns noth
   EXPECT(mean_return(units::corridor_with_exits(20, 1), 40) > 0.5);
 }
 
-}  // namespace rollout_tests
+}

@@ -102,4 +102,4 @@ TEST("A cleared tree has its root only, without what was known of it") {
   EXPECT_EQUAL(tree.find_child(action_of(tree, 0, 0), 3), aos::no_node);
 }
 
-}  // namespace search_tree_tests
+}

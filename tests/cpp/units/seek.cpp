@@ -133,4 +133,4 @@ TEST("Where nothing is left to be sought, it is known what the best end at once 
   EXPECT_NEAR(policy.returned_at_once(), 60 * 0.98 * 0.98 - 0.2 - 0.2 * 0.98, 1e-9);
 }
 
-}  // namespace seek_tests
+}

@@ -63,4 +63,4 @@ TEST("The last draws of light paths are split too, so that a rare observation is
   EXPECT_NEAR(seen, 0.0001, 1e-6);
 }
 
-}  // namespace split_draws_tests
+}

@@ -260,4 +260,4 @@ TEST("Exact values that exceed the budget are refused, and no wrong ones given")
   EXPECT(is_refused);
 }
 
-}  // namespace state_space_tests
+}

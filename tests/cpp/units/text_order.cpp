@@ -29,4 +29,4 @@ TEST("Other texts are in the order of their characters, and a longer text is aft
   EXPECT(order_of_texts("x;", "7;") > 0);
 }
 
-}  // namespace text_order_tests
+}

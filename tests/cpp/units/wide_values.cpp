@@ -136,4 +136,4 @@ TEST("States keep their numbers when more variables turn out to differ") {
   EXPECT(!numbers.are_same(numbers[1], state_of(2, 6)));
 }
 
-}  // namespace wide_values_tests
+}

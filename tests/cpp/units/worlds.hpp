@@ -77,4 +77,4 @@ inline Problem corridor_with_exits(std::uint32_t cells, std::size_t exits) {
   return problem;
 }
 
-}  // namespace units
+}

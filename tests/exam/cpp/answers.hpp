@@ -110,4 +110,4 @@ inline int answer_problems(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace exam
+}

@@ -127,4 +127,4 @@ class BeliefLine {
   double now_ = 1;
 };
 
-}  // namespace exam
+}

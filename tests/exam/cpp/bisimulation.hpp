@@ -54,4 +54,4 @@ inline std::size_t told_apart(const Flat& flat, const Mass& from) {
   }
 }
 
-}  // namespace exam
+}

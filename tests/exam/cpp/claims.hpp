@@ -391,4 +391,4 @@ class Claims {
   std::vector<Finding> findings_;
 };
 
-}  // namespace exam
+}

@@ -172,4 +172,4 @@ inline double expected(const Mass& belief, const std::vector<double>& values) {
   return sum;
 }
 
-}  // namespace exam
+}

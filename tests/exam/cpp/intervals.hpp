@@ -39,7 +39,7 @@ inline aos::ActionEstimate value_alone(const aos::Belief<TableModel>& belief, in
   budget.simulations = std::max<std::uint64_t>(std::llround(static_cast<double>(budget.simulations) * share), 1);
   aos::Planners<TableModel> planner;
   planner.search(aos::PlannerKind::pomcp, belief, budget, horizon, random, others);
-  return planner.values(belief, planner.estimates(belief), action)[static_cast<std::size_t>(action)];
+  return planner.values(belief, planner.estimates(belief), action)[action];
 }
 
 // The best of the actions that were not chosen; -1 if none was tried.
@@ -130,7 +130,7 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
     const int walked = random.below(TableModel::action_count());
     const std::vector<Reached> reached = plain.reached(exact, static_cast<std::size_t>(walked));
     if (reached.empty()) break;
-    const Reached& next = reached[static_cast<std::size_t>(random.below(static_cast<int>(reached.size())))];
+    const Reached& next = reached[random.below(static_cast<int>(reached.size()))];
     belief = posterior_of(belief, walked, next.observation, random).first;
     if (belief.particles().empty()) break;
     exact = next.belief;
@@ -139,4 +139,4 @@ inline std::string intervals_of(const Problem& problem, const IntervalOptions& o
   return json.end_array().end_object().text();
 }
 
-}  // namespace exam
+}

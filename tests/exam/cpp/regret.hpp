@@ -205,7 +205,7 @@ class Regret {
       const auto found = std::find_if(all_reached.begin(), all_reached.end(),
                                       [&](const Reached& reached) { return reached.observation == observation_branch; });
       exact = found->belief;
-      value = values[static_cast<std::size_t>(found - all_reached.begin())];
+      value = values[found - all_reached.begin()];
       if (planner == nullptr) continue;
       auto posterior = posterior_of(belief, action, seen, updates).first;
       if (posterior.particles().empty()) {
@@ -227,7 +227,7 @@ class Regret {
     planner.search(kind_of(name), belief, budget, problem_.horizon, random);
     const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
     const int action = planner.choice(estimates);
-    const auto told = planner.values(belief, estimates, action)[static_cast<std::size_t>(action)];
+    const auto told = planner.values(belief, estimates, action)[action];
     return {action, planner.name(), planner.why(), told};
   }
 
@@ -292,4 +292,4 @@ class Regret {
   Truth truth_;
 };
 
-}  // namespace exam
+}

@@ -102,7 +102,7 @@ struct TableModel {
   static bool has_alike_groundings(int) { return false; }
   static bool has_certain_rewards(int) { return false; }
   static int response_count(int) { return static_cast<int>(responses_.size()); }
-  static const char* response_name(int, int response) { return responses_[static_cast<std::size_t>(response)].c_str(); }
+  static const char* response_name(int, int response) { return responses_[response].c_str(); }
   static aos::Ending ending(const State& state) { return state.ending; }
   static std::uint64_t hash(const State& state) {
     std::uint64_t words[sizeof state / 8];
@@ -195,4 +195,4 @@ inline std::pair<aos::Belief<TableModel>, double> posterior_of(const aos::Belief
   return {std::move(posterior), probability};
 }
 
-}  // namespace exam
+}

@@ -412,4 +412,4 @@ class Truth {
   std::vector<Layer> layers_;
 };
 
-}  // namespace exam
+}

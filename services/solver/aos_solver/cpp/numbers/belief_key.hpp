@@ -35,4 +35,4 @@ class BeliefKey {
   std::uint64_t high_, low_;
 };
 
-}  // namespace aos
+}

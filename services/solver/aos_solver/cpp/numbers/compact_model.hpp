@@ -51,4 +51,4 @@ class CompactModel {
   std::vector<std::uint32_t> row_;  // that is added
 };
 
-}  // namespace aos
+}

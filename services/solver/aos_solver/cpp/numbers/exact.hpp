@@ -94,4 +94,4 @@ class ExactEvaluation {
   std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, BeliefKey::Hash>> values_;
 };
 
-}  // namespace aos
+}

@@ -41,4 +41,4 @@ void ObservableValues::prepare(const point_based::FlatModel& rows, point_based::
   }
 }
 
-}  // namespace aos
+}

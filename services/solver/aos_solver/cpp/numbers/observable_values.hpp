@@ -40,11 +40,11 @@ class ObservableValues {
 
   std::size_t states() const { return numbering_.states; }
   std::size_t layers() const { return layers_.size(); }
-  const std::vector<double>& layer(int left) const { return layers_[static_cast<std::size_t>(left)]; }
+  const std::vector<double>& layer(int left) const { return layers_[left]; }
 
  private:
   point_based::Numbering numbering_;
   std::vector<std::vector<double>> layers_;
 };
 
-}  // namespace aos
+}

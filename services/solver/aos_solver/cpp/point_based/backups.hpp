@@ -166,4 +166,4 @@ class Backups {
   std::vector<double> later_;
 };
 
-}  // namespace aos::point_based
+}

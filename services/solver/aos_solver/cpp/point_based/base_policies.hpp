@@ -205,4 +205,4 @@ class BasePolicies {
   std::vector<std::vector<double>> doubts_;  // [region * actions + action]
 };
 
-}  // namespace aos::point_based
+}

@@ -365,4 +365,4 @@ class BeliefGraph {
   std::vector<double> dense_;
 };
 
-}  // namespace aos::point_based
+}

@@ -43,4 +43,4 @@ struct Node {
   std::vector<Branch> branches;  // actions that may still be the best
 };
 
-}  // namespace aos::point_based
+}

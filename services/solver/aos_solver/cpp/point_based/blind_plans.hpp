@@ -93,4 +93,4 @@ inline LowerBound blind_bound(const FlatModel& model, const Region& region, cons
   return lower;
 }
 
-}  // namespace aos::point_based
+}

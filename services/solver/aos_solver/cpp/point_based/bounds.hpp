@@ -204,4 +204,4 @@ class UpperBound {
   std::vector<std::uint32_t> changes_;
 };
 
-}  // namespace aos::point_based
+}

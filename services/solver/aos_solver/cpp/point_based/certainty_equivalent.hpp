@@ -175,4 +175,4 @@ class CertaintyEquivalent {
   std::vector<std::vector<Step>> of_target_;
 };
 
-}  // namespace aos::point_based
+}

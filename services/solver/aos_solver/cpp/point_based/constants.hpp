@@ -48,4 +48,4 @@ inline constexpr std::size_t most_missions = 64;
 
 inline constexpr std::size_t max_graph_bytes = std::size_t{512} << 20;  // of beliefs, before those are forgotten
 
-}  // namespace aos::point_based
+}

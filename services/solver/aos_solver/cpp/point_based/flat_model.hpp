@@ -66,4 +66,4 @@ struct FlatModel {
   }
 };
 
-}  // namespace aos::point_based
+}

@@ -362,4 +362,4 @@ class InitialBounds {
   double max_row_sum_ = 1;  // of probabilities
 };
 
-}  // namespace aos::point_based
+}

@@ -99,4 +99,4 @@ class OnlineSarsop {
   std::unique_ptr<Solver> solver_;
 };
 
-}  // namespace aos::point_based
+}

@@ -75,4 +75,4 @@ class Outlook {
   double left_behind_ = 0;  // the share that the discount leaves of what comes after the horizon
 };
 
-}  // namespace aos::point_based
+}

@@ -113,4 +113,4 @@ class Posterior {
   std::vector<double> weights_;
 };
 
-}  // namespace aos::point_based
+}

@@ -246,4 +246,4 @@ class Regions {
   NumberIndex branches_;  // of that action's observations
 };
 
-}  // namespace aos::point_based
+}

@@ -33,4 +33,4 @@ inline double lasting_decisions(const FlatModel& model) {
   return std::min(static_cast<double>(model.horizon), 1 / std::max(1 - model.discount, ulp));
 }
 
-}  // namespace aos::point_based
+}

@@ -352,4 +352,4 @@ class Sarsop {
   std::deque<Branch> dropped_at_root_;
 };
 
-}  // namespace aos::point_based
+}

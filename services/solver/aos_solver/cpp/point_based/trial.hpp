@@ -154,4 +154,4 @@ class Trial {
   bool has_learnt_ = false;
 };
 
-}  // namespace aos::point_based
+}

@@ -45,4 +45,4 @@ inline void write_policy(int descriptor, const Regions& regions, const Sarsop& s
   if (!file.flush()) throw std::runtime_error("the policy cannot be written");
 }
 
-}  // namespace aos::offline
+}

@@ -37,4 +37,4 @@ struct PlanningClock {
   }
 };
 
-}  // namespace aos
+}

@@ -74,4 +74,4 @@ class DescriptorFile {
   std::vector<char> unwritten_;
 };
 
-}  // namespace aos
+}

@@ -11,4 +11,4 @@ struct ModelFault {
   std::string text;
 };
 
-}  // namespace aos
+}

@@ -29,4 +29,4 @@ class FunctionRef<Result(Arguments...)> {
   Result (*call_)(void* called, Arguments... arguments);
 };
 
-}  // namespace aos
+}

@@ -20,4 +20,4 @@ struct NumbersHash {
   }
 };
 
-}  // namespace aos
+}

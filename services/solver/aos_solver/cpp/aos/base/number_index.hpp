@@ -67,4 +67,4 @@ class NumberIndex {
   std::uint32_t size_ = 0;
 };
 
-}  // namespace aos
+}

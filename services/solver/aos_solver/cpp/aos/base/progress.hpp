@@ -31,4 +31,4 @@ inline void tell(const char* what, std::uint64_t done, std::uint64_t all = 0) {
   sink(what, done, all);
 }
 
-}  // namespace aos::progress
+}

@@ -35,4 +35,4 @@ class RewardLedger {
 // The ledger of the study that runs; null where there is none. One thread has one.
 inline RewardLedger* reward_ledger = nullptr;
 
-}  // namespace aos
+}

@@ -20,4 +20,4 @@ bool has_room_for(const std::vector<T>& list, std::size_t more) {
   return list.size() + more <= list.capacity();
 }
 
-}  // namespace aos
+}

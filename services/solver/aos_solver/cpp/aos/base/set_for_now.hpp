@@ -19,4 +19,4 @@ class SetForNow {
   T before_;
 };
 
-}  // namespace aos
+}

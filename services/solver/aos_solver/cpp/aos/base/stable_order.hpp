@@ -39,4 +39,4 @@ void sort_stably(Elements& elements, IsBefore is_before) {
   sort_stably(elements.begin(), elements.end(), is_before);
 }
 
-}  // namespace aos
+}

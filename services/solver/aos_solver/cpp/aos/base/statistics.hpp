@@ -27,4 +27,4 @@ class SampleMean {
   double count_ = 0;
 };
 
-}  // namespace aos
+}

@@ -63,4 +63,4 @@ AOS_MECHANISMS(AOS_SWITCH)
 
 #endif
 
-}  // namespace aos::switches
+}

@@ -358,4 +358,4 @@ class Belief {
   Source source_ = Source::enumeration;
 };
 
-}  // namespace aos
+}

@@ -33,4 +33,4 @@ inline std::string digest_text(std::uint64_t digest) {
   return text;
 }
 
-}  // namespace aos
+}

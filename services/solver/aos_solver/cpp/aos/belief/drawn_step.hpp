@@ -71,4 +71,4 @@ class DrawnStep {
   Sampler& random_;
 };
 
-}  // namespace aos
+}

@@ -34,4 +34,4 @@ struct UpdateEffort {
 
 inline thread_local constinit UpdateEffort update_effort;
 
-}  // namespace aos
+}

@@ -56,4 +56,4 @@ class FreeDraws {
   std::vector<std::size_t> chosen_;
 };
 
-}  // namespace aos
+}

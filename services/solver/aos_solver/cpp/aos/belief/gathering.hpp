@@ -142,4 +142,4 @@ class Gathering {
   std::vector<Particle<Model>> particles_;
 };
 
-}  // namespace aos
+}

@@ -128,7 +128,7 @@ class GuidedStep {
       alternatives_->clear();
       const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
       if (weights == nullptr || positive > max_alternatives) return;
-      alternatives_->reserve(static_cast<std::size_t>(positive));
+      alternatives_->reserve(positive);
       double below = 0;
       for (int i = 0; i < count; ++i) {
         if (weights[i] <= 0) continue;
@@ -361,4 +361,4 @@ class GuidedStep {
   bool keeps_ends_ = true;
 };
 
-}  // namespace aos
+}

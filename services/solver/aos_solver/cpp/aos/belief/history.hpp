@@ -291,4 +291,4 @@ class GatheredCloud {
   std::vector<Lineage> lineages_;
 };
 
-}  // namespace aos
+}

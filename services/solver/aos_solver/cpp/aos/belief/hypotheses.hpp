@@ -125,7 +125,7 @@ class Hypotheses {
     const auto row = std::ranges::find(open_, skill);
     if (row != open_.end()) {
       for (const Hypothesis& each : all_) {
-        const bool ran = each.ran[static_cast<std::size_t>(row - open_.begin())];
+        const bool ran = each.ran[row - open_.begin()];
         after.all_.push_back({each.weight, each.ran, ran ? each.belief.predicted(action, random) : each.belief});
       }
     } else {
@@ -360,4 +360,4 @@ class Hypotheses {
   int impossible_in_a_row_ = 0;
 };
 
-}  // namespace aos
+}

@@ -51,4 +51,4 @@ double estimated_initial_paths(Sampler& random) {
   return estimates[5];
 }
 
-}  // namespace aos
+}

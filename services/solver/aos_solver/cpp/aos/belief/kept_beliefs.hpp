@@ -188,4 +188,4 @@ class KeptBeliefs {
   std::uint64_t change_ = 0;
 };
 
-}  // namespace aos
+}

@@ -114,4 +114,4 @@ class KeptTraces {
   std::vector<const Trace*> unkept_;
 };
 
-}  // namespace aos
+}

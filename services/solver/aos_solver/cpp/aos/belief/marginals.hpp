@@ -237,4 +237,4 @@ class Marginals {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> shapes_;
 };
 
-}  // namespace aos
+}

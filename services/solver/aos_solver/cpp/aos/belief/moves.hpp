@@ -379,4 +379,4 @@ class Moves {
   std::size_t steps_ = 0;
 };
 
-}  // namespace aos
+}

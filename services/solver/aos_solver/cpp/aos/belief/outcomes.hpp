@@ -40,4 +40,4 @@ double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int act
   return left_out;
 }
 
-}  // namespace aos
+}

@@ -362,4 +362,4 @@ class ParticleFilter {
   NumberSink* numbers_ = nullptr;
 };
 
-}  // namespace aos
+}

@@ -113,4 +113,4 @@ class Passage {
   std::size_t draws_ = 0;
 };
 
-}  // namespace aos
+}

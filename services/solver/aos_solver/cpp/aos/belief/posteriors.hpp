@@ -42,4 +42,4 @@ struct Posteriors {
   bool are_empty() const { return hypotheses_are_empty() && !has_cautious(); }
 };
 
-}  // namespace aos
+}

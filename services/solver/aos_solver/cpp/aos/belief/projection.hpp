@@ -145,4 +145,4 @@ class Projection {
   Group all_;
 };
 
-}  // namespace aos
+}

@@ -61,4 +61,4 @@ Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, S
   return risks;
 }
 
-}  // namespace aos
+}

@@ -73,4 +73,4 @@ class SplitFilter {
   SplitDraws draws_;
 };
 
-}  // namespace aos
+}

@@ -352,4 +352,4 @@ class BeliefCommands {
   Planners<Model>& search_;
 };
 
-}  // namespace aos
+}

@@ -156,4 +156,4 @@ class Commands {
   Worlds worlds_;
 };
 
-}  // namespace aos
+}

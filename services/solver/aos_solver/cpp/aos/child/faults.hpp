@@ -68,4 +68,4 @@ void guarded(JsonWriter& json, Work&& work) {
   blame::at(0);
 }
 
-}  // namespace aos
+}

@@ -67,4 +67,4 @@ class GoalReach {
   bool is_reachable_ = false;
 };
 
-}  // namespace aos
+}

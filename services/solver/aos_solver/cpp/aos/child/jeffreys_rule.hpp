@@ -55,4 +55,4 @@ class JeffreysRule {
   double without_ = 0;
 };
 
-}  // namespace aos
+}

@@ -81,4 +81,4 @@ class LeftOut {
   std::vector<Place> places_;
 };
 
-}  // namespace aos
+}

@@ -63,4 +63,4 @@ class Listing {
   StateSpace<Model> space_;
 };
 
-}  // namespace aos
+}

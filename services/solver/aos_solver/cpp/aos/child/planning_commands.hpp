@@ -121,13 +121,13 @@ class PlanningCommands {
   const Belief<Model>& belief() const { return beliefs_.belief(); }
 
   static std::vector<int> all_actions() {
-    std::vector<int> actions(static_cast<std::size_t>(Model::action_count()));
+    std::vector<int> actions(Model::action_count());
     std::iota(actions.begin(), actions.end(), 0);
     return actions;
   }
   static std::vector<int> actions_left(const std::vector<bool>& left_out) {
     std::vector<int> actions = all_actions();
-    std::erase_if(actions, [&](int action) { return left_out[static_cast<std::size_t>(action)]; });
+    std::erase_if(actions, [&](int action) { return left_out[action]; });
     return actions;
   }
   // For each action whether it is left out; empty if none is.
@@ -135,10 +135,10 @@ class PlanningCommands {
     const std::string_view skills = command.optional_text("without").value_or(std::string_view{});
     const std::string_view numbers = command.optional_text("without_actions").value_or(std::string_view{});
     if (skills.empty() && numbers.empty()) return {};
-    std::vector<bool> left_out(static_cast<std::size_t>(Model::action_count()), false);
+    std::vector<bool> left_out(Model::action_count(), false);
     for (const auto skill : detail::parts_of(skills, ',')) {
       for (int action = 0; action < Model::action_count(); ++action) {
-        if (skill == Model::skill_name(Model::skill_of(action))) left_out[static_cast<std::size_t>(action)] = true;
+        if (skill == Model::skill_name(Model::skill_of(action))) left_out[action] = true;
       }
     }
     if (numbers.empty()) return left_out;
@@ -166,7 +166,7 @@ class PlanningCommands {
     const auto estimates = search.estimates(belief);
     const int best = search.choice(estimates, barred);
     const auto values = search.values(belief, estimates, best);
-    json.begin_object().member("index", numbers[static_cast<std::size_t>(best)]).member("place", best);
+    json.begin_object().member("index", numbers[best]).member("place", best);
     json.member("simulations", simulations).member("horizon", horizon).member("known_simulations", known);
     const std::string_view name = search.name();
     const bool idles = is_idle(belief, best);
@@ -175,11 +175,11 @@ class PlanningCommands {
     json.key("by_thread").values(search.simulations_by_thread()).key("pondered").values(std::exchange(pondered_simulations_, {}));
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
-      const auto& value = values[static_cast<std::size_t>(action)];
+      const auto& value = values[action];
       json.begin_object().member("action", Model::action_name(action)).member("q", value.q).member("n", value.n);
       json.member("stderr", value.standard_error);
       // An action that cannot be taken returns nothing now, however much it would.
-      const bool is_barred = barred.contains(static_cast<std::size_t>(action));
+      const bool is_barred = barred.contains(action);
       json.member("at_least", value.at_least);
       json.member("at_most", is_barred ? std::numeric_limits<double>::infinity() : value.at_most).end_object();
     }
@@ -221,4 +221,4 @@ class PlanningCommands {
   std::optional<Listing<Model>> listing_;
 };
 
-}  // namespace aos
+}

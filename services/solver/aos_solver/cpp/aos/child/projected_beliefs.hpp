@@ -85,4 +85,4 @@ Belief<Model> load_joint(const Command& command, Sampler& random) {
   return projection.of(known, command.number<double>("error_bound"), command.flag("is_drawn"), random);
 }
 
-}  // namespace aos
+}

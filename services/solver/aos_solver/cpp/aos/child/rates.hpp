@@ -77,4 +77,4 @@ void write_table_rate(JsonWriter& json, const Command& command) {
                     [&] { return ListedState<Model>{table, values, random}; });
 }
 
-}  // namespace aos
+}

@@ -38,7 +38,7 @@ class Reachability {
   }
 
   bool has_goal() const { return space_.reaches(Ending::goal); }
-  bool is_met(int action) const { return is_met_[static_cast<std::size_t>(action)]; }
+  bool is_met(int action) const { return is_met_[action]; }
   std::size_t states() const { return space_.size(); }
   int depth() const { return depth_; }
   // Why the search may have missed a goal or a precondition that can be met; empty if it has not.
@@ -65,7 +65,7 @@ class Reachability {
         [&](Enumerator& path) { meets_now = Model::meets_precondition(space_[number], action, path); },
         [&](Enumerator&) { meets = meets || meets_now; });
     if (!meets) return;
-    is_met_[static_cast<std::size_t>(action)] = true;
+    is_met_[action] = true;
     --unmet_;
   }
 
@@ -78,4 +78,4 @@ class Reachability {
   Enumerator draws_;
 };
 
-}  // namespace aos
+}

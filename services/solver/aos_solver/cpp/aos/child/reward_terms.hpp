@@ -72,4 +72,4 @@ class RewardTerms {
   int drawn_ = 0;
 };
 
-}  // namespace aos
+}

@@ -32,4 +32,4 @@ void write_risks(JsonWriter& json, const Command& command, const Belief<Model>& 
   json.end_array().member("is_sampled", is_sampled).end_object();
 }
 
-}  // namespace aos
+}

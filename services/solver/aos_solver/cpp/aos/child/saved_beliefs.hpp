@@ -62,4 +62,4 @@ Belief<Model> load_belief(double error_bound, bool is_drawn, std::string_view hi
   return Belief<Model>::of(with_history<Model>(std::move(particles), words), error_bound, is_drawn);
 }
 
-}  // namespace aos
+}

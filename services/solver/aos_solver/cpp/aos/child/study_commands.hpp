@@ -37,7 +37,7 @@ class StudyCommands {
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       json.begin_object().member("action", Model::action_name(action));
-      json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
+      json.member("q", values[action].value).end_object();
     }
     json.end_array().member("error", evaluation.error(horizon) + space_->slack(belief, horizon));
     json.member("beliefs", evaluation.beliefs()).member("states", space_->size()).end_object();
@@ -114,4 +114,4 @@ class StudyCommands {
   ObservableValues observable_;
 };
 
-}  // namespace aos
+}

@@ -76,4 +76,4 @@ inline ObservedNumbers numbers_from(std::string_view text) {
   return numbers;
 }
 
-}  // namespace aos
+}

@@ -79,4 +79,4 @@ class WorldCommands {
   Worlds<Model> worlds_;
 };
 
-}  // namespace aos
+}

@@ -110,4 +110,4 @@ class Worlds {
   std::vector<double> number_values_;
 };
 
-}  // namespace aos
+}

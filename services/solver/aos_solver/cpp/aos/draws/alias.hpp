@@ -65,4 +65,4 @@ class AliasColumns {
   std::vector<double> shares_;  // how many columns an outcome still has to fill
 };
 
-}  // namespace aos
+}

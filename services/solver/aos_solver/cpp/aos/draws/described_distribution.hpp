@@ -81,4 +81,4 @@ struct DescribedDistribution {
   }
 };
 
-}  // namespace aos
+}

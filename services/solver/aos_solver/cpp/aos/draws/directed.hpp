@@ -73,4 +73,4 @@ class DirectedDraws : public Draws<DirectedDraws> {
   bool is_sensing_ = false;
 };
 
-}  // namespace aos
+}

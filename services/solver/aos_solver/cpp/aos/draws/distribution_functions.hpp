@@ -90,4 +90,4 @@ std::pair<double, double> Distribution::total_and_whole() const {
   return {total, is_normalised || total > 1 - weight_rounding ? total : 1};
 }
 
-}  // namespace aos
+}

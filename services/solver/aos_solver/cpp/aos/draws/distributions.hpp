@@ -86,4 +86,4 @@ class Discrete : public Distribution {
   std::vector<double> copied_;  // weights that are no array of double
 };
 
-}  // namespace aos
+}

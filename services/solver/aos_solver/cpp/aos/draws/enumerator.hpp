@@ -194,4 +194,4 @@ inline std::size_t work_of_step(const auto& path, std::size_t state_bytes) {
   return 1 + path.draws() + state_bytes / bytes_per_draw;
 }
 
-}  // namespace aos
+}

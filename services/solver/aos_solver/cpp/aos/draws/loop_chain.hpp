@@ -138,4 +138,4 @@ class LoopChain {
   std::size_t met_again_ = 0;
 };
 
-}  // namespace aos
+}

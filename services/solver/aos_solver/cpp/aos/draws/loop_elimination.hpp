@@ -189,4 +189,4 @@ double LoopChain::settle() {
   return left_out + waiting_;
 }
 
-}  // namespace aos
+}

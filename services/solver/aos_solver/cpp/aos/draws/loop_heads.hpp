@@ -41,4 +41,4 @@ class LoopHeads {
   ~LoopHeads() = default;
 };
 
-}  // namespace aos
+}

@@ -21,8 +21,8 @@ struct NumberStrata {
       const int to_end = i < count - 1 - i ? i : count - 1 - i;
       const int halves = to_end == 0 ? ends - 1 : ends - to_end;
       const double weight = to_end < ends ? end / (1 << halves) : width;
-      weights[static_cast<std::size_t>(i)] = weight;
-      middles[static_cast<std::size_t>(i)] = from + weight / 2;
+      weights[i] = weight;
+      middles[i] = from + weight / 2;
       from += weight;
     }
   }
@@ -49,4 +49,4 @@ struct DrawStrata {
   }
 };
 
-}  // namespace aos
+}

@@ -180,4 +180,4 @@ class ReportingTo {
   NumberSink* before_;
 };
 
-}  // namespace aos
+}

@@ -300,4 +300,4 @@ class AnySource : public Draws<AnySource> {
   const Functions& functions_;
 };
 
-}  // namespace aos
+}

@@ -73,4 +73,4 @@ class Replay final : public DirectedDraws {
   std::size_t draws_ = 0;
 };
 
-}  // namespace aos
+}

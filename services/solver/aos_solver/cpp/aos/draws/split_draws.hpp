@@ -119,4 +119,4 @@ class SplitDraws final : public DirectedDraws {
   std::size_t next_last_draws_ = max_draws_of_path;
 };
 
-}  // namespace aos
+}

@@ -36,4 +36,4 @@ class Xoshiro {
   std::array<std::uint64_t, 4> words_;
 };
 
-}  // namespace aos
+}

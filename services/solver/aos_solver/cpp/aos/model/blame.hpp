@@ -43,4 +43,4 @@ inline std::uint32_t ends() { return page[place + 1]; }
 // The piece that runs in this thread.
 inline std::uint32_t piece() { return page[place]; }
 
-}  // namespace aos::blame
+}

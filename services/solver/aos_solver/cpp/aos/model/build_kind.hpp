@@ -24,4 +24,4 @@ constexpr bool is_quick_build = false;
 template <class Random>
 using ModelSource = std::conditional_t<is_quick_build, AnySource, Random&>;
 
-}  // namespace aos
+}

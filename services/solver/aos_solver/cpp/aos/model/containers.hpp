@@ -252,4 +252,4 @@ constexpr Values&& filled(Values&& values) {
   return std::forward<Values>(values);
 }
 
-}  // namespace aos
+}

@@ -59,4 +59,4 @@ void correct(const State& before, State& next, const auto& parameters, const aut
   blame::at(0);
 }
 
-}  // namespace aos
+}

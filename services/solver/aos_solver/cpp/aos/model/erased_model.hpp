@@ -153,8 +153,8 @@ struct ErasedModel {
 
  private:
   static const GroundedAction& grounded(int action) {
-    if (is_monitor(action)) return (*compiled_model.monitors)[static_cast<std::size_t>(action - first_monitor)];
-    return (*compiled_model.actions)[static_cast<std::size_t>(action)];
+    if (is_monitor(action)) return (*compiled_model.monitors)[action - first_monitor];
+    return (*compiled_model.actions)[action];
   }
 
   static Step corrected_step(State& state, int action, DirectedDraws& random) {
@@ -176,4 +176,4 @@ struct ErasedModel {
   }
 };
 
-}  // namespace aos
+}

@@ -112,4 +112,4 @@ struct FixedDraws : Draws<FixedDraws> {
   static double uniform() { return 0.5; }
 };
 
-}  // namespace aos
+}

@@ -47,4 +47,4 @@ void take_mission_value(const std::string& name, T& value) {
   }
 }
 
-}  // namespace aos
+}

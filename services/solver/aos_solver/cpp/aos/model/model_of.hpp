@@ -317,4 +317,4 @@ class ModelOf {
   }
 };
 
-}  // namespace aos
+}

@@ -204,4 +204,4 @@ constexpr ModelTable table_of() {
   };
 }
 
-}  // namespace aos
+}

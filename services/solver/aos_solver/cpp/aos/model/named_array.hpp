@@ -77,4 +77,4 @@ class Named : public Elements<Named<E, Size, T>, T> {
   T values_[Size > 0 ? Size : 1] = {};
 };
 
-}  // namespace aos
+}

@@ -104,4 +104,4 @@ struct NamedValues : std::map<std::string, T, std::less<>> {
   const T& at(std::string_view name) const { return (*this)[name]; }
 };
 
-}  // namespace aos
+}

@@ -32,4 +32,4 @@ class PrintedState {
   std::ostringstream stream_;
 };
 
-}  // namespace aos
+}

@@ -238,4 +238,4 @@ std::uint64_t hashed(std::uint64_t hash, const T& value) {
   }
 }
 
-}  // namespace aos
+}

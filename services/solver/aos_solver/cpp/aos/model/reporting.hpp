@@ -39,4 +39,4 @@ class ReportedNumbers {
   std::ptrdiff_t count_ = 0;
 };
 
-}  // namespace aos
+}

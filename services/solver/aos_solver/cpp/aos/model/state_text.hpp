@@ -43,7 +43,7 @@ class StateReader {
     } else if constexpr (Enumerated<T>) {
       for (auto& element : value) read(element);
     } else if constexpr (std::derived_from<T, std::vector<bool>>) {
-      value.resize(static_cast<std::size_t>(next()));
+      value.resize(next());
       for (auto element : value) element = next() != 0;
     } else if constexpr (Sequence<T>) {
       resize(value, static_cast<std::size_t>(next()));
@@ -110,4 +110,4 @@ class SavedConstants {
   std::vector<std::pair<std::string, std::string>> texts_;
 };
 
-}  // namespace aos
+}

@@ -59,4 +59,4 @@ class OwnedState {
 template <std::size_t Size>
 using ErasedState = std::conditional_t<Size == 0, OwnedState, InPlaceState<Size == 0 ? 1 : Size>>;
 
-}  // namespace aos
+}

@@ -72,4 +72,4 @@ std::string name_of_observation(int skill, Observation observation) {
   return std::string{observation_text(observation)};
 }
 
-}  // namespace aos
+}

@@ -160,7 +160,7 @@ class Table {
   T values_[capacity > 0 ? capacity : 1] = {};
 };
 
-}  // namespace aos
+}
 
 template <class Key, class T>
 struct std::tuple_size<aos::TableEntry<Key, T>> : std::integral_constant<std::size_t, 2> {};

@@ -127,4 +127,4 @@ class Text {
   std::uint8_t length_ = 0;
 };
 
-}  // namespace aos
+}

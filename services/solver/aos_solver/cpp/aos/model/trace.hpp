@@ -118,4 +118,4 @@ inline void statement(std::uint32_t place) {
   if (is_state_wanted) Showing::tell(place);
 }
 
-}  // namespace aos::blame
+}

@@ -254,4 +254,4 @@ const std::string* SavedConstants::find(std::string_view name) const {
   return nullptr;
 }
 
-}  // namespace aos
+}

@@ -135,4 +135,4 @@ struct LeafNumbers final : ValueVisitor {
   void begin_sequence(std::size_t size) override { shape = mixed(shape, size); }
 };
 
-}  // namespace aos
+}

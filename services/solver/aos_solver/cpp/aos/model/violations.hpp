@@ -31,4 +31,4 @@ Violations violation(int number, std::uint32_t piece, Condition&& holds) {
   return is_violated ? Violations{1} << number : Violations{0};
 }
 
-}  // namespace aos
+}

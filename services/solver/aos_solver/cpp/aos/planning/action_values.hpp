@@ -34,7 +34,7 @@ struct Promise {
 
 // The values of actions whose estimates come from a tree that ends in values of seen states.
 inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate> estimates, const Promise& promise, int choice) {
-  const double chosen = estimates[static_cast<std::size_t>(choice)].q;
+  const double chosen = estimates[choice].q;
   const double reach = std::max(std::abs(promise.most - chosen), std::abs(promise.played - chosen)) / 2;
   const double moved = promise.is_guess ? promise.played - chosen : 0;
   for (ActionEstimate& estimate : estimates) {
@@ -47,7 +47,7 @@ inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate>
 
 // The values of actions whose estimates come from a tree that ends in rollouts.
 inline std::vector<ActionEstimate> values_of_tree(std::vector<ActionEstimate> estimates, const TreeReach& reach, int choice) {
-  const double moved = reach.gain * reach.beyond[static_cast<std::size_t>(choice)] / 2;
+  const double moved = reach.gain * reach.beyond[choice] / 2;
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     ActionEstimate& estimate = estimates[a];
     if (estimate.n == 0) continue;
@@ -83,4 +83,4 @@ inline void set_between(std::vector<ActionEstimate>& estimates, const std::vecto
   }
 }
 
-}  // namespace aos
+}

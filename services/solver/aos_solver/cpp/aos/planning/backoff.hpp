@@ -27,4 +27,4 @@ class Backoff {
   int put_off_ = 0;  // decisions without a try
 };
 
-}  // namespace aos
+}

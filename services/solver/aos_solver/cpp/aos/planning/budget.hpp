@@ -84,4 +84,4 @@ int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, 
   return static_cast<int>(soonest - estimates.data());
 }
 
-}  // namespace aos
+}

@@ -22,4 +22,4 @@ bool comes_to_an_end(Work&& work) {
   return has_ended;
 }
 
-}  // namespace aos
+}

@@ -41,4 +41,4 @@ bool is_idle(const Belief<Model>& belief, int action) {
   return is_certain && changes_nothing && told;
 }
 
-}  // namespace aos
+}

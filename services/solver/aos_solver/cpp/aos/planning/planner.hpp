@@ -81,7 +81,7 @@ class Planner {
   // The action to take: the one with the highest estimate among those with reliable values.
   virtual int choice(const Estimates& estimates, int horizon, const BarredActions& barred) const {
     const auto is_barred = [&](const ActionEstimate& estimate) {
-      return barred.contains(static_cast<std::size_t>(&estimate - estimates.data()));
+      return barred.contains(&estimate - estimates.data());
     };
     ActionEstimate most;  // the most visited one
     for (const ActionEstimate& estimate : estimates) {
@@ -117,4 +117,4 @@ class Planner {
   const StateSpace<Model>& space_;
 };
 
-}  // namespace aos
+}

@@ -158,4 +158,4 @@ class Planners {
   std::chrono::nanoseconds searching_{};
 };
 
-}  // namespace aos
+}

@@ -12,8 +12,8 @@ namespace aos {
 // Mostly there is only one observation, and the elements are sorted already.
 template <class Element>
 void sort_by_observation(std::vector<Element>& elements, std::size_t first, std::size_t last) {
-  const auto begin = elements.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto end = elements.begin() + static_cast<std::ptrdiff_t>(last);
+  const auto begin = elements.begin() + first;
+  const auto end = elements.begin() + last;
   const auto is_before = [](const Element& left, const Element& right) { return left.observation < right.observation; };
   if (!std::is_sorted(begin, end, is_before)) sort_stably(begin, end, is_before);
 }
@@ -35,4 +35,4 @@ void for_each_history(const std::vector<Element>& elements, Visit&& visit) {
   }
 }
 
-}  // namespace aos
+}

@@ -100,4 +100,4 @@ class AffordableSteps {
   double seconds_ = 0;
 };
 
-}  // namespace aos
+}

@@ -34,7 +34,7 @@ class TreePlanner : public Planner<Model> {
 
   Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const override {
     bound(belief, estimates);
-    const bool was_searched = estimates[static_cast<std::size_t>(choice)].n > 0;
+    const bool was_searched = estimates[choice].n > 0;
     if (values_of_ends() == nullptr) {
       const TreeReach reached = reach(belief, estimates, choice);
       return values_of_tree(std::move(estimates), reached, choice);
@@ -61,7 +61,7 @@ class TreePlanner : public Planner<Model> {
   virtual TreeReach reach(const Belief<Model>& /*belief*/, const Estimates& /*estimates*/, int /*choice*/) const { return {}; }
   // The most that the tree promises of an action.
   virtual double most(const Belief<Model>& /*belief*/, const Estimates& estimates, int choice) const {
-    return estimates[static_cast<std::size_t>(choice)].q;
+    return estimates[choice].q;
   }
 
  private:
@@ -87,4 +87,4 @@ class TreePlanner : public Planner<Model> {
   int horizon_ = 1;  // of the last search
 };
 
-}  // namespace aos
+}

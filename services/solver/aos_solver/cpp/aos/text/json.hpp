@@ -105,4 +105,4 @@ class JsonWriter {
   std::string text_;
 };
 
-}  // namespace aos
+}

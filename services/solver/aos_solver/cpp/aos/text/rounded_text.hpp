@@ -25,4 +25,4 @@ inline std::string rounded_up(double number) {
   return text.front() == '-' ? text.substr(1) : number == 0 || !std::isfinite(number) ? text : "-" + text;
 }
 
-}  // namespace aos
+}

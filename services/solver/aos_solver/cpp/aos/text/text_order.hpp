@@ -31,4 +31,4 @@ inline double order_of_texts(std::string_view text, std::string_view observed) {
   return place < observed.size() && text[place] < observed[place] ? -1 : 1;
 }
 
-}  // namespace aos
+}

@@ -33,4 +33,4 @@ inline std::size_t first_no_letter(std::string_view text) {
   return std::string_view::npos;
 }
 
-}  // namespace aos
+}

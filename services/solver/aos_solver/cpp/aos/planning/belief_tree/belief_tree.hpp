@@ -363,4 +363,4 @@ class BeliefTree final : public TreePlanner<Model> {
   std::vector<Visit> visits_;        // of the simulation that runs
 };
 
-}  // namespace aos
+}

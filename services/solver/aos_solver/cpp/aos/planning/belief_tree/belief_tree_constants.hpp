@@ -37,4 +37,4 @@ inline constexpr std::size_t max_belief_tree_bytes = std::size_t{256} << 20;
 inline constexpr std::uint64_t max_prepared_runs = 1'000'000;  // steps of the model before a search
 inline constexpr std::size_t max_sensing_tables = 500'000;
 
-}  // namespace aos
+}

@@ -200,4 +200,4 @@ class ObservationTables {
   std::unordered_map<Key, std::uint32_t, NumbersHash> by_parameters_;
 };
 
-}  // namespace aos
+}

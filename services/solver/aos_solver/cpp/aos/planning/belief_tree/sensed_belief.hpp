@@ -132,4 +132,4 @@ class SensedBelief {
   std::vector<std::uint32_t> place_;  // of states in `after_`
 };
 
-}  // namespace aos
+}

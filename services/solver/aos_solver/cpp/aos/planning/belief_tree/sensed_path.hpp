@@ -158,4 +158,4 @@ class SensedPath final : public DirectedDraws, private NumberSink {
   std::vector<std::size_t> cuts_;
 };
 
-}  // namespace aos
+}

@@ -129,4 +129,4 @@ class SensingRuns {
   std::uint64_t count_ = 0;
 };
 
-}  // namespace aos
+}

@@ -36,7 +36,7 @@ class SensingTables {
     if (restarts_ != space_.numbering().restarts) forget();
     restarts_ = space_.numbering().restarts;
     table_of_.resize(space_.rows().outcomes.elements.size(), no_table);
-    whole_.resize(static_cast<std::size_t>(Model::skill_count));
+    whole_.resize(Model::skill_count);
   }
 
   // Drops everything, so that what follows does not depend on what came before.
@@ -95,8 +95,8 @@ class SensingTables {
     for (std::size_t i = 0; i < compared_runs; ++i) add_run(i);
     const std::uint64_t hash = hash_of(numbered());
     if (const auto known = by_reports_.find(hash); known != by_reports_.end()) return known->second;
-    if (!whole_[static_cast<std::size_t>(skill_)] && runs_.has_joint_pieces()) {
-      whole_[static_cast<std::size_t>(skill_)] = true;
+    if (!whole_[skill_] && runs_.has_joint_pieces()) {
+      whole_[skill_] = true;
       forget_tables();
       return no_table;
     }
@@ -107,7 +107,7 @@ class SensingTables {
   void add_run(std::size_t number) {
     std::optional<Report> report = runs_.run(number);
     if (!report) return;
-    if (whole_[static_cast<std::size_t>(skill_)] && report->pieces.size() > 1) {
+    if (whole_[skill_] && report->pieces.size() > 1) {
       for (std::size_t i = 1; i < report->pieces.size(); ++i) report->pieces[0] += report->pieces[i];
       report->pieces.resize(1);
     }
@@ -165,4 +165,4 @@ class SensingTables {
   std::vector<Report> reports_;
 };
 
-}  // namespace aos
+}

@@ -406,4 +406,4 @@ class Despot final : public TreePlanner<Model> {
   std::vector<double> rewards_;     // mean immediate rewards of these actions
 };
 
-}  // namespace aos
+}

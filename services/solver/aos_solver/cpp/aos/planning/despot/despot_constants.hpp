@@ -40,4 +40,4 @@ inline constexpr std::size_t least_copied_bytes = 64;
 inline constexpr std::size_t max_scenario_bytes = std::size_t{512} << 20;
 inline constexpr std::size_t max_node_bytes = std::size_t{128} << 20;
 
-}  // namespace aos
+}

@@ -266,7 +266,7 @@ class ScenarioEvaluation {
   }
 
   int best_on_average(std::size_t first, std::size_t last) {
-    sums_.assign(static_cast<std::size_t>(Model::action_count()), 0);
+    sums_.assign(Model::action_count(), 0);
     for (std::size_t i = first; i < last; ++i) values_.add_action_values(followers_[i].scenario.seen, sums_);
     return static_cast<int>(std::max_element(sums_.begin(), sums_.end()) - sums_.begin());
   }
@@ -285,4 +285,4 @@ class ScenarioEvaluation {
   std::vector<double> sums_;
 };
 
-}  // namespace aos
+}

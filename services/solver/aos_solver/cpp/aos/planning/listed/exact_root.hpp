@@ -17,4 +17,4 @@ Weighted exact_root(const StateSpace<Model>& space, const Belief<Model>& belief)
   return space.weights_of(belief);
 }
 
-}  // namespace aos
+}

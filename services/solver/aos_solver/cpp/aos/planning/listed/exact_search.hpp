@@ -132,4 +132,4 @@ class ExactSearch final : public Planner<Model> {
   Backoff tries_{1};
 };
 
-}  // namespace aos
+}

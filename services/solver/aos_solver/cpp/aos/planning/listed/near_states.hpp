@@ -76,4 +76,4 @@ class NearStates {
   std::size_t given_up_with_ = any_number;  // states of the belief
 };
 
-}  // namespace aos
+}

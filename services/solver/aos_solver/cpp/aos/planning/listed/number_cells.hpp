@@ -178,4 +178,4 @@ class NumberCells {
   std::size_t max_cells_ = 1;
 };
 
-}  // namespace aos
+}

@@ -119,4 +119,4 @@ class NumberGrid {
   double information_ = 0;  // of the first cells, in nats
 };
 
-}  // namespace aos
+}

@@ -99,4 +99,4 @@ class NumberReports final : public NumberSink {
   bool is_full_ = false;
 };
 
-}  // namespace aos
+}

@@ -55,4 +55,4 @@ class ObservationNumbers {
   std::vector<std::string> texts_;
 };
 
-}  // namespace aos
+}

@@ -315,4 +315,4 @@ class PointBased {
   std::uint64_t known_ = 0;
 };
 
-}  // namespace aos
+}

@@ -117,4 +117,4 @@ class SarsopPlanner final : public Planner<Model> {
   bool is_near_ = false;  // whether the states near the belief stood for all of them in the last search
 };
 
-}  // namespace aos
+}

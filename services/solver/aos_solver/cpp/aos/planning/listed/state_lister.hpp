@@ -100,4 +100,4 @@ class StateLister {
   bool reached_[ending_count]{};
 };
 
-}  // namespace aos
+}

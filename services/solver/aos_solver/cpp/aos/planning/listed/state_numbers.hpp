@@ -149,4 +149,4 @@ class StateNumbers {
   NumberIndex numbers_;
 };
 
-}  // namespace aos
+}

@@ -341,4 +341,4 @@ class StateSpace {
   SensingKey key_;
 };
 
-}  // namespace aos
+}

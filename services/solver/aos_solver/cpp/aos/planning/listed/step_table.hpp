@@ -107,4 +107,4 @@ class StepTable {
   AliasColumns<Outcome> columns_of_;
 };
 
-}  // namespace aos
+}

@@ -108,4 +108,4 @@ class BestEnd {
   const RunningDown<Model>* retries_;
 };
 
-}  // namespace aos
+}

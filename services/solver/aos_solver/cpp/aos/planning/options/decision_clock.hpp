@@ -45,4 +45,4 @@ class DecisionClock {
   double end_s_ = seconds_;  // of the work at hand
 };
 
-}  // namespace aos
+}

@@ -36,7 +36,7 @@ class OptionDetours {
   std::vector<OptionCandidate> find(const std::vector<int>& moves, double waiting, const BarredActions& barred, double& steps, Sampler& random) {
     waiting_ = waiting;
     looks_.clear();
-    telling_.assign(static_cast<std::size_t>(Model::action_count()), false);
+    telling_.assign(Model::action_count(), false);
     double weighing = steps / 2;
     steps -= weighing;
     std::vector<Ahead> ones{{{}, belief_.states()}};
@@ -154,4 +154,4 @@ class OptionDetours {
   std::vector<Look> looks_;
 };
 
-}  // namespace aos
+}

@@ -119,4 +119,4 @@ class OptionFollowing {
   mutable std::vector<Option> found_;
 };
 
-}  // namespace aos
+}

@@ -203,4 +203,4 @@ class OptionGains {
   mutable std::vector<std::size_t> chosen_;
 };
 
-}  // namespace aos
+}

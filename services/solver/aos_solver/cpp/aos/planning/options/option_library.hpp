@@ -146,4 +146,4 @@ class OptionLibrary {
   bool counts_ = false;
 };
 
-}  // namespace aos
+}

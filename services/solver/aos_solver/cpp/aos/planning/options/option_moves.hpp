@@ -54,7 +54,7 @@ class OptionMoves {
     View best{move};
     double most = OptionTests<Model>::least_information;
     for (int action = 0; action < Model::action_count(); ++action) {
-      if (barred.contains(static_cast<std::size_t>(action)) || tests_.is_move(action)) continue;
+      if (barred.contains(action) || tests_.is_move(action)) continue;
       if (tests_.clock().is_over()) break;
       double reward = paid;
       for (std::size_t k = 0; k < now.size(); ++k) {
@@ -149,4 +149,4 @@ class OptionMoves {
   ReportedStep<Model> step_;
 };
 
-}  // namespace aos
+}

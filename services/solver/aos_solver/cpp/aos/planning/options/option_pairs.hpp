@@ -112,4 +112,4 @@ class OptionPairs {
   ReportedStep<Model> step_;
 };
 
-}  // namespace aos
+}

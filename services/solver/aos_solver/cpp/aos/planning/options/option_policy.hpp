@@ -127,7 +127,7 @@ class OptionPolicy {
   // Lets a plain plan decide. What was told of all else is `lost` too much.
   void settle_for(const PlainPlan& plain, double lost) {
     for (ActionEstimate& estimate : estimates_) estimate.q -= estimate.n > 0 ? lost : 0;
-    estimates_[static_cast<std::size_t>(plain.action)] = {plain.returned, static_cast<std::uint32_t>(belief_.size()), plain.error};
+    estimates_[plain.action] = {plain.returned, static_cast<std::uint32_t>(belief_.size()), plain.error};
     reason_ = "that promises of this mission were not kept";
   }
   // Whether a way to a reward was found, in this mission, from any state.
@@ -177,7 +177,7 @@ class OptionPolicy {
   void choose_moves(const BarredActions& barred) {
     tried_moves_.clear();
     for (int action = 0; action < Model::action_count(); ++action) {
-      if (changes_.is_move(action) && !barred.contains(static_cast<std::size_t>(action))) tried_moves_.push_back(action);
+      if (changes_.is_move(action) && !barred.contains(action)) tried_moves_.push_back(action);
     }
     are_for_views_ = tried_moves_.size() > OptionMoves<Model>::few;
     if (are_for_views_) std::erase_if(tried_moves_, [this](int move) { return library_.earns_at_once(move); });
@@ -189,7 +189,7 @@ class OptionPolicy {
     std::vector<std::pair<double, std::size_t>> incomes;
     for (std::size_t o = 0; o < gains_.size(); ++o) {
       const Option& option = library_.options()[o];
-      if (barred.contains(static_cast<std::size_t>(option.front()))) continue;
+      if (barred.contains(option.front())) continue;
       incomes.emplace_back(income<Model>(gains_.earned(o, belief_.weights()), option.size()), o);
     }
     sort_stably(incomes, [](const auto& one, const auto& other) { return one.first > other.first; });
@@ -291,14 +291,14 @@ class OptionPolicy {
   // What is told lies halfway between what the candidate is worth if nothing more is observed, and what the states are worth if
   // they are seen. Half of that distance is what may be wrong about it.
   void settle(double running) {
-    estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
+    estimates_.assign(Model::action_count(), {});
     const auto most = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
     const OptionCandidate* const best = most != candidates_.end() ? &*most : nullptr;
     const double open = best != nullptr ? std::max(regret_.value_seen() - best->value, 0.0) / 2 : 0;
     const double beyond = values_.beyond([this](std::size_t k) { return regret_.value_seen(k); });
     const double error = std::hypot(open, beyond / 2, regret_.error());
     for (const OptionCandidate& candidate : candidates_) {
-      ActionEstimate& estimate = estimates_[static_cast<std::size_t>(candidate.action)];
+      ActionEstimate& estimate = estimates_[candidate.action];
       const double value = running * (candidate.value + open + beyond);
       if (estimate.n == 0 || value > estimate.q) estimate.q = value;
       estimate.n = static_cast<std::uint32_t>(belief_.size());
@@ -334,4 +334,4 @@ class OptionPolicy {
   double least_ = 0;
 };
 
-}  // namespace aos
+}

@@ -128,4 +128,4 @@ class OptionRegret {
   double price_ = std::numeric_limits<double>::infinity();  // of a nat
 };
 
-}  // namespace aos
+}

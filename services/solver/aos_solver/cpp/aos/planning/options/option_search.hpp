@@ -37,7 +37,7 @@ using Option = std::vector<int>;
 // Adds an option, and what is left of it after its first actions, as far as they are new: at most `most` of it, and up to `limit` in all.
 inline void add_with_rests(std::vector<Option>& options, const Option& option, std::size_t most, std::size_t limit) {
   for (std::size_t first = 0; first < std::min(most, option.size()) && options.size() < limit; ++first) {
-    Option rest(option.begin() + static_cast<std::ptrdiff_t>(first), option.end());
+    Option rest(option.begin() + first, option.end());
     if (std::ranges::find(options, rest) == options.end()) options.push_back(std::move(rest));
   }
 }
@@ -267,7 +267,7 @@ class OptionSearch {
     sort_stably(found_, has_more_income);
     // Those that are no longer among the first may still earn most.
     if (found_.size() > max_found) {
-      sort_stably(found_.begin() + static_cast<std::ptrdiff_t>(max_found), found_.end(), [](const Found& one, const Found& other) { return one.earned > other.earned; });
+      sort_stably(found_.begin() + max_found, found_.end(), [](const Found& one, const Found& other) { return one.earned > other.earned; });
       found_.resize(std::min(found_.size(), max_found + max_dear));
     }
     return found_;
@@ -322,4 +322,4 @@ class OptionSearch {
   std::vector<std::uint64_t> cells_after_;
 };
 
-}  // namespace aos
+}

@@ -83,8 +83,8 @@ class OptionTests {
   const std::vector<int>& moves() const { return moves_; }
   bool is_move(int action) const { return changes_.is_move(action); }
   // By state: what an action that is no move may report.
-  const std::vector<StepReports>& reports_of(int action) const { return reports_[static_cast<std::size_t>(action)]; }
-  double information_of(int action) const { return informations_[static_cast<std::size_t>(action)]; }
+  const std::vector<StepReports>& reports_of(int action) const { return reports_[action]; }
+  double information_of(int action) const { return informations_[action]; }
 
   // Adds the tests of each skill that tell most, made once or several times in a row, the latter while there are steps.
   void add_to(std::vector<OptionCandidate>& candidates, double& steps, Sampler& random) const {
@@ -107,15 +107,15 @@ class OptionTests {
 
   std::vector<Test> most_telling() const {
     std::vector<Test> tests;
-    std::vector<std::size_t> tried(static_cast<std::size_t>(Model::skill_count));
+    std::vector<std::size_t> tried(Model::skill_count);
     for (const Test& test : tests_) {
-      if (tried[static_cast<std::size_t>(Model::skill_of(test.action))]++ < tried_tests) tests.push_back(test);
+      if (tried[Model::skill_of(test.action)]++ < tried_tests) tests.push_back(test);
     }
     return tests;
   }
 
   void add(std::vector<OptionCandidate>& candidates, const Test& test, int repeats, double& steps, Sampler& random) const {
-    const std::vector<StepReports>& reports = reports_[static_cast<std::size_t>(test.action)];
+    const std::vector<StepReports>& reports = reports_[test.action];
     double paid = 0;
     double discount = 1;
     for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
@@ -133,7 +133,7 @@ class OptionTests {
     double reward = 0;
     for (std::size_t k = 0; k < belief_.size(); ++k) {
       State state = belief_.states()[k];
-      reward += belief_.weights()[k] * step_.take(state, action, reports_[static_cast<std::size_t>(action)][k], steps, random);
+      reward += belief_.weights()[k] * step_.take(state, action, reports_[action][k], steps, random);
     }
     return reward;
   }
@@ -150,4 +150,4 @@ class OptionTests {
   std::size_t first_ = 0;  // action that is observed
 };
 
-}  // namespace aos
+}

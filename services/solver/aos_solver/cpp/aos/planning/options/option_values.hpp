@@ -126,4 +126,4 @@ class OptionValues {
   std::vector<Valued> valued_;
 };
 
-}  // namespace aos
+}

@@ -111,7 +111,7 @@ class OptionsPlanner final : public Planner<Model> {
     if (running <= 0) return;
     const ForgottenTexts forgotten;
     const int chosen = this->choice(policy_.estimates(), horizon, barred);
-    const double value = policy_.estimates()[static_cast<std::size_t>(chosen)].q;
+    const double value = policy_.estimates()[chosen].q;
     promises_.keep(value);
     if (promises_.lost() > 0 && policy_.least() < 0) {
       PlainPlan plain = policy_.plain_plan(horizon, barred, random);
@@ -133,4 +133,4 @@ class OptionsPlanner final : public Planner<Model> {
   std::optional<bool> is_neglect_dear_;  // by the first decision of a mission that has ways
 };
 
-}  // namespace aos
+}

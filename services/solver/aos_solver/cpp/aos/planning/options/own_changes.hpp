@@ -63,7 +63,7 @@ class OwnChanges {
   }
 
   // Whether the action changes any of the states, or ends the mission.
-  bool is_move(int action) const { return moves_[static_cast<std::size_t>(action)]; }
+  bool is_move(int action) const { return moves_[action]; }
   // Whether the next step earns something whatever the robot does.
   bool earns_anyway() const { return earns_anyway_; }
   // Whether a variable changes by itself, and no action changes it.
@@ -94,4 +94,4 @@ class OwnChanges {
   std::vector<std::uint64_t> ends_;   // by action
 };
 
-}  // namespace aos
+}

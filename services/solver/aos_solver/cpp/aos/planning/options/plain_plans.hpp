@@ -32,16 +32,16 @@ class PlainPlans {
   static PlainPlan best(const SampledBelief<Model>& belief, int horizon, const BarredActions& barred, double steps, Sampler& random) {
     std::vector<int> actions;
     for (int action = 0; action < Model::action_count(); ++action) {
-      if (!barred.contains(static_cast<std::size_t>(action))) actions.push_back(action);
+      if (!barred.contains(action)) actions.push_back(action);
     }
     if (actions.empty()) return {};
     const double of_round = steps / rounds;
-    std::vector<double> sums(static_cast<std::size_t>(Model::action_count()));
+    std::vector<double> sums(Model::action_count());
     for (std::size_t tries = first_tries; actions.size() > 1; tries *= kept_share) {
       const double affordable = of_round / static_cast<double>(actions.size() * tries);
       const int length = std::clamp(static_cast<int>(affordable), 1, horizon);
-      for (const int action : actions) sums[static_cast<std::size_t>(action)] = played(action, belief, tries, length, random).returned;
-      sort_stably(actions, [&](int one, int other) { return sums[static_cast<std::size_t>(one)] > sums[static_cast<std::size_t>(other)]; });
+      for (const int action : actions) sums[action] = played(action, belief, tries, length, random).returned;
+      sort_stably(actions, [&](int one, int other) { return sums[one] > sums[other]; });
       actions.resize(std::max<std::size_t>(actions.size() / kept_share, 1));
     }
     return played(actions.front(), belief, last_tries, horizon, random);
@@ -95,4 +95,4 @@ class PlainPlans {
   }
 };
 
-}  // namespace aos
+}

@@ -50,4 +50,4 @@ class Promises {
   double squares_ = 0;
 };
 
-}  // namespace aos
+}

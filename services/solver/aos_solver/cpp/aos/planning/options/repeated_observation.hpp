@@ -70,4 +70,4 @@ class RepeatedObservation {
   std::vector<std::vector<double>> likelihoods_;  // [response][state]; empty if they are too many
 };
 
-}  // namespace aos
+}

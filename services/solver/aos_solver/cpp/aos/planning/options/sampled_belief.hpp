@@ -129,4 +129,4 @@ class SampledBelief {
   StateWeights weights_;
 };
 
-}  // namespace aos
+}

@@ -169,4 +169,4 @@ class ReportedStep {
   State next_{};
 };
 
-}  // namespace aos
+}

@@ -32,4 +32,4 @@ inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {
   }
 }
 
-}  // namespace aos
+}

@@ -78,4 +78,4 @@ inline void share_exploration(ActionNode* actions, const std::vector<double>& ro
   }
 }
 
-}  // namespace aos
+}

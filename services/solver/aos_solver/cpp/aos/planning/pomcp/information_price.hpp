@@ -92,7 +92,7 @@ class InformationPrice {
     progress::tell("finding out what information is worth", mission, priced_missions);
     Sampler random{mission};
     Cloud cloud = drawn(belief, random);
-    State state = cloud[static_cast<std::size_t>(random.below(static_cast<int>(cloud.size())))].state;
+    State state = cloud[random.below(static_cast<int>(cloud.size()))].state;
     true_state_ = state;
     double sum = 0;
     double discount = 1;
@@ -199,4 +199,4 @@ class InformationPrice {
   ObservationOddsOfStep all_;
 };
 
-}  // namespace aos
+}

@@ -96,4 +96,4 @@ class ObservationCells {
   std::size_t cells_ = 0;
 };
 
-}  // namespace aos
+}

@@ -68,4 +68,4 @@ inline double information_of(const SearchTree& tree, const ActionNode& action, d
   return std::max(entropy + share_of_entropy(1 - going_on) - doubt / action.n, 0.0);
 }
 
-}  // namespace aos
+}

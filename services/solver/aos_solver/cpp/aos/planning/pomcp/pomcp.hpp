@@ -79,7 +79,7 @@ class Pomcp final : public TreePlanner<Model> {
       }
       if (n == 0) continue;
       const double value = running * (q / n + mdp_value_);
-      result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n,
+      result[a] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n,
                                              running * reward / n};
     }
     if (prior_.empty() || !switches::prior_draw) return result;
@@ -138,7 +138,7 @@ class Pomcp final : public TreePlanner<Model> {
       }
       result.beyond.push_back(n > 0 ? beyond / n : 1);
     }
-    const ActionEstimate& chosen = estimates[static_cast<std::size_t>(choice)];
+    const ActionEstimate& chosen = estimates[choice];
     if (chosen.n > 0) result.gain = chosen.q - belief.probability_of(Ending::running) * rolled_out_;
     return result;
   }
@@ -271,4 +271,4 @@ class Pomcp final : public TreePlanner<Model> {
   double rolled_out_ = 0;  // what rollouts return from the belief, where they value new histories
 };
 
-}  // namespace aos
+}

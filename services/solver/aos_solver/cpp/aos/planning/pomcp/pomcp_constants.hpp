@@ -62,4 +62,4 @@ inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // of the
 // Of a budget in time, always used, so that a first look does not decide.
 inline constexpr double min_time_share = 0.1;
 
-}  // namespace aos
+}

@@ -55,4 +55,4 @@ class RootRecord {
   double highest_ = -std::numeric_limits<double>::infinity();
 };
 
-}  // namespace aos
+}

@@ -124,4 +124,4 @@ class SearchThreads {
   Operations each_ = 0;
 };
 
-}  // namespace aos
+}

@@ -84,7 +84,7 @@ class SearchTree {
       told_.reserve(actions_.capacity());
       told_.resize(actions_.size());
     }
-    return told_[static_cast<std::size_t>(&action - actions_.data())];
+    return told_[&action - actions_.data()];
   }
   std::size_t size() const { return histories_.size(); }
 
@@ -180,4 +180,4 @@ class SearchTree {
   std::vector<std::uint32_t> sources_;  // while copying: the original of each history
 };
 
-}  // namespace aos
+}

@@ -275,7 +275,7 @@ class TreeSearch {
   int turn() const {
     if (!switches::turns || spread_.simulations() % turns != 0) return -1;
     const auto next = static_cast<int>(spread_.simulations() / turns % action_count());
-    return barred_.contains(static_cast<std::size_t>(next)) ? -1 : next;
+    return barred_.contains(next) ? -1 : next;
   }
 
   // Takes a step and draws what it reports.
@@ -350,4 +350,4 @@ class TreeSearch {
   std::vector<double> odds_;
 };
 
-}  // namespace aos
+}

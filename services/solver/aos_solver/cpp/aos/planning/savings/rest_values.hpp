@@ -98,17 +98,17 @@ class RestValues {
 
   // Sequential halving: all actions are tried under the same luck, the better quarter of them four times as often, and so on.
   void find_action(const Belief<Model>& belief, Sampler& random) {
-    std::vector<int> actions(static_cast<std::size_t>(Model::action_count()));
+    std::vector<int> actions(Model::action_count());
     std::iota(actions.begin(), actions.end(), 0);
     for (int tries = first_tries; actions.size() > 1; tries *= static_cast<int>(kept_share)) {
-      std::vector<double> sums(static_cast<std::size_t>(Model::action_count()), 0);
+      std::vector<double> sums(Model::action_count(), 0);
       for (int i = 0; i < tries; ++i) {
         const State& state = belief.sample(random);
         if (Model::ending(state) != Ending::running) continue;
         const StepLuck luck{random};
-        for (const int action : actions) sums[static_cast<std::size_t>(action)] += returned(action, state, luck);
+        for (const int action : actions) sums[action] += returned(action, state, luck);
       }
-      sort_stably(actions, [&](int one, int other) { return sums[static_cast<std::size_t>(one)] > sums[static_cast<std::size_t>(other)]; });
+      sort_stably(actions, [&](int one, int other) { return sums[one] > sums[other]; });
       actions.resize(std::max<std::size_t>(actions.size() / kept_share, 1));
     }
     action_ = actions.front();
@@ -163,4 +163,4 @@ class RestValues {
   RandomWalk<Model> walk_;
 };
 
-}  // namespace aos
+}

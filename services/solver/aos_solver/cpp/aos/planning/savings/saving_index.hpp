@@ -126,7 +126,7 @@ class SavingIndex final : public StateValues<Model> {
   int best_action() {
     const auto best = std::ranges::max_element(incomes_);
     if (best == incomes_.end() || *best <= 0) return values_.action();
-    const Option& way = ways_[static_cast<std::size_t>(best - incomes_.begin())];
+    const Option& way = ways_[best - incomes_.begin()];
     note_decided(way);
     return way.front();
   }
@@ -143,4 +143,4 @@ class SavingIndex final : public StateValues<Model> {
   std::vector<std::pair<Option, int>> decided_;  // ways that decided in played missions, and how often, most often first
 };
 
-}  // namespace aos
+}

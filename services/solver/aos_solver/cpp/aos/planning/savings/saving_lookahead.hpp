@@ -115,4 +115,4 @@ class SavingLookahead {
   std::vector<double> best_;
 };
 
-}  // namespace aos
+}

@@ -76,7 +76,7 @@ class SavingPolicy {
 
   // Decides for the belief of `prepare`. Returns the work as simulations.
   std::uint64_t search(const Belief<Model>& belief, int horizon) {
-    estimates_.assign(static_cast<std::size_t>(Model::action_count()), {});
+    estimates_.assign(Model::action_count(), {});
     const double running = belief.probability_of(Ending::running);
     double rest = 0;
     for (std::size_t k = 0; k < belief_.size(); ++k) rest += belief_.weights()[k] * index_->values().value(belief_.states()[k]);
@@ -121,7 +121,7 @@ class SavingPolicy {
     if (!switches::saving_lookahead) {
       for (std::size_t i = 0; i < index_->ways().size(); ++i) {
         const int first = index_->ways()[i].front();
-        if (!barred.contains(static_cast<std::size_t>(first))) found_.push_back({first, index_->income_of(i)});
+        if (!barred.contains(first)) found_.push_back({first, index_->income_of(i)});
       }
       return;
     }
@@ -129,7 +129,7 @@ class SavingPolicy {
     lookahead.begin(belief_, random);
     const double of_action = lookahead.steps_of_action();
     for (const int action : ordered_actions(steps, random)) {
-      if (barred.contains(static_cast<std::size_t>(action))) continue;
+      if (barred.contains(action)) continue;
       if (steps <= 0 && found_.size() >= fewest_tried) break;
       found_.push_back({action, lookahead.income_of(action)});
       steps -= of_action;
@@ -141,9 +141,9 @@ class SavingPolicy {
     const auto actions = static_cast<std::size_t>(Model::action_count());
     constexpr double none = -std::numeric_limits<double>::infinity();
     std::vector<double> incomes(actions, none);
-    incomes[static_cast<std::size_t>(index_->values().action())] = 0;
+    incomes[index_->values().action()] = 0;
     for (std::size_t i = 0; i < index_->ways().size(); ++i) {
-      double& income = incomes[static_cast<std::size_t>(index_->ways()[i].front())];
+      double& income = incomes[index_->ways()[i].front()];
       income = std::max(income, index_->income_of(i));
     }
     std::vector<double> told(actions, 0);
@@ -174,7 +174,7 @@ class SavingPolicy {
   }
 
   void settle(int action, double value) {
-    ActionEstimate& estimate = estimates_[static_cast<std::size_t>(action)];
+    ActionEstimate& estimate = estimates_[action];
     if (estimate.n > 0 && value <= estimate.q) return;
     estimate.q = value;
     estimate.n = static_cast<std::uint32_t>(belief_.size());
@@ -194,4 +194,4 @@ class SavingPolicy {
   std::vector<ActionEstimate> estimates_;
 };
 
-}  // namespace aos
+}

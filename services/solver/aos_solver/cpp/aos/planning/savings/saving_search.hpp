@@ -128,7 +128,7 @@ class SavingSearch {
       limit -= static_cast<double>(actions);
       steps -= static_cast<double>(actions) * steps_of_way(1);
       find_own_changes(actions);
-      const double resting = worths_[static_cast<std::size_t>(values_.action())].all();
+      const double resting = worths_[values_.action()].all();
       for (std::size_t a = 0; a < actions; ++a) {
         const double saved = worths_[a].all() - rest.returned(depth + 1);
         if (saved > 0 && worths_[a].all() > resting) found_.push_back({number, static_cast<int>(a), income<Model>(saved, depth + 1)});
@@ -184,4 +184,4 @@ class SavingSearch {
   std::vector<char> is_own_;                // [action * variables + variable]
 };
 
-}  // namespace aos
+}

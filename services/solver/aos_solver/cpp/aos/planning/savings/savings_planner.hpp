@@ -63,7 +63,7 @@ class SavingsPlanner final : public Planner<Model> {
     if (!missions_.is_known()) return estimates;
     const double running = belief.probability_of(Ending::running);
     const double open = running * std::max(policy_.seen() + missions_.loss(), 0.0) / 2;
-    const double moved = policy_.resting() - running * missions_.loss() + open - estimates[static_cast<std::size_t>(choice)].q;
+    const double moved = policy_.resting() - running * missions_.loss() + open - estimates[choice].q;
     for (ActionEstimate& estimate : estimates) {
       estimate.q += moved;
       estimate.standard_error = std::hypot(running * missions_.loss_error(), open);
@@ -112,7 +112,7 @@ class SavingsPlanner final : public Planner<Model> {
   static ActionEstimate told(const Planner<Model>& planner, const Question<Model>& question) {
     const Estimates estimates = planner.estimates(question.belief);
     const int choice = planner.choice(estimates, question.horizon, question.barred);
-    return planner.values(question.belief, estimates, choice)[static_cast<std::size_t>(choice)];
+    return planner.values(question.belief, estimates, choice)[choice];
   }
 
   const OptionsPlanner<Model>& options_;
@@ -124,4 +124,4 @@ class SavingsPlanner final : public Planner<Model> {
   bool yields_ = false;     // to rollouts, in this mission
 };
 
-}  // namespace aos
+}

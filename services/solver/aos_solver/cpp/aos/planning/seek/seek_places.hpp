@@ -197,4 +197,4 @@ class SeekPlaces {
   std::map<std::uint32_t, Ways> ways_;  // by the place where they begin
 };
 
-}  // namespace aos
+}

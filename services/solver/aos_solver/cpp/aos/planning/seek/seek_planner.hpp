@@ -50,7 +50,7 @@ class SeekPlanner final : public Planner<Model> {
     if (!seeks_) return simulations;
     has_sought_ = true;
     estimates_.assign(estimates_.size(), {});
-    estimates_[static_cast<std::size_t>(sought_.action)] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
+    estimates_[sought_.action] = {sought_.returned, static_cast<std::uint32_t>(sought_.missions), sought_.error};
     return simulations;
   }
 
@@ -86,4 +86,4 @@ class SeekPlanner final : public Planner<Model> {
   bool has_sought_ = false;  // in this mission
 };
 
-}  // namespace aos
+}

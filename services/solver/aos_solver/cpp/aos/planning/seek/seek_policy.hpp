@@ -193,7 +193,7 @@ class SeekPolicy {
     }
     steps_ -= static_cast<double>(places_.tests().size() * classes_) / 20;
     const std::size_t tried = std::min<std::size_t>(ranked_.size(), 4);
-    std::partial_sort(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(tried), ranked_.end(),
+    std::partial_sort(ranked_.begin(), ranked_.begin() + tried, ranked_.end(),
                       [](const auto& one, const auto& other) { return one.first > other.first; });
     for (std::size_t i = 0; i < tried; ++i) {
       const Test& test = *ranked_[i].second;
@@ -260,4 +260,4 @@ class SeekPolicy {
   std::vector<std::pair<double, const Test*>> ranked_;
 };
 
-}  // namespace aos
+}

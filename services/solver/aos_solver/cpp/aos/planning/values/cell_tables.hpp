@@ -129,4 +129,4 @@ class CellTables {
   std::vector<double> sampled_;                      // what is left
 };
 
-}  // namespace aos
+}

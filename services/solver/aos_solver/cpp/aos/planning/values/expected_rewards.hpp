@@ -30,4 +30,4 @@ class ExpectedRewards {
   FewOutcomes<Model> outcomes_;
 };
 
-}  // namespace aos
+}

@@ -17,13 +17,13 @@ class FewOutcomes {
  public:
   FewOutcomes() : is_left_out_(static_cast<std::size_t>(Model::action_count())) { paths_.report_to(&ignored_numbers); }
 
-  void leave_out(int action) { is_left_out_[static_cast<std::size_t>(action)] = true; }
+  void leave_out(int action) { is_left_out_[action] = true; }
 
   // Calls `visit(next state, step, probability)` for each outcome. False if the action is left out, as it is once it has had too
   // many outcomes, or a continuous draw that does not count by its mean; some outcomes may have been visited then.
   template <class Visit>
   bool visit_each(const typename Model::State& state, int action, Visit&& visit) {
-    if (is_left_out_[static_cast<std::size_t>(action)]) return false;
+    if (is_left_out_[action]) return false;
     const bool are_few = comes_to_an_end([&] { walk(state, action, visit); });
     if (!are_few) leave_out(action);
     return are_few;
@@ -45,4 +45,4 @@ class FewOutcomes {
   std::vector<bool> is_left_out_;
 };
 
-}  // namespace aos
+}

@@ -215,4 +215,4 @@ class GroupMissions {
   RandomWalk<Model> walk_;
 };
 
-}  // namespace aos
+}

@@ -118,4 +118,4 @@ class LeafCells {
   RandomWalk<Model> walk_;
 };
 
-}  // namespace aos
+}

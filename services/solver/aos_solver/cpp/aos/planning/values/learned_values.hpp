@@ -286,4 +286,4 @@ class LearnedValues final : public StateValues<Model> {
   std::vector<double> targets_;
 };
 
-}  // namespace aos
+}

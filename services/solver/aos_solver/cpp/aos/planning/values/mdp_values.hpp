@@ -161,4 +161,4 @@ class MdpValues final : public StateValues<Model> {
   std::vector<float> action_values_;
 };
 
-}  // namespace aos
+}

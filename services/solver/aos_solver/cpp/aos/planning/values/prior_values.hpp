@@ -31,14 +31,14 @@ inline std::vector<double> below_best(std::vector<double> worths) {
 template <class Model>
 std::vector<double> learned_prior(const LearnedValues<Model>& values, const Belief<Model>& belief, int horizon,
                                   Sampler& random) {
-  std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
+  std::vector<double> worths(Model::action_count());
   const auto states = std::clamp<std::size_t>(max_prior_steps / worths.size(), 20, 500);
   for (std::size_t i = 0; i < states; ++i) {
     const typename Model::State& state = belief.sample(random);
     const Sampler luck{random.bits()};
     if (Model::ending(state) != Ending::running) continue;
     for (int a = 0; a < Model::action_count(); ++a) {
-      worths[static_cast<std::size_t>(a)] += values.action_value(state, a, horizon, luck) / static_cast<double>(states);
+      worths[a] += values.action_value(state, a, horizon, luck) / static_cast<double>(states);
     }
   }
   return below_best(std::move(worths));
@@ -46,7 +46,7 @@ std::vector<double> learned_prior(const LearnedValues<Model>& values, const Beli
 
 template <class Model>
 std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
-  std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
+  std::vector<double> worths(Model::action_count());
   for (const auto& [number, weight] : space.weights_of(belief)) values.add_action_values(number, worths, weight);
   return below_best(std::move(worths));
 }
@@ -77,4 +77,4 @@ void draw_towards(const std::vector<double>& prior, std::vector<ActionEstimate>&
   }
 }
 
-}  // namespace aos
+}

@@ -25,7 +25,7 @@ class RandomWalk {
   void start() { repeats_ = 0; }
   int next(const State& state, Sampler& random) {
     find_odds(state, random);
-    if (repeats_-- > 0 && odds_[static_cast<std::size_t>(action_)] > 0) return action_;
+    if (repeats_-- > 0 && odds_[action_] > 0) return action_;
     action_ = random.choose(odds_.data(), Model::action_count(), 1);
     repeats_ = drawn_repeats(random) - 1;
     return action_;
@@ -40,7 +40,7 @@ class RandomWalk {
 
  private:
   void find_odds(const State& state, Sampler& random) {
-    odds_.resize(static_cast<std::size_t>(Model::action_count()));
+    odds_.resize(Model::action_count());
     Model::rollout_odds(state, odds_.data(), random);
   }
 
@@ -49,4 +49,4 @@ class RandomWalk {
   std::vector<double> odds_;
 };
 
-}  // namespace aos
+}

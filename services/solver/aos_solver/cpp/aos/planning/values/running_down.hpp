@@ -49,7 +49,7 @@ class RunningDown {
     lasts_.assign(Model::state_bytes(), true);
     for (std::size_t n = 0; n < numbers.size(); ++n) {
       if (!of_numbers[n].only_runs(taken)) continue;
-      std::fill_n(lasts_.begin() + static_cast<std::ptrdiff_t>(numbers[n].offset), numbers[n].leaf.size, false);
+      std::fill_n(lasts_.begin() + numbers[n].offset, numbers[n].leaf.size, false);
     }
   }
 
@@ -107,4 +107,4 @@ class RunningDown {
   std::vector<bool> lasts_;          // by byte of a state
 };
 
-}  // namespace aos
+}

@@ -87,4 +87,4 @@ class SeenBits {
   std::vector<std::uint64_t> words_ = std::vector<std::uint64_t>(1 << 12);
 };
 
-}  // namespace aos
+}

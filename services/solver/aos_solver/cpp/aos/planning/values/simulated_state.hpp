@@ -75,4 +75,4 @@ class ListedState {
   std::uint32_t number_;
 };
 
-}  // namespace aos
+}

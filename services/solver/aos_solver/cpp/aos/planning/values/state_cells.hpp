@@ -49,4 +49,4 @@ class StateCells {
   std::vector<CellVariable> variables_;
 };
 
-}  // namespace aos
+}

@@ -18,4 +18,4 @@ class StateValues {
   ~StateValues() = default;
 };
 
-}  // namespace aos
+}

@@ -67,4 +67,4 @@ inline constexpr double fewest_later_followers = 100;
 inline constexpr std::size_t fewest_alike = 10;
 inline constexpr std::size_t asked_followers = 16;
 
-}  // namespace aos
+}

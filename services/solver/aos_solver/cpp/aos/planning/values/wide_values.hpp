@@ -164,4 +164,4 @@ class WideValues final : public StateValues<Model> {
   std::vector<CompactModel::Outcome> outcomes_;
 };
 
-}  // namespace aos
+}
