@@ -22,10 +22,11 @@ _WITH_PYTHON = [
 def textmate_grammar() -> str:
     line = {"match": _opening(_names(_WORDS)), "captures": _captures()}
     comment = {"name": "comment.line.aos", "match": r"(?:^|\s)(?://|#).*$"}
+    outside_code = {"include": "#outside"}
     parts = [part for _, section in _WITH_PYTHON for part in section.parts.items()]
     python = _names(part for part in parts if _is(part, Body.PYTHON))
     with_python = _region(_names(_WITH_PYTHON), _names(_SECTIONS))
-    with_python["patterns"] = [_code(python, "python"), line, comment]
+    with_python["patterns"] = [_code(python, "python"), outside_code]
     own = [
         {"name": "variable.language.aos", "match": r"\b__[A-Za-z]\w*|\bstate_{0,2}(?=\.)"},
         {"name": "support.function.aos", "match": r"\bAOS(?:Utils::|\.)\w+"},
@@ -37,10 +38,9 @@ def textmate_grammar() -> str:
         "patterns": [
             with_python,
             _code(_names(word for word in _WORDS if _is(word, Body.CPP)), "cpp"),
-            line,
-            comment,
+            outside_code,
         ],
-        "repository": {"own": {"patterns": own}},
+        "repository": {"own": {"patterns": own}, "outside": {"patterns": [line, comment]}},
     }
     return json.dumps(grammar) + "\n"
 
