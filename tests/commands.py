@@ -6,6 +6,5 @@ from aos_deploy.cli import aos_app
 
 
 def aos(*arguments: str | Path) -> Result:
-    """The outcome of `aos` with these arguments."""
     words = [str(argument) for argument in arguments]
     return CliRunner().invoke(aos_app(words), words)

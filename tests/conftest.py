@@ -38,13 +38,11 @@ def root() -> Path:
 
 @pytest.fixture(scope="session")
 def bundles() -> Path:
-    """Our own document bundles."""
     return ROOT / "deploy" / "bundles"
 
 
 @pytest.fixture(scope="session")
 def problems() -> Path:
-    """Problem files of our own."""
     return TESTS / "data" / "problems"
 
 

@@ -10,7 +10,6 @@ from aos_protocol.documents import Project
 
 
 def project_of(files: Mapping[str, bytes]) -> Project:
-    """The project of documents without errors."""
     loaded = load_files(files)
     assert loaded.project is not None, loaded.diagnostics
     return loaded.project

@@ -134,7 +134,6 @@ class Gateway(NamedTuple):
         return with_body
 
     def post(self, path: str, body: Any = None) -> Answer:
-        """The answer to a request that writes."""
         return self.ask(path, "POST", json.dumps(body or {}).encode())
 
     @contextmanager

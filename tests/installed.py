@@ -28,7 +28,6 @@ class Installation:
         }
 
     def run(self, *command: str) -> subprocess.CompletedProcess[str]:
-        """Returns the result of a command, after its end."""
         name, *arguments = command
         line = [str(self.commands / name), *arguments]
         return subprocess.run(line, **self._place, text=True, capture_output=True, timeout=_PATIENCE_S)

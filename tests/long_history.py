@@ -155,7 +155,6 @@ def record_of(sequence: int) -> DecisionRecord:
 
 
 def memory_bytes(field: str) -> int:
-    """A field of this process's status, such as VmRSS."""
     lines = Path("/proc/self/status").read_text().splitlines()
     return 1024 * int(next(line for line in lines if line.startswith(f"{field}:")).split()[1])
 

@@ -25,12 +25,10 @@ def skill_of(text: str, file: str = "look.am") -> Skill:
 
 
 def emitted(text: str, low_level: LowLevelDocument | None = None) -> EmittedMapping:
-    """The generated module of a mapping's text."""
     return emit_mapping(skill_of(text), low_level)
 
 
 def project_in(folder: Path) -> Project:
-    """The project of a bundle without errors."""
     bundle = load_bundle(folder)
     assert bundle.project is not None, bundle.diagnostics
     return bundle.project

@@ -39,7 +39,6 @@ def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]
 
 
 def raised(mapping: LoadedMapping, then: Take | Finish) -> Raised:
-    """The fault of what comes after the beginning of an activation."""
     fields(mapping, {})
     answer = mapping.answer(then)
     assert isinstance(answer, Raised), answer

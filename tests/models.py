@@ -11,7 +11,6 @@ from aos_solver.child.engine import Engine, ImpossiblePolicy
 
 
 async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
-    """The compiled model of a bundle on the disk."""
     loaded = load_bundle(bundle)
     assert loaded.project is not None, loaded.diagnostics
     return await build_project(loaded.project, cache_dir)
@@ -24,7 +23,6 @@ async def built_bundles(bundles: Sequence[Path], cache_dir: Path) -> BuiltModel:
 
 
 async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:
-    """The compiled model of documents given as text."""
     loaded = load_files(encoded(files))
     assert loaded.project is not None, loaded.diagnostics
     return await build_project(loaded.project, cache_dir)
@@ -34,7 +32,6 @@ async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:
 async def engine_of(
     built: BuiltModel, *, seed: int = 1, impossible_observation: ImpossiblePolicy = "widen"
 ) -> AsyncIterator[Engine]:
-    """A running engine child."""
     async with await Engine.start(built, seed=seed, impossible_observation=impossible_observation) as engine:
         yield engine
 
@@ -47,7 +44,6 @@ async def engine_of_text(
     seed: int = 1,
     impossible_observation: ImpossiblePolicy = "widen",
 ) -> AsyncIterator[Engine]:
-    """A running engine child of documents given as text."""
     built = await built_text(files, cache_dir)
     async with engine_of(built, seed=seed, impossible_observation=impossible_observation) as engine:
         yield engine
@@ -55,6 +51,5 @@ async def engine_of_text(
 
 @asynccontextmanager
 async def engine_of_bundle(bundle: Path, cache_dir: Path, *, seed: int = 1) -> AsyncIterator[Engine]:
-    """A running engine child of a bundle on the disk."""
     async with engine_of(await built_bundle(bundle, cache_dir), seed=seed) as engine:
         yield engine

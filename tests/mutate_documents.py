@@ -40,8 +40,6 @@ Bundle = dict[str, bytes]
 
 
 class Findings:
-    """The results of the mutations so far."""
-
     def __init__(self) -> None:
         self.outcomes: Counter[str] = Counter()
         self.failures: list[str] = []
@@ -156,7 +154,6 @@ _MUTATORS = (_flip, _insert, _cut, _repeat, _swap_words, _replace_word, _move_li
 
 
 def main() -> int:
-    """The command."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -17,8 +17,6 @@ Robot = Callable[[Activate], Outcome]
 
 
 class Clock(SystemClock):
-    """Goes on when the test says so."""
-
     def __init__(self) -> None:
         super().__init__()
         self.now_s = 0.0

@@ -45,7 +45,6 @@ class Played(msgspec.Struct, frozen=True):
         return [step["observation"] for step in self.steps]
 
     def values(self, name: str) -> list[str]:
-        """A variable's value at the start and after each step."""
         return [self.initial["state"][name], *(step["state"][name] for step in self.steps)]
 
 
@@ -105,7 +104,6 @@ def json_text(document: Mapping[str, Any], kind: str, name: str, project: str = 
 
 
 def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
-    """The emitted model of a project without errors."""
     program, diagnostics = lower(project)
     assert program is not None, diagnostics
     return emit(program), diagnostics

@@ -41,7 +41,6 @@ def small(
 
 
 def command(*words: str, is_restarted: bool = False) -> Program:
-    """An adapter `robot` that is a program of the user's own."""
     return Program(
         name="robot",
         command=words,
@@ -80,7 +79,6 @@ class System:
             raise root_cause(group) from group
 
     async def error(self, *programs: Program) -> AosError:
-        """Returns the error of a system of these programs."""
         try:
             async with self.up(*programs) as supervisor:
                 await supervisor.until_ready()
@@ -90,11 +88,9 @@ class System:
         pytest.fail("the system did not fail")
 
     def order(self, state: str) -> list[str]:
-        """The services that came into a state, in this order."""
         return [event.service for event in self.events if event.state == state]
 
     async def until(self, service: str, state: str, times: int = 1) -> None:
-        """Returns when a service has come into a state so many times."""
         while sum((event.service, event.state) == (service, state) for event in self.events) < times:
             self._news.clear()
             await self._news.wait()

@@ -53,7 +53,6 @@ async def game(
 
 
 async def play(bundle: str, games: int, opponent: str, dry_centre: float) -> None:
-    """Plays, and prints each different game once, and how they ended."""
     endings: Counter[str] = Counter()
     counts: Counter[tuple[str, str]] = Counter()
     chance = random.Random(f"{bundle} {opponent}")

@@ -141,7 +141,6 @@ class Walk:
 
 
 def main() -> int:
-    """The walk with a wheel, told step by step."""
     from tests.installed import built_wheel, install
 
     root = PAGE.parents[1]

@@ -54,7 +54,6 @@ class Wrong(msgspec.Struct, frozen=True):
     robot: WrongRobot | None
 
     def verdict(self, trials: list[Trial], by: str) -> Verdict:
-        """Judges these missions as an experiment would."""
         truth = self.part.truth or self.experiment.truth
         return judge(asking_the_world(self.claim, by, truth), trials, by)
 

@@ -29,8 +29,6 @@ class ReportedNumber(msgspec.Struct, frozen=True):
 
 
 class Report(msgspec.Struct, frozen=True):
-    """One place where a draw is reported."""
-
     mention: Mention
     draw: Call
 
@@ -52,7 +50,6 @@ class Misuse(msgspec.Struct, frozen=True):
 
 
 def reports_in(cpp: Cpp) -> tuple[Report, ...]:
-    """The reports of a snippet of a dynamic model."""
     return tuple(found for found in _read(cpp) if isinstance(found, Report))
 
 

@@ -42,13 +42,11 @@ class AdapterProcess:
         return self.child
 
     async def ask(self, call: SkillCall) -> SkillResult:
-        """The answer to a call; the error of one that fails."""
         return await self.bus.ask(self.keys.call(call.path), call, SkillResult, timeout_s=HANG_S)
 
     async def cancel(self, path: str) -> Cancelled:
         return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=HANG_S)
 
     async def stop(self):
-        """Ends the process, where one was started."""
         if self.child is not None:
             await self.child.stop(10.0)

@@ -52,7 +52,6 @@ def keys() -> Keys:
 
 @pytest_asyncio.fixture
 async def bus(endpoint: str) -> AsyncIterator[Bus]:
-    """A client of the module's router, named `client`."""
     async with await Bus.open(endpoint, sender="client") as client:
         yield client
 
@@ -90,7 +89,6 @@ def finer(bundles: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The URI of the module's roscore."""
     skip_without_ros1()
     with roscore(tmp_path_factory.mktemp("ros")) as uri:
         yield uri

@@ -111,11 +111,9 @@ class Adapter:
         await self._bus.announce(self._token(path, adapter))
 
     def withdraw(self, path: str, adapter: str = "scripted"):
-        """Says that they no longer are."""
         self._bus.withdraw(self._token(path, adapter))
 
     async def lack(self, path: str, reason: str):
-        """Tells why it does not serve a path."""
         await self._bus.announce(self._keys.lack(Lack("scripted", reason, path)))
 
     @property
@@ -183,11 +181,9 @@ class System:
             await self._running
 
     async def state(self, revision: int) -> messages.MappingState:
-        """The state of the mappings once they are those of a revision."""
         return await self.state_when(lambda state: state.revision >= revision)
 
     async def refusal(self, revision: int) -> messages.MappingState:
-        """The state of the mappings once a revision is refused."""
         return await self.state_when(lambda state: state.refused >= revision)
 
     async def state_when(self, holds: Callable[[messages.MappingState], bool]) -> messages.MappingState:
@@ -229,7 +225,6 @@ class System:
         return waiting, is_still
 
     async def logged(self, text: str) -> str:
-        """Returns what the service has logged once a text is in it."""
         async with asyncio.timeout(HANG_S):
             while text not in self._log:
                 self._has_logged.clear()
@@ -304,8 +299,6 @@ async def running_system(
 
 
 def answering(fields: dict[str, Any]) -> Callable[[messages.SkillCall], Awaitable[dict[str, Any]]]:
-    """A skill that ends at once with this result."""
-
     async def answer(_: messages.SkillCall) -> dict[str, Any]:
         return fields
 
@@ -316,6 +309,5 @@ succeed = answering({"success": True})
 
 
 async def hang(_: messages.SkillCall) -> dict[str, Any]:
-    """A skill that never ends."""
     await asyncio.Event().wait()
     return {}

@@ -16,7 +16,6 @@ ROBOT = "async def sense(call):\n    return {}\n"
 
 
 async def launch(system: System, endpoint: str, folder: Path, robot: str = ROBOT) -> Child:
-    """An adapter process that serves /sense."""
     (folder / "robot.py").write_text(robot)
     return await started_adapter(
         system.keys,

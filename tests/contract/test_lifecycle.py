@@ -28,8 +28,6 @@ lifecycle.run_service(Settings, serve)
 
 
 class Host:
-    """Starts small services in a directory."""
-
     def __init__(self, run_dir: Path, endpoint: str):
         self.run_dir = run_dir
         self._endpoint = endpoint

@@ -44,7 +44,6 @@ StartSystem = Callable[..., AbstractAsyncContextManager[System]]
 
 @pytest.fixture
 def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str, bundles: Path) -> StartSystem:
-    """Starts the middleware with these settings."""
     return partial(running_system, bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer")
 
 

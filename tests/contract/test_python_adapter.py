@@ -101,8 +101,6 @@ class Arm:
 
 
 class Robot(AdapterProcess):
-    """Skills of `robot.py`, by their paths."""
-
     async def launch(self, **bound: str) -> Child:
         (self.folder / "robot.py").write_text(ROBOT)
         return await self.launched(

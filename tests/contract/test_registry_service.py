@@ -31,7 +31,6 @@ def written_settings(settings: Settings) -> Path:
 async def running_registry(
     run_dir: Path, endpoint: str, bus: Bus, keys: Keys, *, quiet_s: float = 0.1
 ) -> AsyncIterator[Child]:
-    """A registry process, from ready to stopped."""
     settings = Settings(
         robot="test", service="registry", endpoint=endpoint, run_dir=str(run_dir), quiet_s=quiet_s
     )
@@ -48,7 +47,6 @@ async def running_registry(
 
 @pytest_asyncio.fixture
 async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Path]:
-    """The run directory of a running registry."""
     async with running_registry(tmp_path / "run", endpoint, bus, keys):
         yield tmp_path / "run"
 

@@ -59,7 +59,6 @@ class Robot(AdapterProcess):
     async def refusal(
         self, path: str, step: int = 1, fields: dict[str, Any] | None = None, **how: Any
     ) -> AosError:
-        """The error that a call ends with."""
         with pytest.raises(AosError) as error:
             await self.call(path, step, fields, **how)
         return error.value

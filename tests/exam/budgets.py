@@ -146,7 +146,6 @@ async def _row(folder: Path, arguments: argparse.Namespace, cache_dir: Path) -> 
 
 
 def ratio_of(costs: Sequence[Cost]) -> float:
-    """Returns the ratio of the dearest simulation to the cheapest one."""
     known = [cost.each_us for cost in costs if cost.counted]
     return max(known) / min(known) if known else 1.0
 

@@ -160,8 +160,6 @@ def _skill(last: Register, sink: str, moves: Sequence[str]) -> list[str]:
 
 
 def _world(length: int, sink: str, share: float, prize: int) -> World:
-    """Returns the meaning of the documents, as a state of the registers and the answer."""
-
     def step(state: State, action: int) -> list[Outcome]:
         answer, *now = state
         value = now[-1]

@@ -50,7 +50,6 @@ class Failures:
         )
 
     def table(self) -> str:
-        """A line for each fault, and one for all."""
         by_fault: dict[str, list[Played]] = defaultdict(list)
         for trial in self.played:
             by_fault[trial.fault].append(trial)

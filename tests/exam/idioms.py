@@ -20,7 +20,6 @@ class Register:
     kind: str
 
     def declaration(self) -> str:
-        """Returns its declaration in the environment document."""
         kind = {"enum": "Light", "field": "Box"}.get(self.kind, self.kind)
         if self.kind == "array":
             return f"state_variable: int {self.name} []\ncode:\nstate.{self.name} = {{0, 0, 0}};\n"

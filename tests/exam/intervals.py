@@ -92,7 +92,6 @@ class Intervals(Answers):
                 self.counts["changes held"] += is_inside[near]
 
     def faults_text(self, problem: Problem, answer: dict[str, Any]) -> str:
-        """Returns what is wrong about a model, for people."""
         if "cases" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         return f"{problem.name}: a margin that was told as sure has the other sign: {answer['cases']}"
@@ -147,5 +146,4 @@ class Intervals(Answers):
 
 
 def _overlaps(value: float, error: float, low: float, high: float) -> bool:
-    """Says whether a value is within two standard errors of the truth."""
     return low - 2 * error - _ROUNDING <= value <= high + 2 * error + _ROUNDING

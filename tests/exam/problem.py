@@ -58,7 +58,6 @@ class Problem:
     rows: Mapping[tuple[int, int], Sequence[tuple[float, int, int, float]]]
 
     def with_horizon(self, horizon: int) -> Problem:
-        """The same with so many decisions."""
         return dataclasses.replace(self, world=dataclasses.replace(self.world, horizon=horizon))
 
     def text(self) -> str:

@@ -41,7 +41,6 @@ class Bounds(Answers):
         return bool(answer["false"])
 
     def faults_text(self, problem: Problem, answer: dict[str, Any]) -> str:
-        """The failure of a model for people."""
         if "claims" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         lines = [
@@ -197,7 +196,6 @@ class Regrets(Answers):
 
 
 def _times_text(times_s: list[float]) -> str:
-    """Percentiles of decision times, for people."""
     ranked = sorted(1000 * time_s for time_s in times_s)
     half, most = (ranked[int(share * (len(ranked) - 1))] for share in (0.5, 0.95))
     shares = f"50 % within {half:.0f} ms, 95 % within {most:.0f} ms, longest {ranked[-1]:.0f} ms"

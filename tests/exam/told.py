@@ -44,7 +44,6 @@ class Told:
         return abs(self.value - self.returned) <= max(2 * error, ALLOWED_SHARE * self.range)
 
     def row(self) -> str:
-        """Returns a row of a table, for bundles."""
         proven = f"{_text(self.at_least)} to {_text(self.at_most)}"
         cells = (
             self.problem,
@@ -95,7 +94,6 @@ class Values(Answers):
         return not all(compared.is_right for _, compared in found)
 
     def faults_text(self, problem: Problem, answer: dict[str, Any]) -> str:
-        """Returns what is wrong about a model, for people."""
         if "optimum" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         found = (told_of(problem.name, entry, answer) for entry in answer["planners"])

@@ -39,7 +39,6 @@ class Log:
         return [line for line in self.all_lines if line.who == self._who]
 
     def has(self, number: int, kind: str, name: str, way: str) -> bool:
-        """Says whether an attempt of a round has been played."""
         wanted = (number, kind, name, way)
         return any((line.round, line.kind, line.name, line.way) == wanted for line in self.lines)
 

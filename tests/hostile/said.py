@@ -119,7 +119,6 @@ class Command:
 
     @property
     def said_bytes(self) -> int:
-        """The length of what it has said."""
         return self._said.stat().st_size
 
     def end(self, after_s: float = 0.0) -> str:

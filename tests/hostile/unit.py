@@ -56,7 +56,6 @@ class Machine:
         self._said = said
 
     def inside(self, *words: str) -> str:
-        """Returns the output of a command in systemd's namespaces."""
         command = ["nsenter", "-t", str(self._pid), "-m", "-p", *words]
         return subprocess.run(command, capture_output=True, text=True, check=False).stdout
 
@@ -64,7 +63,6 @@ class Machine:
         return self.inside("systemctl", "show", "--value", "-p", name, _UNIT).strip()
 
     def until(self, *, state: str = "", said: str = "") -> bool:
-        """Waits for a state of the unit, or for words of the mission."""
         ends_s = time.monotonic() + _PATIENCE_S
         while time.monotonic() < ends_s:
             if said and self._said.exists() and said in self._said.read_text():

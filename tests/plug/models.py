@@ -55,7 +55,6 @@ def _odds(source: random.Random) -> list[float]:
 
 
 def responses_of(problem: Problem) -> list[int]:
-    """The responses that may be observed, without none."""
     seen = {response for sensing in problem.sensings for response, _ in sensing}
     return sorted(seen - {NOTHING_SEEN}) or [0]
 

@@ -195,7 +195,6 @@ class _Game:
             await self._next_event(_USED_TIMEOUT_S)
 
     async def _until(self, seconds: float):
-        """Lets so much time pass."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(seconds):
                 await asyncio.Event().wait()

@@ -12,7 +12,6 @@ from aos_solver.building.build import BuiltModel
 
 @pytest.fixture
 def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
-    """A system of small services in a folder of its own."""
     monkeypatch.setenv("PYTHONPATH", str(TESTS))
     return System(tmp_path)
 
@@ -30,7 +29,6 @@ def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[
 
 @pytest.fixture
 def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
-    """A gateway, and the directory of a mission that goes on."""
     with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
         yield served, run
 

@@ -45,7 +45,6 @@ def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module", autouse=True)
 def scratch(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The folder for temporary files of everything that is started."""
     folder = tmp_path_factory.mktemp("scratch")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMPDIR", str(folder))
@@ -124,7 +123,6 @@ def latest(deploy_file: Path) -> Path:
 
 
 def has_a_bus(run: Path) -> bool:
-    """Returns whether anybody listens at the run's socket."""
     path = json.loads((run / "run.json").read_text())["endpoint"].removeprefix("unixsock-stream/")
     with socket.socket(socket.AF_UNIX) as probe:
         return probe.connect_ex(path) == 0

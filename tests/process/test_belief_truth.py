@@ -61,7 +61,6 @@ class RandomModel:
         return [weight / total if total else 0.0 for weight in joint], total
 
     def drawn(self, belief: list[float], dice: random.Random) -> tuple[int, int]:
-        """An action, and a response that it may well have."""
         action = dice.randrange(ACTIONS)
         odds = [self.updated(belief, action, response)[1] for response in range(RESPONSES)]
         return action, dice.choices(range(RESPONSES), odds)[0]
@@ -190,7 +189,6 @@ DEPLETING = {
 
 
 async def turn(engine: Engine, card: int, hand: list[bool]) -> BeliefUpdate:
-    """Turns a card, which the belief holds possible."""
     update = await engine.update(f"turn(number={card})", "yes" if hand[card] else "no")
     assert not update.is_impossible, card
     return update

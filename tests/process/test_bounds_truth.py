@@ -8,7 +8,6 @@ from processes import COMMAND_S
 
 
 def checked(cache_dir: Path, first_seed: int, models: int, work: int) -> tuple[list[Any], Any]:
-    """The claims that do not hold, and what was counted."""
     command = [truth_program(cache_dir), str(first_seed), str(models), str(work)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, check=False)
     *false, counted = map(json.loads, done.stdout.splitlines())

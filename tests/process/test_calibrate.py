@@ -71,7 +71,6 @@ def recorded(folder: Path, deploy_file: str, first_seed: int, missions: int) -> 
 
 @pytest.fixture(scope="module")
 def missions_of_finer(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Forty missions of the finer Armadillo, from seed 1 on."""
     folder = tmp_path_factory.mktemp("finer")
     recorded(folder, "armadillo.yaml", 1, 40)
     return folder

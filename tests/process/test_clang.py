@@ -58,7 +58,6 @@ def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_
 
 
 def compile_model(project: Project, compiler: Compiler, cache_dir: Path):
-    """Compiles the emitted model; RuntimeError with the compiler's messages if that fails."""
     emitted, _ = lowered(project)
 
     def make(folder: Path):

@@ -29,7 +29,6 @@ class Recorded(Engine):
 
 
 async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
-    """One line of each command that an engine asks."""
     built = await built_text(LAMP, cache_dir)
     executable.append(built.executable)
     Recorded.asked = []

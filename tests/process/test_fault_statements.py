@@ -139,7 +139,6 @@ BUNDLE = {"ward.ef": WARD, **DOCUMENTS, "slip.am": ANSWERING, "trip.am": ANSWERI
 
 
 async def fault_of(built: BuiltModel, skill: str, name: str) -> ModelError:
-    """The fault of a mission whose second action is the faulty one."""
     async with engine_of(built) as running:
         actions = [action.name for action in running.description.actions]
         await running.reset_world(1)

@@ -134,5 +134,4 @@ async def test_limits_hold(limits: Limits, code: str, status: int, written: dict
 
 
 def sizes(folder: Path) -> dict[str, int]:
-    """The bytes of each file."""
     return {path.name: path.stat().st_size for path in folder.iterdir()}

@@ -63,7 +63,6 @@ class Editor(LanguageClient):
             self.published.put_nowait((name, list(params.diagnostics)))
 
     async def findings(self, name: str) -> list[types.Diagnostic]:
-        """The next findings about a file."""
         async with asyncio.timeout(HANG_S):
             while True:
                 file, found = await self.published.get()

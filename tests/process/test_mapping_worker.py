@@ -57,7 +57,6 @@ async def fault_of(evaluator: Evaluator, result: dict[str, object] | None = None
 
 
 async def works(evaluator: Evaluator) -> bool:
-    """Returns whether the next activation finds a worker."""
     return await evaluator.begin({}) == {}
 
 

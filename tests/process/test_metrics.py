@@ -10,7 +10,6 @@ from long_run import write_long_run
 
 
 def samples(served: Gateway) -> dict[str, float]:
-    """The samples now, by name and labels."""
     answer = served.ask("/metrics")
     assert (answer.status, answer.headers["content-type"]) == (
         200,
@@ -22,7 +21,6 @@ def samples(served: Gateway) -> dict[str, float]:
 
 @contextmanager
 def resumed(run: Path, cache_dir: Path) -> Iterator[None]:
-    """Somebody takes a run up, until the block ends."""
     with running(run.parents[1], cache_dir, "aos-up", "--resume", run, "--json") as process:
         assert process.stdout is not None
         next(line for line in process.stdout if json.loads(line)["event"] == "decision")

@@ -51,8 +51,6 @@ async def open_door(call, door):
 
 
 class System:
-    """A running `aos-up --stay`, and the commands beside it."""
-
     def __init__(self, folder: Path, process: subprocess.Popen[str], environment: dict[str, str]):
         self.folder = folder
         self.process = process
@@ -68,7 +66,6 @@ class System:
         self._said.put({"event": "end"})
 
     def until(self, kind: str, **fields: Any) -> dict[str, Any]:
-        """The next event of the kind with these fields."""
         while (event := self._said.get(timeout=HANG_S))["event"] != "end":
             if event["event"] == kind and fields.items() <= event.items():
                 return event
@@ -83,12 +80,10 @@ class System:
         return json.loads((self.run / "run.json").read_text())
 
     def be_slow(self, is_slow: bool):
-        """Lets the robot listen for ever, or not."""
         slow = self.folder / "slow"
         slow.touch() if is_slow else slow.unlink(missing_ok=True)
 
     def aos(self, *arguments: str) -> tuple[int, str, str]:
-        """Exit code, output and errors of a command."""
         done = subprocess.run(
             [BIN / "aos", *arguments],
             cwd=self.folder,
@@ -100,7 +95,6 @@ class System:
         return done.returncode, done.stdout, done.stderr
 
     def interrupt(self) -> int:
-        """The exit code after Ctrl-C."""
         self.process.send_signal(signal.SIGINT)
         return self.ended()
 

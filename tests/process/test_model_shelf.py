@@ -56,13 +56,11 @@ class Workshop:
         return self.engines[-1]
 
     async def taken(self, running: RunningModel) -> RunningModel:
-        """The model after a boundary."""
         takeover = await self.shelf.newest(running, self.past)
         return running if takeover is None else takeover.model
 
     @property
     def living(self) -> list[Engine]:
-        """Those with a child process."""
         return [engine for engine in self.engines if engine.pid is not None]
 
 
@@ -80,7 +78,6 @@ async def workshop(cache_dir: Path) -> AsyncIterator[Workshop]:
 
 
 async def running_lamp(made: Workshop) -> RunningModel:
-    """Revision 1 in a mission that has seen light."""
     await made.shelf.make(lamp(1))
     running = await made.shelf.first()
     made.past.steps.append(LIGHT)

@@ -69,7 +69,6 @@ def posterior(prior: Mapping[int, float], likelihood: Mapping[int, float]) -> tu
 
 
 async def levels(engine: Engine) -> dict[int, float]:
-    """The engine's belief over the levels."""
     summary = await engine.summary()
     (values,) = (marginal.values for marginal in summary.marginals if marginal.variable == "level")
     return {int(level): probability for level, probability in values.items()}

@@ -17,7 +17,6 @@ FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_
 
 @pytest.fixture(autouse=True)
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """A new project with an adapter that is a program."""
     monkeypatch.chdir(tmp_path)
     aos("new", "project", "fetch")
     aos("new", "adapter", "command", "--in", "fetch")

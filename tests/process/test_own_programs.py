@@ -216,7 +216,6 @@ def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def project(template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of that robot's project, for one test."""
     monkeypatch.chdir(tmp_path)
     shutil.copytree(template, tmp_path, dirs_exist_ok=True)
     return tmp_path

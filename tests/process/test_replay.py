@@ -14,7 +14,6 @@ from aos_solver.study.comparing import Comparison, compared
 
 
 async def comparisons(played: Played) -> list[Comparison]:
-    """Each decision and outcome with what its replay gave."""
     replay = played.replay(decides=True)
     try:
         return [

@@ -30,7 +30,6 @@ robot = breaking(jams=2, is_late=3)
 
 
 async def played(tiger: BuiltModel) -> Rows:
-    """The journal of a mission of the seed 3."""
     around = Surroundings(robot)
     async with engine_of(tiger, seed=3) as engine:
         model = RunningModel(1, engine)
@@ -45,7 +44,6 @@ async def played(tiger: BuiltModel) -> Rows:
 
 
 async def replay_of(rows: Rows, run: Path, bundles: Path) -> Replay:
-    """The replay of a run of tiger whose journal has these rows."""
     write_run(rows, run, bundles)
     return await replayed(run, lambda _: None)
 

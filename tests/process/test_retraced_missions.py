@@ -46,8 +46,6 @@ def robot(request: Activate) -> Outcome:
 
 
 class Growing(Surroundings):
-    """Surroundings whose documents change after some steps."""
-
     def __init__(self, successors: dict[int, Successor]):
         super().__init__(robot)
         self._successors = successors
@@ -71,7 +69,6 @@ def terms(epoch: int) -> Terms:
 
 
 async def whole(cache_dir: Path) -> Rows:
-    """The journal of the mission without a death."""
     engines = {
         number: await Engine.start(await built_text(files, cache_dir), seed=1)
         for number, files in REVISIONS.items()

@@ -74,7 +74,6 @@ class Up:
         return self.ended()
 
     def ended(self) -> tuple[int, str]:
-        """Exit code and errors."""
         assert self._process.stderr is not None
         error = self._process.stderr.read()
         self._reader.join(HANG_S)
@@ -135,7 +134,6 @@ def place(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Place:
 
 @pytest.fixture(scope="module")
 def mission(place: Place) -> Iterator[Path]:
-    """The run directory of a mission that goes on."""
     with place.up() as up:
         assert up.has_decided()
         yield place.latest

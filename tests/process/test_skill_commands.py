@@ -40,14 +40,11 @@ runs: runs
 
 
 class Running:
-    """A mission, and commands beside it."""
-
     def __init__(self, process: subprocess.Popen[str]):
         self.process = process
         self.events: list[dict[str, Any]] = []
 
     def until(self, **wanted: str) -> dict[str, Any]:
-        """The next event that says so."""
         assert self.process.stdout is not None
         for line in self.process.stdout:
             self.events.append(json.loads(line))

@@ -18,7 +18,6 @@ from aos_runtime.disk.mission_folders import mission_folder
 
 
 def followed(root: Path, run: Path) -> subprocess.CompletedProcess[str]:
-    """The example program of the pages, run on a mission."""
     example = [sys.executable, root / "docs/examples/follow_decisions.py", run]
     return subprocess.run(example, capture_output=True, text=True, timeout=COMMAND_S, check=False)
 

@@ -17,7 +17,6 @@ BUNDLE = "armadillo-rough"
 
 @pytest.fixture
 async def played(bundles: Path, cache_dir: Path) -> Played:
-    """A mission of two exact decisions."""
     return await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=2)
 
 

@@ -17,7 +17,6 @@ from aos_solver.mission.models.takeover import REPLAY_S, RunningModel, Successor
 
 @asynccontextmanager
 async def hall(cache_dir: Path, past: Past) -> AsyncIterator[RunningModel]:
-    """A mission by the documents, with a past."""
     async with engine_of_text(HALL, cache_dir) as engine:
         for evidence in past.steps:
             await updated(engine, evidence, past.refuted_below)

@@ -41,8 +41,6 @@ def rows_of(journalled: list[tuple[str, Message]]) -> list[JournalRow]:
 async def played(
     built: BuiltModel, memory: MissionMemory, calls: list[Activate]
 ) -> tuple[MissionState, Surroundings]:
-    """The rest of a mission, and what it journalled."""
-
     def counted(request: Activate) -> Outcome:
         calls.append(request)
         return robot(request)

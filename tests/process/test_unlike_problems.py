@@ -107,7 +107,6 @@ __moduleResponseStr = "alarm " + std::to_string(AOSUtils::SampleDiscrete(odds));
 
 
 async def first_actions(files: dict[str, str], cache_dir: Path, simulations: int) -> list[str]:
-    """The decisions of three seeds at the initial belief."""
     async with engine_of_text(files, cache_dir) as engine:
         plans = [await engine.plan(simulations=simulations, seed=seed, planner="auto") for seed in (1, 2, 3)]
     return [plan.best.action for plan in plans]

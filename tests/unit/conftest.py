@@ -5,7 +5,6 @@ import pytest
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with a bundle of two skills and a world."""
     (tmp_path / "bundle").mkdir()
     for name in ("rover.ef", "drive.sd", "drive.am", "look.sd", "look.am"):
         (tmp_path / "bundle" / name).write_text("")

@@ -373,7 +373,6 @@ def text_of(path: Path) -> str:
 
 
 async def answers(built: BuiltModel) -> dict[str, Any]:
-    """Returns what the engine says about itself when it starts."""
     child = await asyncio.create_subprocess_exec(
         built.executable, "/dev/null", "/dev/null", "1", "widen", "12",
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,

@@ -8,7 +8,6 @@ PARAMETERLESS = "project: test\ndynamic_model:\n"
 
 
 def skill_over(values: str) -> str:
-    """A skill with one parameter, which takes these values."""
     possible = (
         f"for (int by : std::vector<int>{{{values}}}) __possibleParameters.push_back(std::make_tuple(by));"
     )

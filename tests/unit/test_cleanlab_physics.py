@@ -22,7 +22,6 @@ def file(root: Path) -> CleanLabFile:
 
 
 def call(world: CleanLab, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
-    """Runs a skill to its end, as the adapter does."""
     world.begin()
     answer = KIND.skills[path](world, fields or {})
     world.stop()
@@ -34,7 +33,6 @@ def go(world: CleanLab, place: Place):
 
 
 def at_station(file: CleanLabFile, name: str) -> CleanLabFile:
-    """The robot stands there from the beginning."""
     return replace(file, robot=file.stations[name])
 
 

@@ -21,7 +21,6 @@ def write(tmp_path: Path, bundles: Path) -> Path:
 
 
 def found_in(path: Path, text: str) -> Diagnostic:
-    """The one mistake of a file that ends with this text."""
     path.write_text(path.read_text() + text)
     with pytest.raises(DeployError) as caught:
         project_of(read_deploy_file(path))

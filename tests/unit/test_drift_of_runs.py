@@ -19,7 +19,6 @@ PREDICTED = (PredictedObservation("pressed", 0.9), PredictedObservation("stuck",
 
 
 def write_run(runs: Path, number: int, *responses: str, model: str = "d") -> Path:
-    """The directory of a run whose skill has given these responses."""
     run = RunDirectory.create(runs, "lamp", now_ns=(1_700_000_000 + number) * 10**9)
     run.write_record(
         RunRecord(robot="lamp", endpoint="tcp/127.0.0.1:1", deploy_file="l.yaml", seed=1, started="", pid=1)

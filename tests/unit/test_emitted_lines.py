@@ -18,7 +18,6 @@ LANGUAGE = re.compile(
 
 
 def own_lines(emitted: EmittedModel) -> list[str]:
-    """The lines without a document's text."""
     lines = enumerate(emitted.cpp.split("\n"), 1)
     return [line for number, line in lines if number not in emitted.origins and not line.startswith("#line")]
 

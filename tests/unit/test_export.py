@@ -114,7 +114,6 @@ def run(tmp_path: Path) -> Path:
 
 
 def messages_of(file: Path) -> list[tuple[str, dict[str, Any], Any, int]]:
-    """Topic, schema, content and time of each message."""
     reader = pytest.importorskip("mcap.reader", reason="set up before mcap was among the dependencies")
     with file.open("rb") as stream:
         return [

@@ -23,8 +23,6 @@ def outcome(skill: str, status: str, fault: Fault | None = FAULT) -> Outcome:
 
 
 class Mission:
-    """Takes outcomes at a time that the test sets."""
-
     def __init__(self, **rules: Any):
         self.failures = Failures(FailureRules(**rules))
         self.now_s = 0.0

@@ -9,7 +9,6 @@ from aos_protocol.messages import ActivationId, DecisionRecord, Fault, ModelDrif
 
 
 def counted(*records: DecisionRecord) -> dict[str, str]:
-    """The samples after these records, by name and labels."""
     families, engine_starts = Families(), {}
     for record in records:
         families.take("r2", record, engine_starts)

@@ -100,7 +100,6 @@ class History:
         return [place for place, entry in enumerate(entries) if entry.kind == kind][number]
 
     def change(self, kind: str, number: int, entries: list[Entry] | None = None, **changes: Any):
-        """Changes fields of the message in a row."""
         entries = self.journal if entries is None else entries
         place = self.place(kind, number, entries)
         entries[place] = entries[place]._replace(payload=replace(entries[place].payload, **changes))
@@ -328,7 +327,6 @@ def _motion_while_it_holds(history: History):
 
 
 def _steer(history: History, place: int, *steers: messages.Steer):
-    """Puts what somebody wants before a row."""
     stamp_ns = history.journal[place].stamp_ns
     history.journal[place:place] = [Entry(stamp_ns, "steered", steer) for steer in steers]
 

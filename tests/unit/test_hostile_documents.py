@@ -18,7 +18,6 @@ from aos_runtime.processes.lifecycle import root_cause
 
 
 def loaded(code: str = "", **replaced: str) -> LoadedBundle:
-    """The bundle of a skill that runs the code."""
     files = counting("lamp", "press", code=code, steps="3")
     for before, after in replaced.items():
         files = {name: text.replace(before, after) for name, text in files.items()}

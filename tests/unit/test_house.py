@@ -29,7 +29,6 @@ def functions_of(path: Path) -> Iterator[Function]:
 
 
 def tracked_bytes(folder: Path) -> int:
-    """The size of all files that git tracks in a checkout, as they are there."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=folder, capture_output=True, check=True).stdout
     paths = [folder / name.decode() for name in listed.split(b"\0") if name]
     return sum(path.lstat().st_size for path in paths if path.is_file())
@@ -55,7 +54,6 @@ def is_command(function: Function, options: frozenset[str]) -> bool:
 
 
 def options_in(path: Path) -> frozenset[str]:
-    """The names that a file gives to annotations of typer."""
     return frozenset(
         target.id
         for node in ast.parse(path.read_bytes()).body

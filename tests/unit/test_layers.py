@@ -11,7 +11,6 @@ LINT = Path(sys.executable).parent / "lint-imports"
 
 
 def broken(root: Path, configuration: Path) -> list[str]:
-    """The contracts that the sources do not keep."""
     command = [LINT, "--config", configuration, "--no-cache"]
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=COMMAND_S, check=False)
     assert "Contracts: " in done.stdout, done.stdout + done.stderr

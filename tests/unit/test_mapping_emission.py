@@ -36,7 +36,6 @@ def mistakes(text: str) -> list[tuple[str, str]]:
 
 
 def refusal_of(mapping: AbstractionMapping) -> DocumentError:
-    """Returns the reason why a mapping made by hand cannot be generated."""
     with pytest.raises(DocumentError) as refusal:
         emit_mapping(replace(skill_of(HEAD), mapping=mapping))
     return refusal.value
@@ -125,7 +124,6 @@ def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path)
 
 
 def kettle(old: bytes, new: bytes) -> dict[str, bytes]:
-    """The language page's documents after a change of the mapping."""
     files = read_bundle_files(Path(__file__).parents[2] / "docs" / "examples" / "kettle-json")[0]
     assert old in files[GLUE]
     return files | {GLUE: files[GLUE].replace(old, new)}

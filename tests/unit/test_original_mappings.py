@@ -15,7 +15,6 @@ from aos_middleware.mappings.revisions import emit_project
 
 @pytest.fixture
 def mapping() -> dict[str, Any]:
-    """The mapping with every construct, to be changed."""
     return copy.deepcopy(MAPPING)
 
 

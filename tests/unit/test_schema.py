@@ -132,7 +132,6 @@ OBSOLETE = {
 
 
 def _full(kind: str) -> Any:
-    """A document of a kind with every key of the schema."""
     schema = SCHEMAS["plp"]()
     definition = next(
         rule["then"]["$ref"] for rule in schema["allOf"] if kind in json.dumps(rule["if"]).split('"')

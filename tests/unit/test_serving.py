@@ -16,7 +16,6 @@ from aos_skills.ros.documented import documented
 
 
 def deployment(folder: Path, root: Path, serve: str) -> Deployment:
-    """Our armadillo with a `serve:` part."""
     path = folder / "robot.yaml"
     path.write_text(
         f"aos: 1\nrobot: armadillo\nbundles: [{root}/deploy/bundles/armadillo-rough]\n"

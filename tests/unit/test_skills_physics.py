@@ -40,7 +40,6 @@ def make(file: ArmadilloFile) -> Make:
 
 
 def call(world: Armadillo, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
-    """Runs a skill to its end, as the adapter does."""
     world.begin()
     return KIND.skills[path](world, fields or {})
 

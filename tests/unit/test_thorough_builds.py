@@ -25,6 +25,5 @@ async def _ended_twice(cache_dir: Path, turns: int):
 
 
 async def _turn(times: int):
-    """Lets the build go on for some turns of the loop."""
     for _ in range(times):
         await asyncio.sleep(0)

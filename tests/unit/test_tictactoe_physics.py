@@ -35,8 +35,6 @@ def file(root: Path) -> TicTacToeFile:
 
 @pytest.fixture
 def make(file: TicTacToeFile) -> Make:
-    """The shipped world, changed as a test wants."""
-
     def build(**changes: Any) -> TicTacToe:
         return TicTacToe(msgspec.structs.replace(file, **changes), seed=1)
 
@@ -44,7 +42,6 @@ def make(file: TicTacToeFile) -> Make:
 
 
 def call(world: TicTacToe, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
-    """Runs a skill to its end, as the adapter does."""
     world.begin()
     answer = KIND.skills[path](world, fields or {})
     world.stop()

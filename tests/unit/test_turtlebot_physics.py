@@ -22,7 +22,6 @@ Make = Callable[..., Turtlebot]
 
 @pytest.fixture
 def make(root: Path) -> Make:
-    """A robot in the shipped arena, changed as a test wants."""
     file: TurtlebotFile = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
 
     def build(**changes: Any) -> Turtlebot:
@@ -32,7 +31,6 @@ def make(root: Path) -> Make:
 
 
 def go(world: Turtlebot, x: float, y: float) -> bool:
-    """One call of the skill, as the adapter makes it."""
     world.begin()
     answer = KIND.skills["/navigate"](world, {"x": x, "y": y})
     world.stop()

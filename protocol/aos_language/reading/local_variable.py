@@ -10,8 +10,6 @@ from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
 
 
 class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
-    """The attributes that a document gives a local variable, as they were found."""
-
     name: Text | None
     span: Span
     type: str = ""

@@ -93,7 +93,6 @@ class Cell:
 
     @property
     def moved(self) -> list[str]:
-        """The robot's motions so far."""
         return (self.folder / "moved").read_text().split()
 
     def go_on(self):

@@ -46,7 +46,6 @@ class Forgery(NamedTuple):
 
 
 def faults_of(cell: Cell, forgery: Forgery) -> list[str]:
-    """The promises that this one has broken, while the mission waits."""
     before = cell.moved
     got = forgery.attempt(cell)
     faults = [] if got == forgery.gets else [f"it got {got!r}, not {forgery.gets!r}"]

@@ -40,8 +40,6 @@ _ANSWER_S = 5.0
 
 
 class Attempt(NamedTuple):
-    """One party's act on one key."""
-
     party: Party
     act: Act
     key: str

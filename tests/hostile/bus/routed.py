@@ -36,7 +36,6 @@ class Routed:
         self.sessions: dict[str, zenoh.Session] = {}
 
     def session(self, name: str) -> zenoh.Session:
-        """A party's session, opened once."""
         if name not in self.sessions:
             self.sessions[name] = opened(self.endpoint, self.passes.credential(name))
         return self.sessions[name]
