@@ -74,7 +74,6 @@ _UNUSUAL = set(" \t\n\"'\\%$;")
 
 
 def unit_name(deployment: Deployment) -> str:
-    """The name of the unit's file."""
     return f"aos-{deployment.file.robot}.service"
 
 

@@ -35,7 +35,6 @@ LAYOUTS = {
 
 
 def environment(size: int, start_y: int, rocks: list[tuple[int, int]]) -> str:
-    """The environment document of a layout."""
     return Template((BENCH / "rocksample.ef.template").read_text()).substitute(
         size=size,
         cells=size**2,
@@ -48,7 +47,6 @@ def environment(size: int, start_y: int, rocks: list[tuple[int, int]]) -> str:
 
 
 def bundle(name: str) -> dict[str, str]:
-    """The documents of a layout, by the names of their files."""
     skills = sorted((BENCH / SKILLS_OF).glob("*.[sa][dm]"))
     return {
         "rocksample.ef": environment(*LAYOUTS[name]),

@@ -51,8 +51,6 @@ class _Player(Protocol):
 
 
 class _Kept(msgspec.Struct, frozen=True):
-    """One line of the file of records."""
-
     digest: str
     trial: Trial
 

@@ -42,8 +42,6 @@ CREATE TABLE file (
 
 
 class Revision(msgspec.Struct, frozen=True):
-    """A stored revision with its files."""
-
     project: str
     number: int
     digest: str

@@ -28,8 +28,6 @@ _log = logging.getLogger("aos.gateway")
 
 
 class _Mission:
-    """The place up to which a mission is counted."""
-
     def __init__(self) -> None:
         self.next_sequence = 0
         self.next_row = 0
@@ -40,8 +38,6 @@ class _Mission:
 
 
 class _Counted:
-    """The place up to which a run is counted."""
-
     def __init__(self) -> None:
         self.missions: dict[str, _Mission] = {}
         self.engine_starts: dict[str, int] = {}
@@ -53,8 +49,6 @@ class _Counted:
 
 
 class Metrics:
-    """The metrics of the runs on a shelf."""
-
     def __init__(self, shelf: RunShelf) -> None:
         self._shelf = shelf
         self._families = Families()

@@ -62,7 +62,6 @@ class Gauge(Counter):
         self._sums[tuple(labels.items())] = value
 
     def clear(self) -> None:
-        """Forgets all values."""
         self._sums.clear()
 
 

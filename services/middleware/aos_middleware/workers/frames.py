@@ -63,8 +63,6 @@ class Taken(msgspec.Struct, frozen=True, tag=True):
 
 
 class Begun(msgspec.Struct, frozen=True, tag=True):
-    """The fields of the call."""
-
     fields: dict[str, Any]
 
 
@@ -109,7 +107,6 @@ def pack(message: Question | Answer) -> bytes:
 
 
 def read_question(body: bytes) -> Question:
-    """The question in a frame's body."""
     question: Question = _questions.decode(body)
     return question
 

@@ -9,8 +9,6 @@ Fields = Dict[str, Any]
 
 
 class Channel(Protocol):
-    """The lines to AOS."""
-
     def send(self, **line: Any) -> None: ...
 
 
