@@ -9,7 +9,7 @@ namespace {
 double mean_of(const std::vector<double>& numbers) {
   double sum = 0;
   for (const double number : numbers) sum += number;
-  return sum / static_cast<double>(numbers.size());
+  return sum / numbers.size();
 }
 double squares_around_mean(const std::vector<double>& numbers) {
   const double mean = mean_of(numbers);
@@ -108,7 +108,7 @@ void CellTables::add_table(double min_gain) {
   const std::size_t stride = std::max<std::size_t>(numbers * left_.size() / max_tried_lookups, 1);
   double squares = 0;
   for (const double left : left_) squares += left * left;
-  const double variance = squares / static_cast<double>(left_.size());
+  const double variance = squares / left_.size();
   take_columns(stride);
   std::vector<Candidate> candidates;
   const auto consider = [&](const Table& table, const std::vector<std::uint32_t>& places, std::uint32_t variable) {
@@ -123,7 +123,7 @@ void CellTables::add_table(double min_gain) {
     }
   }
   Table best;
-  double max_gain = min_gain / static_cast<double>(stride);
+  double max_gain = min_gain / stride;
   for (std::size_t i = 0; i < candidates.size(); i += side_by_side) {
     const std::array<double, side_by_side> found = gains(&candidates[i], candidates.size() - i, variance);
     for (std::size_t k = 0; k < std::min(side_by_side, candidates.size() - i); ++k) {

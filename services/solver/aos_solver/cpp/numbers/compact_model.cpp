@@ -65,7 +65,7 @@ std::vector<float> CompactModel::values(double discount, int horizon) const {
   const std::size_t count = first_.size();
   std::vector<float> values(count, 0);
   for (int sweep = 0; sweep < horizon; ++sweep) {
-    progress::tell("computing values of states", static_cast<std::uint64_t>(sweep), static_cast<std::uint64_t>(horizon));
+    progress::tell("computing values of states", sweep, horizon);
     float change = 0;
     float scale = 0;
     for (std::size_t i = 0; i < count; ++i) {

@@ -200,14 +200,14 @@ double ExactEvaluation::bound(const Weighted& belief, std::size_t action, int ho
     sum += value;
     magnitude += std::abs(value);
   }
-  const double rounding = 1e-15 * static_cast<double>(100 + belief.size());
+  const double rounding = 1e-15 * (100 + belief.size());
   return sum + rounding * magnitude;
 }
 
 // Probabilities are rounded to 1e-13, so that sums of the same terms in different orders give the same key.
 BeliefKey ExactEvaluation::key_of(const Weighted& belief) {
   BeliefKey key;
-  for (const auto& [state, weight] : belief) key.add(state, static_cast<std::uint64_t>(std::llround(weight * 1e13)));
+  for (const auto& [state, weight] : belief) key.add(state, std::llround(weight * 1e13));
   return key;
 }
 

@@ -34,7 +34,7 @@ void ObservableValues::prepare(const point_based::FlatModel& rows, point_based::
   if (states() * static_cast<std::size_t>(horizon) > max_values) return layers_.clear();
   if (layers_.empty()) layers_.emplace_back(states(), 0.0);
   for (auto left = static_cast<int>(layers_.size()); left < horizon; ++left) {
-    progress::tell("computing values of states", static_cast<std::uint64_t>(left), static_cast<std::uint64_t>(horizon));
+    progress::tell("computing values of states", left, horizon);
     std::vector<double> values(states(), std::numeric_limits<double>::infinity());
     one_more_decision(rows, layers_.back(), values);
     layers_.push_back(std::move(values));

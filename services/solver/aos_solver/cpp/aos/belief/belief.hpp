@@ -333,7 +333,7 @@ class Belief {
     Replay replay;
     const std::vector<double> none;
     for (const auto& [state, weight] : particles()) {
-      const double trials = std::max(1.0, std::ceil(weight * static_cast<double>(particle_count)));
+      const double trials = std::max(1.0, std::ceil(weight * particle_count));
       for (double trial = 0; trial < trials; ++trial) {
         State next = state;
         replay.start(none, random);

@@ -25,11 +25,11 @@ void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t coun
                  FunctionRef<void(const typename Model::State&)> visit) {
   double total = 0;
   for (const auto& particle : particles) total += particle.weight;
-  const double length = total / static_cast<double>(count);
+  const double length = total / count;
   double below = 0;  // the weight of the particles before `number`
   std::size_t number = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double position = (static_cast<double>(i) + random.uniform()) * length;
+    const double position = (i + random.uniform()) * length;
     while (position - below >= particles[number].weight && number + 1 < particles.size()) below += particles[number++].weight;
     visit(particles[number].state);
   }
@@ -41,11 +41,11 @@ inline double common_weight(std::vector<double> weights, std::size_t count) {
   double light = 0;  // the sum of the lightest so far
   std::size_t heavy = weights.size();
   for (const double weight : weights) {
-    if (heavy < count && weight * static_cast<double>(count - heavy) >= light) break;
+    if (heavy < count && weight * (count - heavy) >= light) break;
     light += weight;
     --heavy;
   }
-  return light / static_cast<double>(count - heavy);
+  return light / (count - heavy);
 }
 
 // Leaves at most `count` weights and sets the others to 0; no weight's mean changes (Fearnhead and Clifford,

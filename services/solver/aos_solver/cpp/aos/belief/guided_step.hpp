@@ -323,7 +323,7 @@ class GuidedStep {
     }
     if (total <= 0) return 0;
     is_exhaustive_ = is_exhaustive_ && alternatives.size() == 1;
-    const auto chosen = static_cast<std::size_t>(random_.choose(shares_.data(), static_cast<int>(shares_.size()), total));
+    const auto chosen = static_cast<std::size_t>(random_.choose(shares_.data(), shares_.size(), total));
     return follow_at(trials, chosen, weight * total / promises[chosen], branches, visit);
   }
 

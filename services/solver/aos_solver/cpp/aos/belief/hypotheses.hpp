@@ -203,7 +203,7 @@ class Hypotheses {
       detail::add_text(words, skill);
       detail::add_text(words, response);
     }
-    words.push_back(static_cast<std::uint64_t>(impossible_in_a_row_));
+    words.push_back(impossible_in_a_row_);
     return words;
   }
   // Takes over what `beliefs` and `words` gave, in a model that may have other skills. There is at least one belief.

@@ -95,7 +95,7 @@ class Moves {
 
   // Makes copies in proportion to the weights. Each particle has at least one unless there are too many particles.
   void copy(const Cloud<Model>& cloud, std::size_t copies) {
-    const double unit = cloud.total() / static_cast<double>(copies);
+    const double unit = cloud.total() / copies;
     std::vector<double> weights;
     for (const auto& particle : cloud.particles) weights.push_back(particle.weight);
     thin_out(weights, copies, random_);
@@ -105,7 +105,7 @@ class Moves {
       const double weight = weights[i];
       const long count = std::max(1L, std::lround(weight / unit));
       for (long copy = 0; copy < count; ++copy) {
-        copies_.push_back({i, state, weight / static_cast<double>(count), cloud.lineages[i].trace, false});
+        copies_.push_back({i, state, weight / count, cloud.lineages[i].trace, false});
       }
     }
   }
@@ -244,7 +244,7 @@ class Moves {
   // One draw of all, at random. The block is the one after the last if there are no draws.
   DrawPlace random_draw(const Passage<Model>& passage) {
     if (passage.draws() == 0) return {passage.size(), 0};
-    auto left = static_cast<std::size_t>(random_.below(static_cast<int>(passage.draws())));
+    auto left = static_cast<std::size_t>(random_.below(passage.draws()));
     std::size_t place = 0;
     while (left >= passage.draws_of(place)) left -= passage.draws_of(place++);
     return {place, left};
@@ -351,7 +351,7 @@ class Moves {
     void start() { digest_ = 0; }
     std::uint64_t digest() const { return digest_; }
     void before_draw(std::size_t, const double* weights, int count, double total) override {
-      mix(static_cast<std::uint64_t>(count));
+      mix(count);
       for (int i = 0; i < count; ++i) mix(std::bit_cast<std::uint64_t>(weights[i] / total));
     }
 

@@ -223,7 +223,7 @@ class ParticleFilter {
       draw_evenly<Model>(before.particles, price_count, random_, [&](const State& drawn) { guided.from(drawn, nothing); });
       const double price = static_cast<double>(guided.runs()) / price_count;
       const bool are_dear = price > dear_trial;
-      if (are_dear && price * static_cast<double>(before.particles.size()) <= max_covering_runs) {
+      if (are_dear && price * before.particles.size() <= max_covering_runs) {
         return by_weight(before, few_particles);
       }
     }
@@ -308,7 +308,7 @@ class ParticleFilter {
     const TraceLink& trace;
     long trials;
 
-    double weight_of_trial() const { return weight / static_cast<double>(trials); }
+    double weight_of_trial() const { return weight / trials; }
   };
 
   // Draws whole steps at random. One is enough if the step makes no draw.

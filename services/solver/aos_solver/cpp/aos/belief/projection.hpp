@@ -81,9 +81,9 @@ class Projection {
     double outcomes = 0;
     for (const KnownState& each : known) {
       groups.push_back(&group_of(with(State{}, each)));
-      outcomes += static_cast<double>(groups.back()->states.size());
+      outcomes += groups.back()->states.size();
     }
-    const bool draws = is_drawn || is_initial_drawn_ || outcomes > static_cast<double>(max_weighted_states);
+    const bool draws = is_drawn || is_initial_drawn_ || outcomes > max_weighted_states;
     Gathering<Model> gathering;
     for (std::size_t i = 0; i < known.size(); ++i) {
       if (draws) {
@@ -117,7 +117,7 @@ class Projection {
 
   // As many draws of the new variables as the weight is worth, at least one; at even distances, from a random start.
   void draw(Gathering<Model>& gathering, const KnownState& known, const Group& group, Sampler& random) const {
-    const double count = std::max(1.0, std::round(known.weight * static_cast<double>(particle_count)));
+    const double count = std::max(1.0, std::round(known.weight * particle_count));
     const double start = random.uniform();
     for (double i = 0; i < count; ++i) gathering.add(with(group.at((start + i) / count), known), known.weight / count);
   }

@@ -57,8 +57,8 @@ class WordReader {
 };
 
 inline void add_step(Words& words, const HistoryStep& step) {
-  words.push_back(static_cast<std::uint64_t>(step.action));
-  words.push_back(static_cast<std::uint64_t>(step.observation));
+  words.push_back(step.action);
+  words.push_back(step.observation);
   words.push_back((step.is_observed ? 1 : 0) | (step.is_guided ? 2 : 0));
   words.push_back(step.by_chance);
   add_text(words, observation_text(step.observation));

@@ -57,7 +57,7 @@ class SplitFilter {
  private:
   // How many states the next update can afford, if they are as much work as these.
   std::size_t affordable(std::size_t states, std::size_t work) const {
-    const double share = 2.0 * max_split_work / static_cast<double>(work);
+    const double share = 2.0 * max_split_work / work;
     const auto count = static_cast<std::size_t>(share * static_cast<double>(states));
     return std::clamp(count, std::min(particle_count, limit_), limit_);
   }

@@ -41,7 +41,7 @@ void write_rate(JsonWriter& json, double seconds, Sampler& random, StartState&& 
   const std::chrono::duration<double> processor{processor_time() - processor_start};
   json.begin_object().member("samples", samples).member("seconds", spent.count());
   json.member("cpu_seconds", processor.count());
-  json.member("mean_reward", samples > 0 ? rewards / static_cast<double>(samples) : 0.0).end_object();
+  json.member("mean_reward", samples > 0 ? rewards / samples : 0.0).end_object();
 }
 
 // Writes which loops had no end in steps of this process so far.

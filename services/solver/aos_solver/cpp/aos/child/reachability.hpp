@@ -19,7 +19,7 @@ class Reachability {
  public:
   // `seconds` are of processor time.
   Reachability(const Belief<Model>& belief, double seconds)
-      : unmet_(static_cast<std::size_t>(Model::action_count())), is_met_(unmet_, false) {
+      : unmet_(Model::action_count()), is_met_(unmet_, false) {
     const auto latest = processor_time() + std::chrono::duration<double>{seconds};
     try {
       if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};

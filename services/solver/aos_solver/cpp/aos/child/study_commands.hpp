@@ -52,9 +52,9 @@ class StudyCommands {
     const int horizon = horizon_of<Model>(command);
     auto evaluation = evaluation_for(command, belief, horizon);
     evaluation.action_values(exact_root(*space_, belief), horizon);
-    const auto times = evaluation.occupancy(space_->weights_of(belief), static_cast<std::size_t>(action), horizon);
+    const auto times = evaluation.occupancy(space_->weights_of(belief), action, horizon);
     for (const auto& [where, weight] : times) {
-      terms.add((*space_)[where.first], static_cast<int>(where.second), weight);
+      terms.add((*space_)[where.first], where.second, weight);
     }
     terms.write(json);
   }

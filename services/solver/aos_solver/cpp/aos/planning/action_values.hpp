@@ -66,7 +66,7 @@ inline double error_of_unplayed(double played, double most) {
 
 // What the error of a value rests on, where fewer missions than these were played.
 inline std::string unplayed_text(std::size_t played) {
-  if (static_cast<double>(played) >= missions_that_tell) return {};
+  if (played >= missions_that_tell) return {};
   return "the error is that of " + std::to_string(played) + " of 30 missions that plan anew";
 }
 

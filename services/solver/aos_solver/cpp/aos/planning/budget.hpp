@@ -31,7 +31,7 @@ struct Budget {
 
   // So large a share of it.
   Budget part(double share) const {
-    const double part = std::ceil(share * static_cast<double>(simulations));
+    const double part = std::ceil(share * simulations);
     return {static_cast<std::uint64_t>(part), share * seconds, threads};
   }
   Operations operations(int horizon) const { return simulations * operations_of_simulation(horizon); }

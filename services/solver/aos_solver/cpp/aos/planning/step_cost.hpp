@@ -80,7 +80,7 @@ class AffordableSteps {
   double of(Budget budget, int horizon, bool as_measured = false) {
     if (budget.simulations > 0) return std::max(static_cast<double>(budget.simulations) * horizon, least);
     if (step_cost_ == 0) step_cost_ = std::max(cost_of_step<Model>(), operations_of_step);
-    const double affordable = budget.seconds * operations_of_second / static_cast<double>(step_cost_);
+    const double affordable = budget.seconds * operations_of_second / step_cost_;
     const double measured = seconds_ > 0 ? budget.seconds * steps_ / seconds_ : affordable;
     return std::max(as_measured ? measured : std::min(affordable, measured), least_in_time);
   }

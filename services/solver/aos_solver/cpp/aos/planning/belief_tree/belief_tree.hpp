@@ -100,7 +100,7 @@ class BeliefTree final : public TreePlanner<Model> {
     const double running = belief.probability_of(Ending::running);
     for (std::size_t a = 0; a < space_.actions(); ++a) {
       const ActionNode& action = actions_[a];
-      const double error = action.children.empty() ? 0 : std::sqrt(variance(action) / static_cast<double>(action.children.size()));
+      const double error = action.children.empty() ? 0 : std::sqrt(variance(action) / action.children.size());
       result[a] = {running * action.q, action.n + 1, running * error, running * action.reward};
     }
     return result;
@@ -200,7 +200,7 @@ class BeliefTree final : public TreePlanner<Model> {
       if (++action.n == 1) action.running = running(node, a);
       const std::size_t count = action.children.size();
       const double wanted = beliefs_of_one_visit * std::pow(action.n, belief_widening);
-      if (static_cast<double>(count) >= wanted || (is_full() && count > 0)) {
+      if (count >= wanted || (is_full() && count > 0)) {
         node = action.children[action.n % count];
         continue;
       }
@@ -261,7 +261,7 @@ class BeliefTree final : public TreePlanner<Model> {
   static BeliefKey key_of(const SmallBelief& belief) {
     constexpr float unit = 1e5f;
     BeliefKey key;
-    for (const auto& [state, weight] : belief) key.add(state, static_cast<std::uint64_t>(std::lround(unit * weight)));
+    for (const auto& [state, weight] : belief) key.add(state, std::lround(unit * weight));
     return key;
   }
 
@@ -274,7 +274,7 @@ class BeliefTree final : public TreePlanner<Model> {
       const ActionNode& best = best_action(number);
       nodes_[number].value = best.q;
       if (best.q >= before - settled * std::abs(before)) break;
-      renew(number, static_cast<std::size_t>(&best - actions_of(number).data()));
+      renew(number, &best - actions_of(number).data());
     }
   }
 

@@ -185,7 +185,7 @@ class ObservationTables {
       pieces_.push_back(std::move(piece));
     }
     piece_ids_.push_back(entry->second);
-    return once / static_cast<double>(reports.size());
+    return once / reports.size();
   }
 
   double unknown_ = 0;

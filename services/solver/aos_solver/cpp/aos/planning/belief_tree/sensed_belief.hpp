@@ -23,7 +23,7 @@ inline void thin_out(SmallBelief& belief, std::size_t most, Sampler& random) {
   double total = 0;
   for (const auto& [state, weight] : belief) total += weight;
   const bool is_small = belief.size() <= most;
-  const double each = total / static_cast<double>(most);
+  const double each = total / most;
   double place = is_small ? 0 : random.uniform() * each;
   double below = 0;
   std::size_t kept = 0;

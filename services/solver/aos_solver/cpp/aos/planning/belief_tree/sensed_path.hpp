@@ -33,7 +33,7 @@ class Strata {
     if (column.empty()) {
       Sampler random{name};
       for (std::size_t i = 0; i < sensing_runs; ++i) {
-        column.push_back((static_cast<double>(i) + random.uniform()) / sensing_runs);
+        column.push_back((i + random.uniform()) / sensing_runs);
       }
       for (std::size_t i = sensing_runs; i-- > 1;) std::swap(column[i], column[random.below(static_cast<int>(i) + 1)]);
     }

@@ -110,7 +110,7 @@ class SensingRuns {
   // The paths to the next state have runs by their probabilities, in an order that is spread out.
   const Path& chosen(std::size_t run) const {
     constexpr std::size_t step = 37;
-    double place = total_ * (static_cast<double>((run + 1) * step % sensing_runs) + 0.5) / sensing_runs;
+    double place = total_ * (((run + 1) * step % sensing_runs) + 0.5) / sensing_runs;
     std::size_t chosen = 0;
     while (chosen + 1 < paths_to_.size() && place >= paths_to_[chosen]->probability) {
       place -= paths_to_[chosen++]->probability;

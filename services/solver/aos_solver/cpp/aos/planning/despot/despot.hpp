@@ -158,7 +158,7 @@ class Despot final : public TreePlanner<Model> {
   }
   double beyond_node(std::uint32_t number) const {
     const Node& node = nodes_[number];
-    const double end = weight_at(static_cast<int>(node.depth)) * node.scenarios;
+    const double end = weight_at(node.depth) * node.scenarios;
     if (node.first_action == no_node || node.lower <= node.default_lower) return end;
     for (std::size_t a = 0; a < action_count(); ++a) {
       if (actions_[node.first_action + a].lower >= node.lower) return beyond_action(actions_[node.first_action + a]);
@@ -182,7 +182,7 @@ class Despot final : public TreePlanner<Model> {
     origin_ = 0;
     for (const Observed<Model>& outcome : outcomes_) origin_ += evaluation_.origin(outcome.scenario.seen) / scenario_count_;
     const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, 0);
-    penalty_ = penalty_in_deviations * evaluation_.deviation() / static_cast<double>(scenario_count_);
+    penalty_ = penalty_in_deviations * evaluation_.deviation() / scenario_count_;
     add_node(0, outcomes_.size(), 0, no_node, bounds);
     expand(0);
     return true;
@@ -191,7 +191,7 @@ class Despot final : public TreePlanner<Model> {
   // Draws about `count` scenarios. States that have ended need no decision and are left out.
   void draw_scenarios(const Belief<Model>& belief, std::size_t count, double running, Sampler& random) {
     outcomes_.clear();
-    draw_evenly<Model>(belief.particles(), static_cast<std::size_t>(std::ceil(static_cast<double>(count) / running)), random,
+    draw_evenly<Model>(belief.particles(), static_cast<std::size_t>(std::ceil(count / running)), random,
                        [&](const State& state) {
                          if (Model::ending(state) != Ending::running) return;
                          const auto number = static_cast<std::uint32_t>(outcomes_.size());
@@ -235,7 +235,7 @@ class Despot final : public TreePlanner<Model> {
                       static_cast<std::uint32_t>(depth), parent, no_node, no_node, lower, upper, lower, upper});
     return static_cast<std::uint32_t>(nodes_.size() - 1);
   }
-  double weight_at(int depth) const { return std::pow(Model::discount, depth) / static_cast<double>(scenario_count_); }
+  double weight_at(int depth) const { return std::pow(Model::discount, depth) / scenario_count_; }
 
   // Adds all actions of a node and their children. Returns false without the memory or the time for them.
   bool expand(std::uint32_t number) {
@@ -250,7 +250,7 @@ class Despot final : public TreePlanner<Model> {
         if (number != 0) return false;
         break;
       }
-      try_action(number, static_cast<int>(a));
+      try_action(number, a);
       has_tried = has_tried || !is_barred(number, a);
     }
     nodes_[number].first_action = first_action;

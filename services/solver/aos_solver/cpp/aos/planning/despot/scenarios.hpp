@@ -100,7 +100,7 @@ class ScenarioEvaluation {
   }
 
   Sampler draws(std::uint32_t scenario, int depth) const {
-    return Sampler{mixed(mixed(seed_, scenario), static_cast<std::uint64_t>(depth))};
+    return Sampler{mixed(mixed(seed_, scenario), depth)};
   }
 
   // The bounds of each scenario. All have the same history but for the last observation, by which they are sorted.
@@ -179,7 +179,7 @@ class ScenarioEvaluation {
 
   Step listed_step(Scenario<Model>& scenario, int action, Sampler& luck, bool& has_ended) {
     const point_based::FlatModel& rows = values_.space().rows();
-    const std::size_t row = rows.row(scenario.seen, static_cast<std::size_t>(action));
+    const std::size_t row = rows.row(scenario.seen, action);
     work_ += per_listed_step();
     Step step{rows.rewards[row], default_observation};
     double place = luck.uniform();

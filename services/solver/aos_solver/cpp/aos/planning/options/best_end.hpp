@@ -40,7 +40,7 @@ class BestEnd {
     if (end.action < 0) return {};
     way.push_back(end.action);
     double earned = 0;
-    for (int i = 0; i < tries; ++i, steps -= static_cast<double>(way.size())) {
+    for (int i = 0; i < tries; ++i, steps -= way.size()) {
       State next = start;
       earned += taken_option<Model>(way, next, random, retries_).earned;
     }

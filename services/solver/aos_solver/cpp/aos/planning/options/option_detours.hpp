@@ -130,7 +130,7 @@ class OptionDetours {
       double later = 0;
       observation.for_each(belief_.weights(), times, [&](double probability, const StateWeights& weights) {
         later += probability * worth(weights);
-        steps -= of_gain * static_cast<double>(gains_.size() * weights.size());
+        steps -= of_gain * (gains_.size() * weights.size());
       });
       found.push_back({way.front(), paid + discount * later, discount, "what can be observed after a detour", {}, way});
     }

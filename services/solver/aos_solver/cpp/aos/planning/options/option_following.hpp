@@ -74,7 +74,7 @@ class OptionFollowing {
         if (option.size() > horizon) continue;
         State next = state;
         const double earned = taken_option<Model>(option, next, random, library_.retries()).earned;
-        left -= static_cast<double>(option.size());
+        left -= option.size();
         if (earned > 0) first_.push_back({income<Model>(earned, option.size()), &option, earned, Model::ending(next) != Ending::running});
       }
     }

@@ -126,7 +126,7 @@ class OptionLibrary {
       for (const Option& option : options_) {
         State next = state;
         const double earned = income<Model>(taken_option<Model>(option, next, random, retries()).earned, option.size());
-        steps -= static_cast<double>(option.size());
+        steps -= option.size();
         if (earned <= most) continue;
         most = earned;
         best = &option;

@@ -86,7 +86,7 @@ class OptionMoves {
       start[k] *= taken_option<Model>(option, now[k], random, nullptr).goes_on;
       share += start[k];
     }
-    steps -= static_cast<double>(option.size() * now.size());
+    steps -= option.size() * now.size();
     if (share <= 0) return 0;
     for (double& weight : start) weight /= share;
     std::vector<std::vector<StepReports>> reports(way.size(), std::vector<StepReports>(now.size()));
@@ -95,7 +95,7 @@ class OptionMoves {
         if (start[k] > 0 && Model::ending(now[k]) == Ending::running) step_.take(now[k], way[step], reports[step][k], steps, random);
       }
     }
-    steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
+    steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());
     const bool is_repeated = !tests_.is_move(way.front()) && std::ranges::count(way, way.front()) == std::ssize(way);
     if (is_repeated && tells_alike(reports.front(), tests_.reports_of(way.front()))) return here;
     const auto last = is_repeated ? RepeatedObservation{reports.front()} : RepeatedObservation::at_last(reports);
@@ -128,7 +128,7 @@ class OptionMoves {
     for (std::size_t k = 0; k < now.size(); ++k) share += goes_on(k) ? belief_.weights()[k] : 0;
     if (share < 0.5) return;
     const auto last = share < 1 - 1e-9 ? RepeatedObservation{std::vector<StepReports>{}} : RepeatedObservation::at_last(reports);
-    if (!last.is_listed(1)) steps -= static_cast<double>(way.size()) * OptionTests<Model>::steps_of_weighing(now.size());
+    if (!last.is_listed(1)) steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());
     const auto told = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
       if (weights[k] <= 0) return;

@@ -101,7 +101,7 @@ class OptionPairs {
       taken_option<Model>(way, state, random, nullptr);
       step_.take(state, test, reports[k], steps, random);
     }
-    steps -= static_cast<double>(way.size() * belief_.size());
+    steps -= way.size() * belief_.size();
     return reports;
   }
 

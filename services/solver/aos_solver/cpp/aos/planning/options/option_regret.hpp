@@ -111,7 +111,7 @@ class OptionRegret {
   // How many steps of the model take as long as to find the best options.
   double steps_of_best() const {
     constexpr double of_gain = 0.02;
-    return of_gain * static_cast<double>(gains_.size() * belief_.size());
+    return of_gain * (gains_.size() * belief_.size());
   }
   static double entropy(const StateWeights& weights) {
     double nats = 0;

@@ -29,7 +29,7 @@ class OptionTests {
   // How many steps of the model take as long as to weigh so many states by what is drawn from them.
   static double steps_of_weighing(std::size_t states) {
     constexpr double of_likelihood = 0.2;
-    return of_likelihood * OptionRegret<Model>::observations * static_cast<double>(states);
+    return of_likelihood * OptionRegret<Model>::observations * states;
   }
 
   OptionTests(const SampledBelief<Model>& belief, const OptionRegret<Model>& regret, const OwnChanges<Model>& changes, DecisionClock& clock)
@@ -54,8 +54,8 @@ class OptionTests {
       const std::size_t a = (first + i) % actions;
       reports_[a].resize(belief_.size());
       if (barred.contains(a)) continue;
-      if (changes_.is_move(static_cast<int>(a))) {
-        moves_.push_back(static_cast<int>(a));
+      if (changes_.is_move(a)) {
+        moves_.push_back(a);
         continue;
       }
       if (clock_.is_over()) {
@@ -63,7 +63,7 @@ class OptionTests {
         is_whole = false;
         continue;
       }
-      const double reward = take(static_cast<int>(a), steps, random);
+      const double reward = take(a, steps, random);
       steps -= steps_of_weighing(belief_.size());
       informations_[a] = information(belief_.weights(), reports_[a], OptionRegret<Model>::observations, random);
       if (informations_[a] > least_information) tests_.push_back({static_cast<int>(a), reward, informations_[a]});

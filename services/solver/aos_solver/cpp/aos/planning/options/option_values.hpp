@@ -31,10 +31,10 @@ class OptionValues {
     horizon_ = static_cast<std::size_t>(horizon);
     valued_.clear();
     following_.begin();
-    const double affordable = of_values * steps / static_cast<double>(1 + gains);
+    const double affordable = of_values * steps / (1 + gains);
     value_steps_ = std::clamp(affordable / fewest_valued, least_value_steps, most_value_steps);
-    one_s_ = of_values * clock_.left_s() / static_cast<double>((1 + gains) * fewest_valued);
-    const double latest_s = clock_.left_s() - static_cast<double>(fewest_valued) * one_s_;
+    one_s_ = of_values * clock_.left_s() / ((1 + gains) * fewest_valued);
+    const double latest_s = clock_.left_s() - fewest_valued * one_s_;
     const double before = steps;
     // States at a distance first, so that those that are valued are spread over the belief.
     const std::size_t stride = std::max<std::size_t>(belief.size() / most_valued, 1);

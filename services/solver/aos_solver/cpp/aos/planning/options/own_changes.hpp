@@ -52,14 +52,14 @@ class OwnChanges {
       for (std::size_t a = 0; a < actions; ++a) {
         State next = state;
         Sampler same{seed};
-        earning += Model::step(next, static_cast<int>(a), same).reward > 0 ? 1 : 0;
+        earning += Model::step(next, a, same).reward > 0 ? 1 : 0;
         cells.write(next, &after_[a * cells.size()]);
         ends_[a] = Model::ending(next) != Ending::running ? 1 : 0;
       }
       compare(cells.size());
     }
-    steps -= static_cast<double>(actions * states.size());
-    earns_anyway_ = earning >= most_actions * static_cast<double>(actions * states.size());
+    steps -= actions * states.size();
+    earns_anyway_ = earning >= most_actions * (actions * states.size());
   }
 
   // Whether the action changes any of the states, or ends the mission.

@@ -38,7 +38,7 @@ class PlainPlans {
     const double of_round = steps / rounds;
     std::vector<double> sums(Model::action_count());
     for (std::size_t tries = first_tries; actions.size() > 1; tries *= kept_share) {
-      const double affordable = of_round / static_cast<double>(actions.size() * tries);
+      const double affordable = of_round / (actions.size() * tries);
       const int length = std::clamp(static_cast<int>(affordable), 1, horizon);
       for (const int action : actions) sums[action] = played(action, belief, tries, length, random).returned;
       sort_stably(actions, [&](int one, int other) { return sums[one] > sums[other]; });
@@ -58,7 +58,7 @@ class PlainPlans {
   // What an action returns that is taken so many times.
   static PlainPlan played(int action, const SampledBelief<Model>& belief, std::size_t tries, int length, Sampler& random) {
     SampleMean mean;
-    draw_states(belief.weights(), static_cast<int>(tries), random, [&](std::size_t k) { mean.add(returned(belief.states()[k], action, length, random)); });
+    draw_states(belief.weights(), tries, random, [&](std::size_t k) { mean.add(returned(belief.states()[k], action, length, random)); });
     return {action, mean.mean(), mean.error()};
   }
 
@@ -72,7 +72,7 @@ class PlainPlans {
   static double decay(int action, const SampledBelief<Model>& belief, int horizon, Sampler& random) {
     const double first = played(action, belief, last_tries, 1, random).returned;
     SampleMean mean;
-    draw_states(belief.weights(), static_cast<int>(last_tries), random, [&](std::size_t k) {
+    draw_states(belief.weights(), last_tries, random, [&](std::size_t k) {
       State state = belief.states()[k];
       double lost = 0;
       double discount = 1;

@@ -50,12 +50,12 @@ class RootSpread {
   // Begins a simulation.
   void count(const ActionNode& best) {
     if (++simulations_ % spread_renewal != 0 && simulations_ != settled_visits) return;
-    variance_ = best.n >= settled_visits ? best.squares / best.n : squares_ / static_cast<double>(simulations_);
+    variance_ = best.n >= settled_visits ? best.squares / best.n : squares_ / simulations_;
   }
   // Ends a simulation by its return.
   void add(double seen) {
     const double deviation = seen - mean_;
-    mean_ += deviation / static_cast<double>(simulations_);
+    mean_ += deviation / simulations_;
     squares_ += deviation * (seen - mean_);
   }
   std::uint64_t simulations() const { return simulations_; }

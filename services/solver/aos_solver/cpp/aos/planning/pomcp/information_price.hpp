@@ -92,7 +92,7 @@ class InformationPrice {
     progress::tell("finding out what information is worth", mission, priced_missions);
     Sampler random{mission};
     Cloud cloud = drawn(belief, random);
-    State state = cloud[random.below(static_cast<int>(cloud.size()))].state;
+    State state = cloud[random.below(cloud.size())].state;
     true_state_ = state;
     double sum = 0;
     double discount = 1;

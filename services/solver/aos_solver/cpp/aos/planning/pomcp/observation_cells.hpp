@@ -51,7 +51,7 @@ class ObservationCells {
   // The observation that stands for a response and its numbers. `action` is the node of the action before.
   Observation cell(std::uint32_t action, Observation response, const Drawn& drawn) {
     if (drawn.keys.empty()) return response;
-    Place& place = places_[mixed(mixed(0, action), static_cast<std::uint64_t>(response))];
+    Place& place = places_[mixed(mixed(0, action), response)];
     ++place.visits;
     const Cell* nearest = nullptr;
     double min_distance = std::numeric_limits<double>::infinity();
@@ -62,10 +62,10 @@ class ObservationCells {
       nearest = &cell;
     }
     const double wanted = cells_of_one_visit * std::pow(static_cast<double>(place.visits), cell_widening);
-    const bool is_new = nearest == nullptr || (static_cast<double>(place.cells.size()) < wanted && cells_ < max_observation_cells);
+    const bool is_new = nearest == nullptr || (place.cells.size() < wanted && cells_ < max_observation_cells);
     if (!is_new) return nearest->name;
     ++cells_;
-    const auto name = mixed(static_cast<std::uint64_t>(response), place.cells.size() + 1);
+    const auto name = mixed(response, place.cells.size() + 1);
     place.cells.push_back({static_cast<Observation>(name), drawn.keys, drawn.values});
     return place.cells.back().name;
   }

@@ -63,7 +63,7 @@ class Pomcp final : public TreePlanner<Model> {
   bool has_wide_values(const Belief<Model>& belief, int horizon) { return switches::wide_values && wide_values_.prepare(belief, horizon); }
 
   Estimates estimates(const Belief<Model>& belief) const override {
-    Estimates result(static_cast<std::size_t>(Model::action_count()));
+    Estimates result(Model::action_count());
     const double running = belief.probability_of(Ending::running);
     for (int a = 0; a < Model::action_count(); ++a) {
       double n = 0;

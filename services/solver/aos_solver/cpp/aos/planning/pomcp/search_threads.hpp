@@ -51,7 +51,7 @@ class SearchThreads {
       for (std::size_t i = 1; i < trees_.size(); ++i) {
         const std::uint64_t seed = random.bits();
         others.emplace_back([&, i, seed] {
-          blame::use_line(static_cast<int>(i));
+          blame::use_line(i);
           Sampler own{seed};
           works[i] = work(*trees_[i], start_state, share(budget, i), each_, start, own, first, is_over);
         });
@@ -116,7 +116,7 @@ class SearchThreads {
     const double spent = std::chrono::duration<double>(PlanningClock::now() - start).count();
     if (spent >= seconds) return true;
     if (first >= 0 || spent < min_time_share * seconds) return false;
-    return tree.is_decided(static_cast<double>(simulations) * (seconds / spent - 1));
+    return tree.is_decided(simulations * (seconds / spent - 1));
   }
 
   std::vector<std::unique_ptr<Tree>> trees_;

@@ -165,7 +165,7 @@ class SearchTree {
   }
 
   static std::uint64_t hash_of(std::uint32_t action, Observation observation) {
-    return mixed(action, static_cast<std::uint64_t>(observation));
+    return mixed(action, observation);
   }
   void add_to_index(std::uint32_t action, std::uint32_t child) {
     const auto is_new = [](std::uint32_t) { return false; };

@@ -86,7 +86,7 @@ class TreeSearch {
     if (!has_actions()) return {};
     const ActionNode& node = tree_.actions(tree_.history(0))[action];
     const double variance = node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0;
-    return {node.n > 0 ? node.q : 0, node.n, variance, record_.mean_reward(static_cast<std::size_t>(action))};
+    return {node.n > 0 ? node.q : 0, node.n, variance, record_.mean_reward(action)};
   }
   std::uint32_t known_simulations() const { return tree_.history(0).n; }
   // The discounted probability that a mission that begins with a root action comes to where the tree ends, if it goes on
@@ -151,9 +151,9 @@ class TreeSearch {
     if (reports_numbers_) drawn.emplace(random);
     while (true) {
       const std::optional<double> expected =
-          switches::expected_rewards && depth < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
-      const std::optional<double> doubt = price_ > 0 ? state.doubt(static_cast<int>(a), doubts_) : std::nullopt;
-      Step step = step_of(state, static_cast<int>(a), random, drawn);
+          switches::expected_rewards && depth < expected_steps ? state.expected_reward(a, rewards_) : std::nullopt;
+      const std::optional<double> doubt = price_ > 0 ? state.doubt(a, doubts_) : std::nullopt;
+      Step step = step_of(state, a, random, drawn);
       if (expected) step.reward = *expected;
       work_ += step_cost_ + per_visit + per_action * action_count() + ((expected ? few_paths : 0) + (doubt ? few_paths : 0)) * step_cost_;
       if (depth == 0) record_.add_reward(a, step.reward);

@@ -53,7 +53,7 @@ class RestValues {
     for (const State& example : examples) {
       tell(targets.size(), examples.size());
       cells_.add_row(example, rows);
-      targets.push_back(returned_by(base, static_cast<std::size_t>(horizon_), example, random));
+      targets.push_back(returned_by(base, horizon_, example, random));
     }
     fit(rows, targets);
     if (used_.empty()) return false;
@@ -68,7 +68,7 @@ class RestValues {
 
   // What an action returns that is taken for ever.
   double returned(int action, const State& start, const StepLuck& luck) const {
-    return returned_in(static_cast<std::size_t>(horizon_), start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
+    return returned_in(horizon_, start, [&](const State&) { return action; }, [&](State& state, int taken, std::size_t step) {
       Sampler random = luck.of(step);
       return Model::step(state, taken, random);
     });

@@ -41,7 +41,7 @@ class SavingIndex final : public StateValues<Model> {
     double sum = 0;
     SampleMean more;
     for (int mission = 0; mission < missions; ++mission) {
-      progress::tell("finding out what can be saved", static_cast<std::uint64_t>(mission), missions);
+      progress::tell("finding out what can be saved", mission, missions);
       const State start = belief.sample(random);
       if (Model::ending(start) != Ending::running) continue;
       const double returned = played(start, mission < practised ? &cells : nullptr, horizon, random);

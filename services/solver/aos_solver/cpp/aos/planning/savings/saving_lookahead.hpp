@@ -31,7 +31,7 @@ class SavingLookahead {
   double steps_of_action() const {
     double sum = steps_of_way(1 + values_.settling());
     for (const Option& way : ways_) sum += steps_of_way(way.size() + values_.settling());
-    return sum * static_cast<double>(belief_->size());
+    return sum * belief_->size();
   }
 
   // Draws the luck of the states, under which all actions are compared.

@@ -63,7 +63,7 @@ class SavingPolicy {
     index_->drop_worst();
     const double least = (1 - of_search) * affordable;
     for (std::size_t i = 0; i < searched && steps > least; ++i) {
-      const auto k = static_cast<std::size_t>(random.below(static_cast<int>(belief_.size())));
+      const auto k = static_cast<std::size_t>(random.below(belief_.size()));
       double left = steps - least;
       steps -= left;
       index_->extend(cells_, belief_.states()[k], left, random);
@@ -150,7 +150,7 @@ class SavingPolicy {
     std::vector<int> ordered(actions);
     std::iota(ordered.begin(), ordered.end(), 0);
     for (std::size_t a = 0; a < actions; ++a) {
-      if (incomes[a] == none) told[a] = told_by(static_cast<int>(a), steps, random);
+      if (incomes[a] == none) told[a] = told_by(a, steps, random);
     }
     const auto worth = [&](int action) {
       const auto a = static_cast<std::size_t>(action);
@@ -167,7 +167,7 @@ class SavingPolicy {
       State state = belief_.states()[k];
       shares[Model::step(state, action, random).observation] += belief_.weights()[k];
     }
-    steps -= static_cast<double>(belief_.size());
+    steps -= belief_.size();
     double entropy = 0;
     for (const auto& [observation, share] : shares) entropy += share_of_entropy(share);
     return entropy;

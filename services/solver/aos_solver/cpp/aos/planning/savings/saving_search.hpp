@@ -63,7 +63,7 @@ double saved(const RestValues<Model>& values, const Rest<Model>& rest, const Opt
 }
 
 // How many steps of the model take as long as a rest, or a way, whose states are valued: a value takes about as long as a step.
-inline double steps_of_rest(std::size_t steps) { return 2.0 * static_cast<double>(steps + 1); }
+inline double steps_of_rest(std::size_t steps) { return 2.0 * (steps + 1); }
 inline double steps_of_way(std::size_t steps) { return static_cast<double>(steps + 1); }
 
 template <class Model>
@@ -121,12 +121,12 @@ class SavingSearch {
       for (std::size_t a = 0; a < actions; ++a) {
         after_[a] = nodes_[number].state;
         Sampler random = luck.of(depth);
-        const double reward = Model::step(after_[a], static_cast<int>(a), random).reward;
+        const double reward = Model::step(after_[a], a, random).reward;
         worths_.push_back({nodes_[number].earned + discount * reward, discount * Model::discount * values_.value(after_[a])});
         cells_.write(after_[a], &cells_after_[a * cells_.size()]);
       }
-      limit -= static_cast<double>(actions);
-      steps -= static_cast<double>(actions) * steps_of_way(1);
+      limit -= actions;
+      steps -= actions * steps_of_way(1);
       find_own_changes(actions);
       const double resting = worths_[values_.action()].all();
       for (std::size_t a = 0; a < actions; ++a) {

@@ -78,7 +78,7 @@ class SeekPlaces {
         bool tells = false;
         for (std::size_t k = 0; k < next.size(); ++k) {
           Sampler same = luck;
-          reward += belief.weights()[k] * reported_.take(next[k], static_cast<int>(a), reports[k], steps, same);
+          reward += belief.weights()[k] * reported_.take(next[k], a, reports[k], steps, same);
           running += Model::ending(next[k]) == Ending::running ? belief.weights()[k] : 0;
           failing += Model::ending(next[k]) == Ending::failure ? belief.weights()[k] : 0;
           tells = tells || !reports[k].is_like(reports[0]);
@@ -89,7 +89,7 @@ class SeekPlaces {
           continue;
         }
         if (tells) {
-          add_test(number, static_cast<int>(a), reward, reports, next);
+          add_test(number, a, reward, reports, next);
           continue;
         }
         const auto [entry, is_new] = known.emplace(running_down.place_of(next), static_cast<std::uint32_t>(places_.size()));

@@ -44,7 +44,7 @@ class SeekPlanner final : public Planner<Model> {
     estimates_ = pomcp_.estimates(question.belief);
     const auto chosen = static_cast<std::size_t>(pomcp_.choice(estimates_, question.horizon, question.barred));
     // A tree that ends in values of seen states promises what no robot returns that does not see them.
-    estimates_ = pomcp_.values(question.belief, std::move(estimates_), static_cast<int>(chosen));
+    estimates_ = pomcp_.values(question.belief, std::move(estimates_), chosen);
     seeks_ = sought_.returned > estimates_[chosen].q;
     why += seeks_ ? "; to seek what is somewhere returns more, and decides" : "; to seek returns less";
     if (!seeks_) return simulations;

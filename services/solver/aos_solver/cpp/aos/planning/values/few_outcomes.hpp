@@ -15,7 +15,7 @@ namespace aos {
 template <class Model>
 class FewOutcomes {
  public:
-  FewOutcomes() : is_left_out_(static_cast<std::size_t>(Model::action_count())) { paths_.report_to(&ignored_numbers); }
+  FewOutcomes() : is_left_out_(Model::action_count()) { paths_.report_to(&ignored_numbers); }
 
   void leave_out(int action) { is_left_out_[action] = true; }
 

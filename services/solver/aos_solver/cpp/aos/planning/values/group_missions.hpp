@@ -86,7 +86,7 @@ class GroupMissions {
 
   double cost_of_follower(int horizon) const {
     const auto of_step = static_cast<double>(step_cost_);
-    const double of_choice = (listed_ != nullptr ? cost_of_listed_action : of_step) * static_cast<double>(action_count());
+    const double of_choice = (listed_ != nullptr ? cost_of_listed_action : of_step) * action_count();
     return horizon * (of_step + of_choice * asked_followers / fewest_alike);
   }
 

@@ -98,7 +98,7 @@ class LearnedValues final : public StateValues<Model> {
       if (examples_.empty() || (round == 0 && !find_variables())) return;
       simulate_all_actions(random);
       for (int sweep = 0; sweep < std::min(learning_sweeps, horizon_); ++sweep) {
-        progress::tell("learning what states are worth", static_cast<std::uint64_t>(sweep), learning_sweeps);
+        progress::tell("learning what states are worth", sweep, learning_sweeps);
         improve();
       }
       used_ = tables_.used_variables();
@@ -229,7 +229,7 @@ class LearnedValues final : public StateValues<Model> {
     SampleMean differences;
     std::size_t steps = 0;
     for (int test = 0; test < tested_missions && steps < max_tested_steps; ++test) {
-      progress::tell("testing what states are worth", static_cast<std::uint64_t>(test), tested_missions);
+      progress::tell("testing what states are worth", test, tested_missions);
       const State& state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
       differences.add(earned_by_values(state, random) - earned_by_rollouts(state, random, steps));

@@ -53,7 +53,7 @@ class MdpValues final : public StateValues<Model> {
   // The next state after an action if it is certain and has not ended; else `no_state`.
   std::uint32_t certain_next(std::uint32_t number, int action) const {
     if (number == no_state) return number;
-    const std::size_t row = rows().row(number, static_cast<std::size_t>(action));
+    const std::size_t row = rows().row(number, action);
     const auto outcomes = rows().outcomes[row];
     return outcomes.size() == 1 && outcomes[0].probability > 1 - 1e-6 ? outcomes[0].next : no_state;
   }
@@ -67,14 +67,14 @@ class MdpValues final : public StateValues<Model> {
   void advantages(const State& state, double* worths, Sampler& /*random*/) const override { advantages(number_of(state), worths); }
   void advantages(std::uint32_t number, double* worths) const {
     for (std::size_t action = 0; action < actions(); ++action) {
-      worths[action] = advantage(number, static_cast<int>(action), horizon_);
+      worths[action] = advantage(number, action, horizon_);
     }
   }
 
   // The fully observable value of an action less that of the best action; never above 0.
   double advantage(std::uint32_t number, int action, int horizon) const {
     if (number == no_state) return 0;
-    const double worth = value_of(rows().row(number, static_cast<std::size_t>(action)), layer(horizon - 1));
+    const double worth = value_of(rows().row(number, action), layer(horizon - 1));
     return std::min(worth - layer(horizon)[number], 0.0);
   }
 
@@ -115,7 +115,7 @@ class MdpValues final : public StateValues<Model> {
     double change = 0;
     int decisions = 0;
     while (decisions < horizon_) {
-      progress::tell("computing values of states", static_cast<std::uint64_t>(decisions), static_cast<std::uint64_t>(horizon_));
+      progress::tell("computing values of states", decisions, horizon_);
       std::vector<double> values(space_.size());
       const MoreValues more = one_more_decision(rows(), layers_.back(), values, &action_values_);
       change = more.change;

@@ -38,7 +38,7 @@ std::vector<double> learned_prior(const LearnedValues<Model>& values, const Beli
     const Sampler luck{random.bits()};
     if (Model::ending(state) != Ending::running) continue;
     for (int a = 0; a < Model::action_count(); ++a) {
-      worths[a] += values.action_value(state, a, horizon, luck) / static_cast<double>(states);
+      worths[a] += values.action_value(state, a, horizon, luck) / states;
     }
   }
   return below_best(std::move(worths));
