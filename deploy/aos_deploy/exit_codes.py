@@ -52,6 +52,7 @@ _BY_ENDING = {
 
 
 def exit_code_of_mission(state: MissionState) -> ExitCode:
+    """The exit code of a mission that has ended."""
     if state.ending == "not_started":
         return _before_the_mission(state.code)
     return _BY_ENDING.get(state.ending, ExitCode.FAULT)

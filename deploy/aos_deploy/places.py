@@ -14,6 +14,7 @@ def shipped(path: str) -> Path:
 
 
 def deploy_files() -> dict[str, Path]:
+    """The deploy files that come along, by name."""
     return {path.stem: path for path in sorted(shipped("deploy").glob("*.yaml"))}
 
 

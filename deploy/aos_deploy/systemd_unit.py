@@ -74,6 +74,7 @@ _UNUSUAL = set(" \t\n\"'\\%$;")
 
 
 def unit_name(deployment: Deployment) -> str:
+    """The name of the unit's file."""
     return f"aos-{deployment.file.robot}.service"
 
 

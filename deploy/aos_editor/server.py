@@ -78,10 +78,12 @@ class BundleServer(LanguageServer):
         return self.workspace.position_codec
 
     def found_in(self, uri: str) -> list[Diagnostic]:
+        """The latest findings about a document."""
         path = _path(uri)
         return self._found.get(from_fs_path(str(path)) or "", []) if path is not None else []
 
     def bundle_of(self, uri: str) -> tuple[Path, Bundle, Lines] | None:
+        """The bundle that a document is in, with its folder and the lines of its files."""
         path = _path(uri)
         if path is None:
             return None
@@ -96,6 +98,7 @@ class BundleServer(LanguageServer):
     def name_at(
         self, params: types.DefinitionParams | types.ReferenceParams | types.RenameParams
     ) -> _Name | None:
+        """The name at a position of a document, and the bundle it is in."""
         uri = params.text_document.uri
         if (bundle_of := self.bundle_of(uri)) is None:
             return None

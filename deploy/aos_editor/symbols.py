@@ -194,6 +194,8 @@ def _code(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:
 
 
 class _BlockNames:
+    """The names in one snippet of model code."""
+
     def __init__(self, skill: str, block: Block, scope: Scope, responses: set[str]) -> None:
         self._skill = skill
         self._block = block

@@ -71,6 +71,7 @@ class ProblemPlayer:
         )
 
     def _step(self, state: int, action: int, draws: np.random.Generator) -> tuple[int, int]:
+        """The next state and what is observed there."""
         entries = self._entries(np.array([state]), action)
         probabilities = self._model.outcomes.probabilities[entries]
         entry = entries[draws.choice(len(entries), p=probabilities / probabilities.sum())]

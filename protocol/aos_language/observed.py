@@ -29,6 +29,8 @@ class ReportedNumber(msgspec.Struct, frozen=True):
 
 
 class Report(msgspec.Struct, frozen=True):
+    """One place where a draw is reported."""
+
     mention: Mention
     draw: Call
 
@@ -50,6 +52,7 @@ class Misuse(msgspec.Struct, frozen=True):
 
 
 def reports_in(cpp: Cpp) -> tuple[Report, ...]:
+    """The reports of a snippet of a dynamic model."""
     return tuple(found for found in _read(cpp) if isinstance(found, Report))
 
 

@@ -31,6 +31,7 @@ def tree_of(text: str, mode: str) -> ast.AST:
 
 
 def place_in(snippet: Snippet, node: ast.expr | ast.stmt) -> Span:
+    """The document place of a node of the snippet's tree."""
     return place_of_byte(snippet, node.lineno, node.col_offset)
 
 

@@ -121,6 +121,7 @@ class Grant(NamedTuple):
 
 @lru_cache(maxsize=256)
 def grants(robot: str, party: Party) -> tuple[Grant, ...]:
+    """Returns what the party may do on the bus of a robot."""
     root = f"aos/{Keys(robot).robot}"
     given = [
         Grant(act, f"{root}/{key}", is_denied)

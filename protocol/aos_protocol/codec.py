@@ -54,15 +54,18 @@ def open_envelope(payload: bytes) -> Envelope:
 
 
 def decode(payload: bytes, kind: type[M]) -> M:
+    """The message inside a payload."""
     return _checked_decode(open_envelope(payload).body, kind)
 
 
 def encode_fault(error: AosError, *, sender: str, stamp_ns: int) -> bytes:
+    """An error reply."""
     fault = Fault(error.code, error.message, error.hint, error.diagnostics)
     return encode(fault, sender=sender, stamp_ns=stamp_ns)
 
 
 def decode_fault(payload: bytes) -> AosError:
+    """The exception that an error reply stands for."""
     fault = decode(payload, Fault)
     return error_from_code(fault.code, fault.message, hint=fault.hint, diagnostics=fault.diagnostics)
 

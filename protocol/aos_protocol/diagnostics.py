@@ -62,6 +62,7 @@ class Diagnostic(msgspec.Struct, frozen=True):
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Returns whether any of them is an error."""
     return any(diagnostic.is_error for diagnostic in diagnostics)
 
 

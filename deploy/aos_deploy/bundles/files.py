@@ -127,6 +127,7 @@ def project_at(path: Path, *, hint: str = MEND) -> tuple[Planned, Project, tuple
 
 
 def refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...], hint: str = MEND) -> DocumentError:
+    """Returns the error that is raised for a bundle with errors."""
     return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=told_once(diagnostics))
 
 

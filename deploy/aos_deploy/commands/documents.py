@@ -116,6 +116,7 @@ def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnosti
 
 
 def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) -> tuple[Diagnostic, ...]:
+    """Generates and compiles the model and returns what that finds."""
     import asyncio  # These would make the other commands start slower.
 
     from aos_deploy.bundles.pictures import picture_findings

@@ -51,6 +51,7 @@ def known_names(names: Iterable[str]) -> str:
 
 
 def plain_value(node: YamlNode) -> Any:
+    """Returns the value of a node as lists, dicts and scalars."""
     if isinstance(node, YamlMap):
         return {key: plain_value(item) for key, item in node.entries.items()}
     if isinstance(node, YamlList):

@@ -115,6 +115,8 @@ def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
 
 
 class _Reader:
+    """Nodes to plain values with their places."""
+
     def __init__(self, file: str, findings: Findings) -> None:
         self._file = file
         self._findings = findings
@@ -183,6 +185,7 @@ class _Reader:
 
 
 def _span(file: str, mark: Any) -> Span:
+    """The place of a position mark of the YAML reader."""
     return Span(file, mark.line + 1, mark.column + 1)
 
 

@@ -27,6 +27,7 @@ class Curves:
 
     @property
     def plots(self) -> dict[str, list[tuple[str, ...]]]:
+        """The curves of each plot, by its title."""
         numbers = {"Numbers of the belief": self.numbers[:_MOST_CURVES]} if self.numbers else {}
         return {
             "Endings": list(self.endings),
@@ -73,6 +74,7 @@ def _add_number(numbers: list[tuple[str, ...]], variable: str) -> None:
 
 
 def foxglove_layout(curves: Curves, *, has_pictures: bool) -> dict[str, Any]:
+    """The layout that Foxglove and Lichtblick import."""
     panels: dict[str, dict[str, Any]] = {}
     plots = []
     for number, (title, paths) in enumerate(curves.plots.items()):

@@ -105,6 +105,7 @@ class _File:
         self._writer.add_attachment(stamp_ns, stamp_ns, str(path.relative_to(run)), kind, path.read_bytes())
 
     def finish(self, run: Path) -> None:
+        """Writes the index."""
         names = {mission.name for mission in self._missions}
         self._writer.add_metadata(
             "aos", {"version": __version__, "run": run.resolve().name, "missions": " ".join(sorted(names))}

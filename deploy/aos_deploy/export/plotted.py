@@ -46,6 +46,7 @@ def belief_of(record: DecisionRecord) -> dict[str, Any]:
 
 
 def values_of(record: DecisionRecord) -> dict[str, Any]:
+    """The worth of each action at a decision."""
     plain: dict[str, Any] = {
         "mission": record.mission,
         "step": record.step,

@@ -53,6 +53,7 @@ class JournalRules:
         self._steering = SteeringRules()
 
     def was_holding(self, stamp_ns: int) -> bool:
+        """Says whether the mission held at this time."""
         is_after = self._held_since_ns is not None and stamp_ns > self._held_since_ns
         return is_after or any(begin_ns < stamp_ns < end_ns for begin_ns, end_ns in self._holds)
 

@@ -134,6 +134,7 @@ class MissionRun:
         return RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
 
     def kill(self) -> None:
+        """Ends every process without waiting for it."""
         if self._supervisor is not None:
             self._supervisor.kill()
 

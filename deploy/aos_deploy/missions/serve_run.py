@@ -75,6 +75,7 @@ class ServeRun:
         self._server = msgspec.structs.replace(self._server, settings=settings | {"options": options})
 
     def kill(self) -> None:
+        """Ends every process without waiting for it."""
         if self._supervisor is not None:
             self._supervisor.kill()
 

@@ -11,6 +11,7 @@ from aos_runtime.processes.lifecycle import STORAGE_STATUS
 
 
 def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool) -> AosError:
+    """The error for a process that ended by itself."""
     name = program.name
     fault = run.fault(name)
     if fault is not None:
@@ -40,6 +41,7 @@ def look_at_log(run: RunDirectory, name: str) -> str:
 
 
 def status_text(status: int) -> str:
+    """An exit status, or the signal that ended a process."""
     if status >= 0:
         return f"exit status {status}"
     return f"killed by {signal.Signals(-status).name}"

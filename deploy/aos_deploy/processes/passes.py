@@ -50,6 +50,7 @@ class Passes:
         return self._folder / name
 
     def credential(self, name: str) -> Credential:
+        """A party's name and password."""
         return Credential(name, self._passwords[name])
 
     @property

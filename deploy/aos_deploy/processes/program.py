@@ -88,6 +88,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
         return bool(self.command) or self.is_adapter
 
     def argv(self, settings: Path) -> list[str]:
+        """The command line."""
         own = [sys.executable, "-m", self.module, str(settings)]
         words = words_of(self.command) if self.command else own
         left_behind_s = _LEFT_BEHIND_S if self.is_adapter else None
@@ -143,6 +144,7 @@ def outsiders_of(deployment: Deployment) -> tuple[Outsider, ...]:
 
 
 def _own(deployment: Deployment, name: str, part: ProgramPart) -> Program:
+    """A program of the deploy file's `programs:`."""
     return Program(
         name=name,
         start_s=part.start_s,

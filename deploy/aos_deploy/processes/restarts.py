@@ -25,11 +25,13 @@ class Restarts:
         self._recent: deque[float] = deque(maxlen=STARTS_OF_ADAPTER)
 
     def start(self, now_s: float) -> None:
+        """Takes note of a start."""
         self.count += 1
         self._in_vain += 1
         self._recent.append(now_s)
 
     def succeed(self) -> None:
+        """Takes note that the process is ready."""
         self._in_vain = 0
 
     @property
@@ -38,6 +40,7 @@ class Restarts:
         return STARTS_OF_ADAPTER if self._is_adapter and not self._in_vain else STARTS
 
     def are_left(self, now_s: float) -> bool:
+        """Says whether the process may be started again."""
         return self._recent_starts(now_s) < self.most
 
     def delay_s(self, now_s: float, *, is_cut: bool = False) -> float:

@@ -131,6 +131,7 @@ class Supervisor:
 
     @property
     def pids(self) -> dict[str, int]:
+        """Process ids by service."""
         return {name: running.child.pid for name, running in self._running.items()}
 
     @property
@@ -369,6 +370,7 @@ class Supervisor:
             self._changed(program.name, "starting", f"start {running.restarts.count}")
 
     def look_at_log(self, name: str) -> str:
+        """Returns the place of a service's log, and its last lines."""
         return look_at_log(self._run, name)
 
     # --- stopping ---

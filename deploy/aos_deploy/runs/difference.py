@@ -25,6 +25,7 @@ class Difference(msgspec.Struct, frozen=True):
 
     @property
     def is_any(self) -> bool:
+        """Says whether the missions differ in their steps."""
         return self.step > 0
 
 

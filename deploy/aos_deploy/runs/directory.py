@@ -157,6 +157,7 @@ class RunDirectory:
         return text.splitlines()[-_TOLD_LOG_LINES:]
 
     def fault(self, service: str) -> Fault | None:
+        """The fault a service has left, if it has."""
         try:
             return msgspec.json.decode(fault_path(self.path, service).read_bytes(), type=Fault)
         except (OSError, *UNREADABLE):

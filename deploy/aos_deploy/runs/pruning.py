@@ -29,6 +29,7 @@ class Pruned(msgspec.Struct, frozen=True):
 
     @property
     def freed_bytes(self) -> int:
+        """The space of all that was removed."""
         return sum(run.size_bytes for run in self.removed)
 
 

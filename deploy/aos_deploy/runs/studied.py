@@ -68,6 +68,7 @@ class StudiedRun:
         return cls(run, mission, msgspec.structs.replace(settings, cache_dir=str(cache_dir())))
 
     async def study(self, ask: Callable[[Study], Awaitable[T]]) -> T:
+        """The answer to one question about the mission."""
         study = Study(_Read(self), cache_dir())
         try:
             return await ask(study)

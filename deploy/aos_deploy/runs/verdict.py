@@ -22,6 +22,7 @@ class Verdict(RunEnd, frozen=True, kw_only=True):
 
     @property
     def steps(self) -> int:
+        """The number of decisions."""
         return len(self.actions)
 
 
@@ -36,6 +37,7 @@ class Account:
 
     @property
     def has_begun(self) -> bool:
+        """Says whether anything was decided."""
         return bool(self._actions)
 
     @property
@@ -70,6 +72,7 @@ class Account:
         return msgspec.structs.replace(state, phase="ended", goal_probability=goal, **changes)
 
     def verdict(self) -> Verdict:
+        """The verdict on what was taken so far."""
         state = self.state if self.has_ended else None
         belief = self._belief
         cautious = None if belief is None else belief.cautious or belief

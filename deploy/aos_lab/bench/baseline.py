@@ -36,6 +36,8 @@ class BaselineFigure(msgspec.Struct, frozen=True):
 
 
 class Baselines:
+    """The compiled program."""
+
     def __init__(self, program: Path) -> None:
         self._program = program
 

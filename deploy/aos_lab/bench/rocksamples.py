@@ -35,6 +35,7 @@ LAYOUTS = {
 
 
 def environment(size: int, start_y: int, rocks: list[tuple[int, int]]) -> str:
+    """The environment document of a layout."""
     return Template((BENCH / "rocksample.ef.template").read_text()).substitute(
         size=size,
         cells=size**2,
@@ -47,6 +48,7 @@ def environment(size: int, start_y: int, rocks: list[tuple[int, int]]) -> str:
 
 
 def bundle(name: str) -> dict[str, str]:
+    """The documents of a layout, by the names of their files."""
     skills = sorted((BENCH / SKILLS_OF).glob("*.[sa][dm]"))
     return {
         "rocksample.ef": environment(*LAYOUTS[name]),

@@ -65,6 +65,7 @@ class Suite:
         return sum(3 + 2 * planners * self._effort.runs_of(problem) for problem in self._problems)
 
     async def run(self) -> Report:
+        """Measures everything."""
         compiler = await find_compiler()
         machine = this_machine(compiler.version, self._effort.seed, self._effort.budget_s)
         if not pomdp_py_peer.is_installed():

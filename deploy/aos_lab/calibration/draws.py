@@ -88,6 +88,7 @@ class _Search:
         )
 
     def environment(self, environment: Environment) -> Environment:
+        """Returns the environment with the variables of all draws so far and of its own."""
         extrinsic = self._section(environment.extrinsic_changes, "", "state_")
         before = len(self.draws)
         initial = self._section(environment.initial_belief, "", "state")

@@ -58,6 +58,7 @@ class Layers:
         self._initial: WeightedStates
 
     async def begin(self) -> list[tuple[str, float]]:
+        """The initial states with their probabilities."""
         await self._engine.reset_belief()
         self._initial = await self._exported()
         return [(text, weight) for weight, text in self._initial.particles]

@@ -32,6 +32,7 @@ def head(*names: str) -> Iterator[str]:
 
 
 def row(*cells: str) -> str:
+    """A line of a table."""
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 

@@ -65,6 +65,8 @@ class PartResult(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
+    """The place and time of a run."""
+
     date: str
     machine: str
     versions: dict[str, str]
@@ -78,6 +80,8 @@ class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Results(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a report shows."""
+
     name: str
     title: str
     about: str
@@ -87,6 +91,7 @@ class Results(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def result_of(name: str, part: Part, by: str, played: Played, experiment: Experiment) -> PartResult:
+    """A part's figures and verdicts."""
     truth = part.truth or experiment.truth
     claims = [asking_the_world(claim, by, truth) for claim in part.claims if claim.only in (None, by)]
     return PartResult(

@@ -23,6 +23,8 @@ class ScriptedStep(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Statistics(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a report of scripts shows."""
+
     name: str
     title: str
     about: str

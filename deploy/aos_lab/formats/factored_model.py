@@ -76,6 +76,7 @@ class _Frame:
         return f" for {', '.join(parents)}" if parents else ""
 
     def look_up(self, factor: Factor) -> Floats:
+        """The value of a table in every row."""
         return factor.values(self.columns, len(self.origin))
 
 
@@ -129,6 +130,8 @@ class _Steps(msgspec.Struct, frozen=True):
 
 
 class _Action:
+    """The tables with one action chosen, ready to be looked up."""
+
     def __init__(self, model: FactoredModel, chosen: Mapping[str, int]) -> None:
         self.values = {variable.name: variable.values[chosen[variable.name]] for variable in model.actions}
         seen_names = {state.after.name for state in model.states if state.is_seen}

@@ -55,6 +55,7 @@ class DenseFactor(msgspec.Struct, frozen=True):
         return np.broadcast_to(self.cells[tuple(columns[axis] for axis in self.axes)], rows)
 
     def outcomes(self, columns: Columns, rows: int) -> Outcomes:
+        """Returns the outcomes of the distribution for every row of its parents."""
         parents = tuple(columns[axis] for axis in self.axes[:-1])
         chances = self.cells[parents] if parents else np.tile(self.cells, (rows, 1))
         row, value = np.nonzero(chances)

@@ -132,6 +132,7 @@ class _Building:
         return int(self._region_of[belief > 0].max())
 
     def outcomes_of(self, number: int) -> _NodeOutcomes:
+        """Returns the outcomes of a finished node."""
         node, matrices = self.nodes[number], self._matrices
         following = np.full(len(self.model.observations), len(self.nodes))
         for observation, target in node.next.items():
@@ -169,6 +170,7 @@ class _Matrices:
         self._first = np.searchsorted(self.action, np.arange(len(model.actions) + 1))
 
     def part(self, action: int) -> slice:
+        """Returns the place of an action's outcomes."""
         return slice(self._first[action], self._first[action + 1])
 
     def successors(self, belief: Floats, action: int) -> Iterator[tuple[int, Floats]]:

@@ -29,6 +29,8 @@ def write_problem(model: ExplicitModel, path: Path) -> None:
 
 
 class _Names:
+    """The names of states, actions and observations in the file."""
+
     def __init__(self, model: ExplicitModel) -> None:
         self.states = symbols(model.states)
         self.actions = symbols(model.actions)

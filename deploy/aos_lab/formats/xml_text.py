@@ -22,6 +22,7 @@ class Element:
         self.pieces: list[tuple[str, int, int]] = []
 
     def words(self) -> list[Word]:
+        """The words of the text, each with its place."""
         return [word for piece in _joined(self.pieces) for word in words_of(*piece)]
 
     def all(self, tag: str) -> Iterator[Element]:

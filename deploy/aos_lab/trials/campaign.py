@@ -51,6 +51,8 @@ class _Player(Protocol):
 
 
 class _Kept(msgspec.Struct, frozen=True):
+    """One line of the file of records."""
+
     digest: str
     trial: Trial
 

@@ -20,6 +20,8 @@ _OWN_TYPE = re.compile(r"\b(?:class|enum|struct|typedef|typename|union|using)\s+
 
 
 class _Document(msgspec.Struct, frozen=True):
+    """The code of a document, and the names of it that code may use."""
+
     blocks: tuple[Block, ...]
     names: frozenset[str]
 

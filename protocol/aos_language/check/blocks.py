@@ -39,6 +39,7 @@ class Block(msgspec.Struct, frozen=True):
 
 
 def read_block(block: Block) -> Cpp:
+    """A block's snippet, read."""
     if block.is_declarations:
         return read_cpp_declarations(block.snippet.code)
     return (read_cpp_expression if block.is_expression else read_cpp)(block.snippet.code)
@@ -128,6 +129,7 @@ def skill_blocks(model: SkillModel) -> Iterator[Block]:
 
 
 def given_observation_blocks(model: SkillModel) -> Iterator[Block]:
+    """A skill's code for a state given an observation."""
     names = {parameter.name: parameter.type for parameter in model.parameters}
     yield from assignment_blocks(GIVEN_OBSERVATION, model.state_given_observation, names)
 

@@ -12,6 +12,7 @@ from aos_protocol.spelling import quoted
 
 
 def check_environment_names(environment: Environment, scope: Scope, findings: Findings) -> None:
+    """Types, enum values and variables of the environment."""
     types = [(enum.name, enum.span) for enum in environment.enums]
     types += [(compound.name, compound.span) for compound in environment.compounds]
     values = [pair for enum in environment.enums for pair in zip(enum.values, enum.value_spans, strict=True)]

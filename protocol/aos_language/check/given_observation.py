@@ -36,5 +36,6 @@ def check_reported_variables(
 
 
 def names_in_given_observation(model: SkillModel) -> frozenset[str]:
+    """All names that the code mentions."""
     blocks = given_observation_blocks(model)
     return frozenset(mention.path[0] for block in blocks for mention in read_block(block).mentions)

@@ -73,6 +73,7 @@ def check_mapping(
 def check_low_level(
     document: LowLevelDocument, mappings: Iterable[AbstractionMapping], scope: Scope, findings: Findings
 ) -> None:
+    """The code that makes low-level constants."""
     names = python_names.PythonNames.of_constants(mappings, scope)
     for constant in document.constants:
         tree = parsed(constant.code, "exec", findings)

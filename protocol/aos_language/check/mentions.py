@@ -252,6 +252,7 @@ class MentionCheck:
         return self._block.snippet.locate(extent.line, extent.column)
 
     def _part_span(self, extent: Extent, part: str) -> Span:
+        """Returns the place of a name inside a path."""
         text = self._cpp.code[extent.start : extent.end]
         match = re.search(rf"(?<![\w]){re.escape(part)}(?!\w)", text)
         if match is None:

@@ -45,6 +45,7 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
 def _check_blocks(
     blocks: Iterable[tuple[Assignment, ...]], pieces: tuple[Block, ...], scope: Scope, findings: Findings
 ) -> None:
+    """The sections of a document, and the blocks that they consist of."""
     for block in blocks:
         _check_loops(block, scope, findings)
     around = _Around(_temporary_enums(blocks), _declared_names(pieces))
@@ -105,6 +106,8 @@ class _Around(msgspec.Struct, frozen=True):
 
 
 class _BlockCheck:
+    """One snippet against the names of the project."""
+
     def __init__(self, block: Block, scope: Scope, findings: Findings, around: _Around) -> None:
         self._block = block
         self._scope = scope

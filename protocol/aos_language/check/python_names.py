@@ -108,6 +108,7 @@ class PythonNames(msgspec.Struct, frozen=True):
         return msgspec.structs.replace(self, known=known)
 
     def of_code(self) -> PythonNames:
+        """Those of a local variable's code."""
         return self._also({_INPUT})
 
     def _also(self, names: Iterable[str]) -> PythonNames:
@@ -225,6 +226,7 @@ def check_fields_set(
 
 
 def _bound_names(tree: ast.AST) -> frozenset[str]:
+    """Every name that code binds somewhere, in whatever order and scope."""
     bound: set[str] = set()
     for node in ast.walk(tree):
         match node:

@@ -375,6 +375,7 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
 
 
 def _has_effects(node: tree_sitter.Node, functions: _Functions) -> bool:
+    """Returns whether evaluating it may change anything that is named in it."""
     return any(_is_effect(part, functions) for part in below(node))
 
 
@@ -387,6 +388,7 @@ def _is_effect(node: tree_sitter.Node, functions: _Functions) -> bool:
 
 
 def _may_change(call: tree_sitter.Node, functions: _Functions) -> bool:
+    """Returns whether a call may change its object or an argument."""
     function = call.child_by_field_name("function")
     if function is None or function.type == "primitive_type":
         return False

@@ -59,6 +59,8 @@ class SharedMisuse(msgspec.Struct, frozen=True):
 
 
 class SharedCode(msgspec.Struct, frozen=True):
+    """The declarations of the text, in its order."""
+
     cpp: Cpp
     names: tuple[SharedName, ...] = ()
     functions: tuple[SharedFunction, ...] = ()
@@ -88,6 +90,7 @@ class SharedCode(msgspec.Struct, frozen=True):
 
     @property
     def whole_numbers(self) -> dict[str, str]:
+        """The constants that are whole numbers, as they are written."""
         constants = {name.name for name in self.names if name.kind == "constant"}
         values = {
             declaration.name: self.cpp.code[declaration.initial.start : declaration.initial.end]
@@ -132,6 +135,8 @@ def shared_code(code: str, compounds: frozenset[str] = frozenset()) -> SharedCod
 
 
 class _Reading:
+    """One walk over the declarations."""
+
     def __init__(self, code: str, cpp: Cpp, compounds: frozenset[str]) -> None:
         self._data = code.encode()
         self._lines = Lines(code)
@@ -326,6 +331,7 @@ def _only_read(parameter: tree_sitter.Node) -> bool:
 
 
 def _parameter_name(parameter: tree_sitter.Node) -> str:
+    """Returns the name of a parameter; empty for one without a name."""
     names = [text_of(part) for part in _declarators(parameter.child_by_field_name("declarator"))]
     return names[-1] if names and names[-1].isidentifier() else ""
 

@@ -59,6 +59,8 @@ _NO_STATEMENTS = ("comment", "case_statement", "else_clause")
 
 
 class _Marking:
+    """One walk over the tree of a function."""
+
     def __init__(self, code: str, marks: Marks) -> None:
         self._lines = code.split("\n")
         self._marks = marks

@@ -102,6 +102,8 @@ class FaultKind(StrEnum):
 
 
 class Fault(msgspec.Struct, frozen=True):
+    """One reason, with its place."""
+
     kind: FaultKind
     message: str
     extent: Extent
@@ -124,6 +126,8 @@ class Tokens(msgspec.Struct, frozen=True):
 
 
 class Lines:
+    """Line and column of every offset of a text."""
+
     def __init__(self, text: str) -> None:
         self._starts = [0, *(match.end() for match in re.finditer("\n", text))]
 

@@ -30,6 +30,7 @@ def expression(snippet: Snippet, *, drop_semicolon: bool = False) -> Snippet:
 
 
 def guarded(condition: Snippet, code: Snippet) -> Snippet:
+    """C++ statements that run only where a condition holds."""
     shift = len(condition.origins)
     escapes = [(line + 1, index, width) for line, index, width in condition.escapes]
     escapes += [(line + shift + 2, index, width) for line, index, width in code.escapes]
@@ -38,6 +39,7 @@ def guarded(condition: Snippet, code: Snippet) -> Snippet:
 
 
 def joined(first: Snippet, second: Snippet) -> Snippet:
+    """Returns both, the second one below the first."""
     shift = len(first.origins)
     escapes = [(line + shift, index, width) for line, index, width in second.escapes]
     code = f"{first.code}\n{second.code}"

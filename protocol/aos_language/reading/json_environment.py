@@ -56,6 +56,7 @@ def _monitors(record: Record) -> Iterator[documents.MonitorModel]:
 
 
 def read_low_level(record: Record, project: str, span: Span) -> documents.LowLevelDocument:
+    """The low-level types and constants."""
     types = []
     for item in record.records("LocalVariableTypes", "a low-level type"):
         name = item.text("TypeName", required=True)

@@ -67,10 +67,12 @@ class Record:
         return all(_is_blank(value) for _, value in self._members.values())
 
     def has(self, key: str) -> bool:
+        """Returns whether the key is there, whatever its value."""
         self._ask(key)
         return key in self._members
 
     def is_text(self, key: str) -> bool:
+        """Returns whether the key's value is a string."""
         return isinstance(self._value(key), JsonString)
 
     def is_code(self, key: str) -> bool:
@@ -196,6 +198,7 @@ class Record:
     # --- composites ---
 
     def record(self, key: str, what: str, *, required: bool = False) -> Record | None:
+        """An object within this one."""
         value = self._read(key, required, "an object", lambda v: v if isinstance(v, JsonObject) else None)
         return None if value is None else Record(self.source, value, what, self.findings)
 

@@ -79,6 +79,7 @@ JsonValue = JsonString | JsonNumber | JsonConstant | JsonArray | JsonObject
 
 
 def describe(value: JsonValue) -> str:
+    """Returns the kind of a value, for messages."""
     match value:
         case JsonString():
             return "a string"
@@ -210,6 +211,7 @@ class _Reader:
             raise _Unreadable(f'expected "," or "{bracket}", found {self._found()}', self._at, hint)
 
     def _indent(self, at: int) -> int:
+        """The number of blanks that the line of a place begins with."""
         match = _BLANK.match(self._text, self._text.rfind("\n", 0, at) + 1)
         return len(match.group()) if match else 0
 

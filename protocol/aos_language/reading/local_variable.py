@@ -10,6 +10,8 @@ from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
 
 
 class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
+    """The attributes that a document gives a local variable, as they were found."""
+
     name: Text | None
     span: Span
     type: str = ""

@@ -20,6 +20,7 @@ _HINT = "Write `def draw(state, belief, step):`, which returns an SVG as text or
 
 
 def check_picture(source: Source, findings: Findings) -> None:
+    """Adds what is wrong with the text of a `picture.py`."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -18,6 +18,8 @@ _LOOP_PARTS = ("loop_condition", "loop_body")
 
 
 class _Open(msgspec.Struct):
+    """An assignment that is being read."""
+
     span: Span
     name: str = ""
     temporary: TemporaryVariable | None = None

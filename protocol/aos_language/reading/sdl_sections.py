@@ -155,4 +155,5 @@ class Sections:
         return last_of(self.all(word), self._findings, projects)
 
     def block(self, word: str) -> tuple[Assignment, ...]:
+        """The model code of a section."""
         return read_block(self.last(word), self._findings)

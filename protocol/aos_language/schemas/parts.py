@@ -13,6 +13,7 @@ IMPORTS: Schema = {"$ref": "#/$defs/imports"}
 
 
 def shared_parts() -> dict[str, Schema]:
+    """Returns the definitions that several documents use."""
     loop = object_of(
         "Repeats for each state variable of a compound type.",
         Type=TEXT,

@@ -14,6 +14,7 @@ _TYPES = {
 
 
 def json_text(content: documents.Content, version: str = "") -> str:
+    """The text of the document's JSON file."""
     header = {
         "Project": content.project,
         "Name": content.name

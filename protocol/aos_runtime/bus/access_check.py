@@ -17,12 +17,15 @@ _WORDS: dict[Act, str] = {
 
 
 class Access:
+    """Knows what one party may do on the bus of one robot."""
+
     def __init__(self, robot: str, party: Party) -> None:
         self._robot = robot
         self._party = party
         self._known: dict[tuple[Act, str], bool] = {}
 
     def allows(self, act: Act, key: str) -> bool:
+        """Says whether the router lets it through."""
         is_allowed = self._known.get((act, key))
         if is_allowed is None:
             is_allowed = may(self._robot, self._party, act, key)

@@ -49,6 +49,7 @@ class Question(Generic[R]):
 
     @property
     def replies(self) -> Callback[zenoh.Reply]:
+        """The callback for the query."""
         end = partial(self._loop.call_soon_threadsafe, self._settle, None)
         return Callback(self._on_reply, end, indirect=False)
 

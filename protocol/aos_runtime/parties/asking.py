@@ -40,6 +40,8 @@ async def ask_until_answered(
 
 
 class _Server:
+    """The presence of a service, as its token tells."""
+
     def __init__(self, presence: Subscription[tuple[str, bool]]) -> None:
         self._presence = presence
         self._is_there = False

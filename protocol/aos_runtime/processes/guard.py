@@ -55,6 +55,7 @@ _LIMITS = {
 
 
 def main(arguments: list[str]) -> NoReturn:
+    """Runs the command named in the arguments and ends as it ends."""
     grace_s, left_behind_s, niceness, limits, sandbox, command = _parse(arguments)
     signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
     die_with_parent(signal.SIGTERM)

@@ -110,6 +110,7 @@ SYSTEM = _names("""
 
 
 def numbers_of(machine: str) -> dict[str, int]:
+    """The number of each call that a machine has."""
     column = list(ARCHITECTURES).index(machine) + 1
     entries = (entry.split() for entry in _NUMBERS.split(";"))
     return {entry[0]: int(entry[column]) for entry in entries if entry[column] != "-"}

@@ -50,6 +50,7 @@ class Problem(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 def status_of(code: str) -> HTTPStatus:
+    """The HTTP status of an error."""
     return _BY_CODE.get(code) or _BY_HUNDRED.get(code[3:4], HTTPStatus.INTERNAL_SERVER_ERROR)
 
 

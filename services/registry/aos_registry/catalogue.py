@@ -42,6 +42,8 @@ CREATE TABLE file (
 
 
 class Revision(msgspec.Struct, frozen=True):
+    """A stored revision with its files."""
+
     project: str
     number: int
     digest: str

@@ -43,6 +43,7 @@ class DroppedBundles:
         self._from_before = set(folder.iterdir())
 
     async def follow(self) -> None:
+        """Follows the folder until it is cancelled."""
         await watch_for_bundles(self._folder, self._take_path, self._changed, quiet_s=self._quiet_s)
 
     def project_changed(self) -> None:

@@ -17,6 +17,7 @@ _PARAMETER = re.compile(r"\{(\w+)\}")
 
 
 def openapi_document(operations: Iterable[Operation]) -> dict[str, Any]:
+    """The document, as plain data."""
     operations = tuple(operations)
     types = [
         Problem,

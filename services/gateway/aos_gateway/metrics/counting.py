@@ -28,6 +28,8 @@ _log = logging.getLogger("aos.gateway")
 
 
 class _Mission:
+    """The place up to which a mission is counted."""
+
     def __init__(self) -> None:
         self.next_sequence = 0
         self.next_row = 0
@@ -38,6 +40,8 @@ class _Mission:
 
 
 class _Counted:
+    """The place up to which a run is counted."""
+
     def __init__(self) -> None:
         self.missions: dict[str, _Mission] = {}
         self.engine_starts: dict[str, int] = {}
@@ -49,6 +53,8 @@ class _Counted:
 
 
 class Metrics:
+    """The metrics of the runs on a shelf."""
+
     def __init__(self, shelf: RunShelf) -> None:
         self._shelf = shelf
         self._families = Families()

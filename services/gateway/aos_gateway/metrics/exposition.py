@@ -62,6 +62,7 @@ class Gauge(Counter):
         self._sums[tuple(labels.items())] = value
 
     def clear(self) -> None:
+        """Forgets all values."""
         self._sums.clear()
 
 

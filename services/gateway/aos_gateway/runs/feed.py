@@ -91,6 +91,7 @@ class Watch:
         self.has_viewers.set()
 
     def remove(self, viewer: Viewer) -> None:
+        """Lets it hear no more."""
         self._viewers.discard(viewer)
         if not self._viewers:
             self.has_viewers.clear()
@@ -212,11 +213,13 @@ class Watches:
 
 
 def frame_of_record(record: DecisionRecord, rows: Steps) -> Frame:
+    """The event of a decision, or of its outcome."""
     event = StepEvent(record, rows.take(record))
     return Frame("decision", msgspec.json.encode(event), record.mission, record.sequence)
 
 
 def frame_of_state(state: MissionState) -> Frame:
+    """The event of a mission's state."""
     return Frame("state", msgspec.json.encode(state), state.mission)
 
 

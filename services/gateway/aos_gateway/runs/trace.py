@@ -188,6 +188,7 @@ class Traces:
 
 
 def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:
+    """The trace of records in order."""
     steps = Steps()
     for record in records:
         steps.take(record)

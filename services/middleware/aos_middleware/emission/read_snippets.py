@@ -29,6 +29,7 @@ class ReadSnippets:
         return self._kept(read_body(snippet))
 
     def mistake(self, code: str, message: str, span: Span) -> None:
+        """Keeps a mistake of the documents."""
         self.diagnostics.append(Diagnostic(Severity.ERROR, code, message, span))
 
     def read_by(self, codes: Iterable[PythonCode], also: Iterable[str] = ()) -> list[str]:

@@ -84,10 +84,12 @@ class Mappings:
 
     @property
     def monitors(self) -> dict[str, Evaluator]:
+        """The monitors of the newest revision in use, by name."""
         return {name: found for name, found in self._newest.items() if found.emitted.mapping.monitor}
 
     @property
     def paths(self) -> dict[str, str]:
+        """The activation path of each skill of the newest revision in use."""
         return {
             skill: evaluator.emitted.mapping.activation.path
             for skill, evaluator in _skills(self._newest).items()

@@ -75,9 +75,11 @@ class ServedPaths:
         await self._has_heard.wait()
 
     def servers(self, path: str) -> list[Serving]:
+        """Returns the adapters that answer calls of a path now."""
         return self._servers.get("/" + path.strip("/"), [])
 
     def announced(self, path: str) -> int:
+        """Returns how often somebody has announced to serve a path."""
         return self._announced["/" + path.strip("/")]
 
     def fault(self, path: str) -> SkillError | None:

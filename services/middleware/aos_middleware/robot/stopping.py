@@ -48,6 +48,7 @@ class Stop:
         self._goes_out.set()
 
     def is_cause(self, error: AosError) -> bool:
+        """Returns whether a call ended with this error because it was stopped."""
         return self._came_first or (bool(self.by) and error.code == "AOS507")
 
     def unexplained(self, error: AosError) -> SkillError:

@@ -251,6 +251,7 @@ class Evaluator:
         return text[max(starts) :] if max(starts) >= 0 else ""
 
     def _written_to_log(self) -> str:
+        """The end of what this worker has written to the log."""
         with self._log_path.open("rb") as log:
             end = log.seek(0, 2)
             log.seek(max(self._log_start_bytes, end - _TRACEBACK_BYTES))

@@ -63,6 +63,8 @@ class Taken(msgspec.Struct, frozen=True, tag=True):
 
 
 class Begun(msgspec.Struct, frozen=True, tag=True):
+    """The fields of the call."""
+
     fields: dict[str, Any]
 
 
@@ -107,6 +109,7 @@ def pack(message: Question | Answer) -> bytes:
 
 
 def read_question(body: bytes) -> Question:
+    """The question in a frame's body."""
     question: Question = _questions.decode(body)
     return question
 

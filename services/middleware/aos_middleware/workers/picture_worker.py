@@ -25,6 +25,8 @@ _SVG = "{http://www.w3.org/2000/svg}svg"
 
 
 class Subject(msgspec.Struct, frozen=True):
+    """The code that draws, and what it is to draw."""
+
     source: str
     state: dict[str, Any]
     belief: dict[str, dict[str, float]]
@@ -52,6 +54,7 @@ class NotDrawn(msgspec.Struct, frozen=True, tag=True):
 
 
 def main() -> None:
+    """Draws once."""
     error_output = os.dup(2)
     questions, answers = take_over_pipes(error_output)
     faulthandler.enable(file=error_output)

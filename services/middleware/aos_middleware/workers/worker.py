@@ -143,6 +143,7 @@ class LoadedMapping:
             self._silent.discard(name)
 
     def _call(self, function: Function, *message: Any) -> Any:
+        """Calls a generated function with the local variables it names."""
         code: CodeType = function.__code__
         names = code.co_varnames[len(message) : code.co_argcount]
         values = self._values | self._of_skill
@@ -222,6 +223,7 @@ def _answer_of(
 
 
 def main() -> None:
+    """Answers questions until the input ends."""
     error_output = os.dup(2)
     questions, answers = take_over_pipes(error_output)
     faulthandler.enable(file=error_output)

@@ -26,4 +26,5 @@ def counted(outcome_of_pick: Callable[[int], str], seeds: Sequence[int], label: 
 
 
 def shares(counts: Counter[str], outcomes: Sequence[str]) -> str:
+    """The share of each outcome, as a line for people."""
     return ", ".join(f"{outcome} {counts[outcome] / counts.total():.2f}" for outcome in outcomes)

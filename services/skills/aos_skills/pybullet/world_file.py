@@ -35,6 +35,7 @@ class WorldFile:
 
 
 def kinds() -> list[str]:
+    """The folders under `worlds`."""
     return sorted(module.name for module in pkgutil.iter_modules(worlds.__path__) if module.ispkg)
 
 

@@ -9,10 +9,12 @@ CANCEL_S = 1.8
 
 
 def not_served(message: str, known: Iterable[str]) -> SkillError:
+    """The error where no node serves what is called."""
     return SkillError(message, code="AOS505", hint=f"Served are: {', '.join(known) or 'none'}")
 
 
 def not_answered(service: str, timeout_s: float) -> SkillError:
+    """The error where a service took too long."""
     return SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503")
 
 

@@ -22,6 +22,7 @@ class UnendedGoals:
         return list(self._waiting.values())
 
     async def close(self) -> None:
+        """Waits no longer."""
         waiting = list(self._waiting)
         for task in waiting:
             task.cancel()

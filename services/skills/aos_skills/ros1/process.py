@@ -72,6 +72,7 @@ class Ros1Process:
         return process
 
     async def ask(self, what: str, **fields: Any) -> Any:
+        """The answer to a request."""
         number, answer = self.begin(what, **fields)
         try:
             return await answer
@@ -98,6 +99,7 @@ class Ros1Process:
         answer.add_done_callback(look)
 
     async def close(self) -> None:
+        """Ends the process."""
         self._reading.cancel()
         await asyncio.gather(self._reading, return_exceptions=True)
         await self._child.stop()

@@ -60,6 +60,7 @@ class Endpoint(NamedTuple):
 
     @property
     def token(self) -> str:
+        """The liveliness token's key."""
         parts = [
             f"@ros2_lv/{self.domain}/{self.session}/{self.node_number}/{self.number}/{self.kind}",
             _mangled(self.enclave),

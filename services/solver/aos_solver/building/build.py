@@ -142,6 +142,8 @@ def _patience_s(compiler: Compiler, deadline_s: float) -> float:
 
 
 class _Build(msgspec.Struct, frozen=True):
+    """One model on its way into the cache."""
+
     emitted: EmittedModel
     cache: BuildCache
     compiler: Compiler

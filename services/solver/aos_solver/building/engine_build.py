@@ -101,6 +101,7 @@ def engine_deadline_s(compiler: Compiler) -> float:
 
 
 def object_of(part: str) -> str:
+    """Returns the name of a part's object file."""
     return f"{part}.o"
 
 
@@ -110,6 +111,7 @@ def objects_of(usual: Path, engine: Path) -> list[Path]:
 
 
 def engine_name(compiler: Compiler, state_bytes: int) -> str:
+    """The name of the engine's entry in a cache."""
     # Clang looks for what was precompiled by the path of the sources.
     place = [] if compiler.family == "gcc" else [str(SOURCES)]
     options = [_NUMBERS_OPTION, *compiler.large_source]

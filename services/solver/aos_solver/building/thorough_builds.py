@@ -34,6 +34,7 @@ class ThoroughBuilds:
 
     @property
     def tasks(self) -> set[asyncio.Task[Any]]:
+        """The builds that have not ended."""
         return self._builds.tasks
 
     def begin(self, emitted: EmittedModel) -> None:

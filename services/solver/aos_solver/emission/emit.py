@@ -76,6 +76,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
         return self.pieces[origins[0].piece - 1].locate(origins[0].line, 1)
 
     def place_of_loop(self, number: int) -> Span | None:
+        """The document place of a loop that draws, by its number in the file."""
         found = re.search(rf"aos::DrawingLoop \w+\{{AOS, {number}\}}; ", self.cpp)
         if found is None:
             return None

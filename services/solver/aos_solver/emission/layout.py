@@ -30,6 +30,7 @@ class Layout(msgspec.Struct, frozen=True):
     spendable: tuple[tuple[str, int], ...] = ()
 
     def common_with(self, new: Layout) -> Common:
+        """Returns what a state of this layout and of a new one have in common."""
         kept = tuple(
             name for name, shape in new.shapes.items() if name in new.held and self.shapes.get(name) == shape
         )
@@ -61,6 +62,7 @@ class Common(msgspec.Struct, frozen=True):
 
 
 def layout_of(program: Program) -> Layout:
+    """The layout of a program's state."""
     parts = _parts(program)
     variables = saved_variables(program)
     return Layout(

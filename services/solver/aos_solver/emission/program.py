@@ -134,6 +134,8 @@ class EnumVariable(msgspec.Struct, frozen=True):
 
 
 class DeclaredVariable(msgspec.Struct, frozen=True):
+    """A temporary variable of a known type."""
+
     name: str
     type: str
     kind: str = "declared_variable"

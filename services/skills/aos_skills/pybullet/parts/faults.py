@@ -15,6 +15,7 @@ class Faults:
         self.drawn: list[str] = []
 
     def draw(self, fault: str, probability: float) -> bool:
+        """Draws whether a fault happens now."""
         happens = self._chance.random() < probability
         if happens:
             self.drawn.append(fault)

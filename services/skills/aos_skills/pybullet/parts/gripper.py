@@ -27,6 +27,7 @@ class Gripper:
 
     @property
     def gap_m(self) -> float:
+        """The distance between the fingers."""
         return float(sum(self._client.getJointState(self._body, joint)[0] for joint in self._fingers))
 
     def forces_n(self) -> tuple[float, float]:
@@ -43,6 +44,7 @@ class Gripper:
         return self.gap_m > FEELS_GAP_M and min(self.forces_n()) > FEELS_FORCE_N
 
     def holds(self, body: int) -> bool:
+        """Returns whether both fingers touch a body."""
         touched = (
             self._client.getContactPoints(bodyA=self._body, linkIndexA=finger, bodyB=body)
             for finger in self._fingers

@@ -50,6 +50,7 @@ def drop(link: ElementTree.Element, tag: str) -> None:
 
 
 def joints_and_links(client: BulletClient, body: int) -> tuple[dict[str, int], dict[str, int]]:
+    """A body's joints, and its links, by name."""
     infos = [client.getJointInfo(body, joint) for joint in range(client.getNumJoints(body))]
     joints = {info[1].decode(): number for number, info in enumerate(infos)}
     links = {info[12].decode(): number for number, info in enumerate(infos)}

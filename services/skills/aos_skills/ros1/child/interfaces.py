@@ -9,6 +9,8 @@ Fields = Dict[str, Any]
 
 
 class Channel(Protocol):
+    """The lines to AOS."""
+
     def send(self, **line: Any) -> None: ...
 
 

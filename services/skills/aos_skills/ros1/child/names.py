@@ -70,6 +70,7 @@ class Names:
         return {"services": services, "actions": actions, "topics": topics, "nodes": served}
 
     def _is_alive(self, node: str, known: dict[str, bool]) -> bool:
+        """Returns whether the node's own server can be reached."""
         if node == self._own_node:
             return True
         if node not in known:

@@ -163,6 +163,7 @@ class Asking(Closing):
 
     @property
     def bounds(self) -> tuple[Bound, ...]:
+        """The mission's constraints."""
         return self._built.emitted.bounds
 
     @property
@@ -191,6 +192,7 @@ class Asking(Closing):
         return grounded.arguments if grounded.skill in self._built.emitted.choosing_skills else {}
 
     def has_action(self, action: str) -> bool:
+        """Returns whether the model has a grounded action of this name."""
         return any(grounded.name == action for grounded in self.description.actions)
 
     def _index(self, action: str) -> int:

@@ -42,6 +42,7 @@ class TakeoverQuestions(Asking):
 
     @property
     def layout(self) -> Layout:
+        """The layout of the model's state."""
         return self._built.emitted.layout
 
     @property

@@ -69,9 +69,11 @@ class Capacities:
         self._reported.add((name, 0))
 
     def read_default(self, name: str, expression: str) -> None:
+        """Takes in the default value of a variable or field."""
         self._take_value((name, 0), strip_comments(expression).lstrip(), loops=1)
 
     def read_code(self, snippets: Iterable[Cpp]) -> None:
+        """Takes in statements."""
         for cpp in snippets:
             code = strip_comments(cpp.code)
             loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(self._in_numbers(code)))

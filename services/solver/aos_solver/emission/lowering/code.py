@@ -59,6 +59,7 @@ LOOKING = Phase("this section")
 
 
 def sections_of(project: Project) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
+    """All code of a project, by phase."""
     environment = project.environment
     yield BELIEF, environment.initial_belief
     yield EXTRINSIC, environment.extrinsic_changes
@@ -167,6 +168,8 @@ def _without_texts(cpp: Cpp) -> str:
 
 
 class SectionLowering:
+    """Lowers sections into the functions that they become."""
+
     def __init__(
         self,
         types: Types,
@@ -186,6 +189,7 @@ class SectionLowering:
         """The meanings of names in code that stands alone."""
 
     def of(self, mapping: AbstractionMapping) -> Self:
+        """The lowering of the sections of this mapping's skill or monitor."""
         names = frozenset(rule.response for rule in mapping.rules) & self.outside.values
         its = copy.copy(self)
         its.outside = msgspec.structs.replace(self.outside, responses=names)

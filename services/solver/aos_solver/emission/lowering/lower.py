@@ -332,6 +332,7 @@ def _without_absent(project: Project, absent: tuple[str, ...]) -> Project:
 
 
 def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:
+    """The local variables that a correction needs."""
     needed = set(skill.reported)
     if skill.given_observation is not None:
         needed |= skill.given_observation.names - {parameter.name for parameter in skill.parameters}

@@ -227,6 +227,7 @@ class _Influence:
             self._sources.setdefault(target, set()).update(self._places(flow.sources))
 
     def use_expression(self, code: str) -> None:
+        """All that an expression mentions matters."""
         cpp = read_cpp_expression(looked_through(read_cpp_expression(code), self._shared))
         if cpp.faults:
             self._use(Name(name, is_of_state=True) for name in self._variables)

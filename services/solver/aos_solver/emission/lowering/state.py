@@ -39,6 +39,7 @@ def capacities_of(project: Project) -> Capacities:
 
 
 def member_names(project: Project) -> frozenset[str]:
+    """All names of variables, fields and parameters."""
     environment = project.environment
     names = {variable.name for variable in environment.variables}
     names |= {field.name for compound in environment.compounds for field in compound.fields}

@@ -46,6 +46,7 @@ class Room:
         return self.can_place(name)[2] > TABLE_TOP_M - 0.01 and self.is_standing(name)
 
     def is_on_tray(self, name: str) -> bool:
+        """Returns whether the person has that can."""
         x, y, z = self.can_place(name)
         person = self._file.person
         tray_x = person.x - TRAY_FROM_PERSON_M

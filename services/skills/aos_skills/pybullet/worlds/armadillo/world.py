@@ -99,6 +99,7 @@ class Armadillo(World):
         return next((f"{name.capitalize()}Table" for name in beside), "")
 
     def _watch_person(self) -> None:
+        """Remembers any touch of the person."""
         if self.scene.client.getContactPoints(bodyA=self.robot.body, bodyB=self.room.person):
             self.has_injured = True
 

@@ -67,6 +67,7 @@ class CleanLab(World):
         return next((name for name, cup in self.cups.items() if self.robot.gripper.holds(cup)), None)
 
     def binned(self) -> list[str]:
+        """The cups that lie in bins."""
         centres = [ahead(place, AHEAD_M) for place in self.file.bins.values()]
         places = {name: self.scene.place(cup) for name, cup in self.cups.items()}
         return [

@@ -24,6 +24,7 @@ def marked(board: str, cell: int, mark: str) -> str:
 
 
 def winner(board: str, rules: Rules = "row") -> str | None:
+    """Returns who has won; None while nobody has."""
     if rules == "corners":
         lead = _points(board, "O") - _points(board, "X") if "?" not in board else 0
         return "O" if lead > 0 else "X" if lead < 0 else None
