@@ -1,5 +1,3 @@
-"""The exit codes of aos-up and aos: one number that says what happened."""
-
 from enum import IntEnum
 
 from aos_protocol.errors import AosError

@@ -1,5 +1,3 @@
-"""The text of a fault at the terminal."""
-
 import typer
 
 from aos_protocol.diagnostics import render

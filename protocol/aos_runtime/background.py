@@ -1,5 +1,3 @@
-"""Work that goes on beside whoever has begun it."""
-
 import asyncio
 from collections.abc import Coroutine
 from typing import Any

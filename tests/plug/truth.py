@@ -1,5 +1,3 @@
-"""The belief of documents that gain a variable while a mission runs, against the truth."""
-
 import math
 import random
 from collections import defaultdict

@@ -1,5 +1,3 @@
-"""The table of who may do what on the bus: what it grants, and what it says of mistakes."""
-
 import re
 
 import pytest

@@ -1,5 +1,3 @@
-"""The project's papers say what is there: commands, tables, locked dependencies."""
-
 import importlib.util
 import re
 import subprocess

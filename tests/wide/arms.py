@@ -1,5 +1,3 @@
-"""Two arms that join good parts: the documents, and a rule by hand."""
-
 import random
 
 from .world import MOST_STEPS

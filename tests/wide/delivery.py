@@ -1,5 +1,3 @@
-"""A robot that brings parcels to rooms on two floors: its documents."""
-
 from .writing import Bundle, BundleWriter
 
 _ROOMS = 8  # the parcels wait in room 0; rooms 4 to 7 are upstairs

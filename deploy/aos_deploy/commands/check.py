@@ -1,5 +1,3 @@
-"""`aos check`: the history of a run against the rules that every history holds to."""
-
 import asyncio
 from pathlib import Path
 from typing import Annotated

@@ -1,5 +1,3 @@
-"""`aos convert`: a bundle's documents in the other dialect."""
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,5 +1,3 @@
-"""`aos down`: ends a system that runs."""
-
 import time
 from typing import Annotated
 

@@ -1,5 +1,3 @@
-"""`aos drift`: whether skills do what their documents say, over the missions of several runs."""
-
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any

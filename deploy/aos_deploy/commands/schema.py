@@ -1,5 +1,3 @@
-"""`aos schema`: JSON Schemas for editors."""
-
 import json
 from enum import StrEnum
 from typing import Annotated

@@ -1,5 +1,3 @@
-"""Observations and values for people."""
-
 import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any

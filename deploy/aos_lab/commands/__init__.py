@@ -1,1 +1,0 @@
-"""The laboratory's sub-commands of `aos`."""

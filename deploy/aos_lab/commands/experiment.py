@@ -1,5 +1,3 @@
-"""`aos experiment`: the missions of an experiment, and its report."""
-
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence

@@ -1,5 +1,3 @@
-"""`aos simulate`: whole missions without a robot."""
-
 from __future__ import annotations
 
 import statistics

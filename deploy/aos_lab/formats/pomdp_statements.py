@@ -1,5 +1,3 @@
-"""The statements of a `.pomdp` file, as words."""
-
 import re
 from collections.abc import Iterator
 from itertools import pairwise

@@ -1,5 +1,3 @@
-"""Problem files of other planners, by the ending of their names."""
-
 from collections.abc import Callable
 from pathlib import Path
 

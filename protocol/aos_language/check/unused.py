@@ -1,5 +1,3 @@
-"""Variables that are declared and then mentioned nowhere."""
-
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable

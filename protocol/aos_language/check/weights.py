@@ -1,5 +1,3 @@
-"""Probabilities and weights that stand as numbers in the model code."""
-
 import re
 from collections.abc import Callable, Mapping
 

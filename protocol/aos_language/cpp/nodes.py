@@ -1,5 +1,3 @@
-"""The nodes of a syntax tree: their text, and all that is below one."""
-
 from collections.abc import Iterator
 
 import tree_sitter

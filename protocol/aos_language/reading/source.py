@@ -1,5 +1,3 @@
-"""A file's text with its places."""
-
 from __future__ import annotations
 
 import re

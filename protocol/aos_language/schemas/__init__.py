@@ -1,1 +1,0 @@
-"""JSON Schemas of the JSON dialects, for editors."""

@@ -1,5 +1,3 @@
-"""A document as SDL text."""
-
 import re
 from collections.abc import Iterable, Iterator
 

@@ -1,5 +1,3 @@
-"""The settings that an adapter's process is started with."""
-
 from typing import Any
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The settings that the middleware service is started with."""
-
 from aos_runtime.processes.settings import ServiceSettings
 
 

@@ -1,5 +1,3 @@
-"""The settings that the registry service is started with."""
-
 from aos_runtime.processes.settings import ServiceSettings
 
 

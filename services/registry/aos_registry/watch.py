@@ -1,5 +1,3 @@
-"""A folder that is watched for bundles dropped into it."""
-
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable

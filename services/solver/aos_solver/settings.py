@@ -1,5 +1,3 @@
-"""The settings that the solver service is started with."""
-
 from typing import Literal
 
 import msgspec

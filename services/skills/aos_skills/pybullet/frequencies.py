@@ -1,5 +1,3 @@
-"""Counting how picks end, each in a fresh world."""
-
 import argparse
 import sys
 from collections import Counter

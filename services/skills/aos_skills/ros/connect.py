@@ -1,5 +1,3 @@
-"""The node of each kind, from the options of a deploy file."""
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

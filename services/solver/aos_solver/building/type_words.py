@@ -1,5 +1,3 @@
-"""Types in the compiler's messages, in the words of documents."""
-
 import re
 
 _WORDS = (

@@ -1,5 +1,3 @@
-"""A bundle's model as numbers, from its compiled engine."""
-
 from collections.abc import Callable, Iterator
 
 import msgspec

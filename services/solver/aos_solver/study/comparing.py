@@ -1,5 +1,3 @@
-"""The comparison of a replayed decision with the recorded one, bit for bit."""
-
 from collections.abc import Iterator
 
 import msgspec

@@ -1,5 +1,3 @@
-"""The parts of world files that several kinds of worlds have."""
-
 from typing import Annotated
 
 import msgspec

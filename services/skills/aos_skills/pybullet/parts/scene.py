@@ -1,5 +1,3 @@
-"""Simulated time and the bodies in it."""
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,5 +1,3 @@
-"""The answers of an engine child about beliefs, as typed data."""
-
 import math
 from collections.abc import Iterable
 

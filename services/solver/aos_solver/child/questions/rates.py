@@ -1,5 +1,3 @@
-"""The question how quickly the model gives samples."""
-
 from typing import Literal
 
 from aos_protocol.diagnostics import Span

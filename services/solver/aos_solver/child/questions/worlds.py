@@ -1,5 +1,3 @@
-"""The questions of simulated worlds: hidden states that the model moves."""
-
 from base64 import b64encode
 from collections.abc import Sequence
 

@@ -1,5 +1,3 @@
-"""The types of the documents as C++ types of fixed storage."""
-
 import re
 from collections.abc import Iterable
 

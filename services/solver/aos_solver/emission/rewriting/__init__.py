@@ -1,1 +1,0 @@
-"""The edits that make document code C++ in its function."""

@@ -1,1 +1,0 @@
-"""The decision for a next step."""

@@ -1,5 +1,3 @@
-"""Navigate: to a place in the room."""
-
 import math
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""The Armadillo in its room: what its skills share."""
-
 import math
 from typing import Any
 

@@ -1,5 +1,3 @@
-"""The form of the clean lab's world files."""
-
 from __future__ import annotations
 
 import msgspec

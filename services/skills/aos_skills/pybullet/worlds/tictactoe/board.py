@@ -1,5 +1,3 @@
-"""The board on the table, and the ink on it."""
-
 import itertools
 import math
 import random

@@ -1,5 +1,3 @@
-"""The form of tic-tac-toe's world files."""
-
 from typing import Literal
 
 import msgspec

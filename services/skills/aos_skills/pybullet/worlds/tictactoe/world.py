@@ -1,5 +1,3 @@
-"""The Panda, its board, and who plays against it."""
-
 import random
 from typing import Any
 
