@@ -23,7 +23,7 @@ A user's mistakes are collected as diagnostics; an AosError may carry them.
 import sys
 
 from aos_protocol.diagnostics import Diagnostic, render
-from aos_protocol.spelling import shortened
+from aos_protocol.spelling import sendable_text, shortened
 
 CODES: dict[str, str] = {
     "AOS101": "the file cannot be read",
@@ -161,10 +161,10 @@ class AosError(Exception):
         hint: str = "",
         diagnostics: tuple[Diagnostic, ...] = (),
     ) -> None:
-        super().__init__(message := shortened(message, _LONGEST_TEXT))
+        super().__init__(message := sendable_text(shortened(message, _LONGEST_TEXT)))
         self.code = code or type(self).code
         self.message = message
-        self.hint = shortened(hint, _LONGEST_TEXT)
+        self.hint = sendable_text(shortened(hint, _LONGEST_TEXT))
         self.diagnostics = diagnostics
         if sys.version_info >= (3, 11):
             for diagnostic in diagnostics[:_MOST_NOTES]:

@@ -60,3 +60,8 @@ def column_of(line: str, byte_offset: int) -> int:
 def shortened(text: str, most: int) -> str:
     """The text; of a longer one its first `most` characters and the number of all."""
     return text if len(text) <= most else f"{text[:most]}... ({len(text):,} characters)"
+
+
+def sendable_text(text: str) -> str:
+    """The text; half of a surrogate pair, as in the name of a file that is no UTF-8, is escaped."""
+    return text.encode(errors="backslashreplace").decode()

@@ -29,7 +29,7 @@ from aos_runtime.adapters import Observed
 Side = Enum("Side", {"LEFT": "left"})
 
 async def drive(call, x, y=0.0):
-    call.progress(0.5, "half way")
+    call.progress(0.5, "to \\udcff")
     call.publish("/pose", x=x, y=y)
     return {"success": True}
 
@@ -52,6 +52,9 @@ async def hang(call):
 
 async def fail(call):
     raise RuntimeError("gripper jammed")
+
+async def names_a_file(call):
+    raise RuntimeError("no \\udcff.png")
 
 async def odd(call):
     return 3
@@ -151,7 +154,7 @@ async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: R
         states = [(await anext(progress))[1] for _ in range(3)]
     assert [(state.state, state.progress, state.text) for state in states] == [
         ("accepted", 0.0, ""),
-        ("executing", 0.5, "half way"),
+        ("executing", 0.5, r"to \udcff"),
         ("succeeded", 1.0, ""),
     ]
     # Methods of a class share one object.
@@ -174,6 +177,7 @@ async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot):
 async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot):
     wrong: list[tuple[str, dict[str, Any], str, str]] = [
         ("fail", {}, "AOS510", "/fail failed: RuntimeError: gripper jammed"),
+        ("names_a_file", {}, "AOS510", "failed: RuntimeError: no \\udcff.png"),
         ("odd", {}, "AOS504", "/odd answered 3, which is no mapping of field names to values"),
         ("unsendable", {}, "AOS504", "the field picture of the result of /unsendable cannot be sent"),
         ("huge", {}, "AOS504", "the result of /huge has 17000005 bytes, and the bus carries 16777216"),

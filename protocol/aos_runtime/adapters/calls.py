@@ -8,6 +8,7 @@ from pathlib import Path
 
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, SkillResult
+from aos_protocol.spelling import sendable_text
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, MovesOn
 from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
@@ -251,7 +252,7 @@ class Calls:
 
     def _on_progress(self, progress: float, text: str) -> None:
         # Made plain here, so that what is wrong with them is told to whoever gave them.
-        self._loop.call_soon_threadsafe(self._take_progress, float(progress), str(text))
+        self._loop.call_soon_threadsafe(self._take_progress, float(progress), sendable_text(str(text)))
 
     def _take_progress(self, progress: float, text: str) -> None:
         if self._running is not None:
