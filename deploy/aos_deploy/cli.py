@@ -56,6 +56,9 @@ _COMMANDS = {
 """The module of each command and its sentence, in the order of the help, which imports none of them.
 They are named here since laboratory, editor and gateway are above this package."""
 
+_MEANT = {"status": "runs", "ps": "runs", "stop": "down", "kill": "down", "start": "up", "run": "up"}
+"""The commands that whoever knows other tools may mean."""
+
 _UNWRITABLE = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 _UNUSABLE = (errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ENOTDIR, errno.ELOOP)
 
@@ -71,6 +74,15 @@ def main(has_imported: Callable[[], object] = lambda: None) -> NoReturn:
     _run(lambda: aos_app(sys.argv[1:]), "aos", has_imported)
 
 
+class AosGroup(NumbersToldGroup):
+    """The commands of `aos`; a name of other tools is answered with the command that does it here."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        if args[0] in _MEANT:
+            ctx.fail(f"No such command {args[0]!r}. Did you mean {_MEANT[args[0]]!r}?")
+        return super().resolve_command(ctx, args)
+
+
 def aos_app(arguments: Sequence[str] | None = None) -> typer.Typer:
     """`aos` with all commands; of arguments with the one that they call, or with the names of all.
 
@@ -78,7 +90,7 @@ def aos_app(arguments: Sequence[str] | None = None) -> typer.Typer:
     """
     app = typer.Typer(
         name="aos",
-        cls=NumbersToldGroup,
+        cls=AosGroup,
         no_args_is_help=True,
         help="Task-level autonomy for robots: documents in, decisions out.",
         epilog="Example: aos new example armadillo, then aos-up armadillo/armadillo.yaml",

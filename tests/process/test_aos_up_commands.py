@@ -38,6 +38,11 @@ def test_wrong_usage_has_its_own_exit_code(command: list[str]):
     assert run(*command).returncode == 2
 
 
+@pytest.mark.parametrize(("command", "meant"), [("status", "runs"), ("stop", "down"), ("start", "up")])
+def test_a_command_that_other_tools_have_is_answered_with_the_one_that_does_it(command: str, meant: str):
+    assert f"Did you mean {meant!r}?" in run("aos", command).stderr
+
+
 @pytest.mark.parametrize(
     ("limit", "folder", "told"),
     [

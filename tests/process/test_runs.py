@@ -226,6 +226,8 @@ def test_a_run_that_was_killed_does_not_run_and_before_its_mission_began_has_not
     (killed.path / JOURNAL).touch()  # Its solver had no space for more.
     (listed,) = json.loads(place.run("runs", "--runs", str(tmp_path), "--json").stdout)[:1]
     assert listed["ending"] == "not_started"
+    down = place.run("down", "--run", str(killed.path))
+    assert "was killed before its mission began. `aos-up --resume" in down.stderr
     (killed.path / JOURNAL).unlink()
     with Journal.open(killed.path / JOURNAL) as journal:
         journal.append(BEGUN, MissionBegun(killed.path.name, 1, 1, 1, "digest"))

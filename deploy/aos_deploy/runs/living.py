@@ -13,6 +13,7 @@ from aos_deploy.export.run_bundle import opened_bundle
 from aos_deploy.places import running_folder
 from aos_deploy.printing import from_here
 from aos_deploy.runs.directory import LATEST, RunDirectory
+from aos_deploy.runs.end import ending_without_summary
 from aos_protocol.errors import BusError, DeployError
 
 RUNS = Path("runs")
@@ -109,7 +110,9 @@ def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
         hint = "Start a system with aos-up, or name a running one with --run or --connect"
         end = "is over"
         if chosen.read_summary() is None:
-            end, hint = "was killed", f"`aos-up --resume {from_here(chosen.path)}` takes it up. {hint}"
+            is_begun = ending_without_summary(chosen.path) != "not_started"
+            end = "was killed" if is_begun else "was killed before its mission began"
+            hint = f"`aos-up --resume {from_here(chosen.path)}` takes it up. {hint}"
         raise BusError(f"the last run, {chosen.path.name}, {end}", code="AOS605", hint=hint)
     return chosen
 
