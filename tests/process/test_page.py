@@ -339,16 +339,17 @@ def test_long_names_are_told_whole_and_widen_no_screen(
     certain = (Marginal(f"{long}_{number}", {f"value_of_{long}": 1.0}) for number in range(30))
     name = write_long_run(served.folder / "runs", 120, Marginal(long, {long: 0.9, "other": 0.1}), *certain)
     page = opened(browser, served, 390)
+    is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
     for view in ("/why", "/steps", "/model", ""):
         page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}{view}?step=110")
         expect(page.locator(".stepper-place")).to_have_text("110 of 120")
         for screen in screens(page):
             wait_for_width(page)
+            assert page.locator(".scroll").evaluate_all(is_cut) == 0, (view, screen)
             kept(page, f"long-{screen}{view.replace('/', '-')}")
         if view == "/model":
             expect(page.locator(".expected li")).to_have_count(12)
             expect(page.locator(".expected li").last).to_have_text("all others120/120")
-    is_cut = "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
     for _ in screens(page):
         expect(page.locator(".value-name")).to_have_count(9)
         assert page.locator(".value-name, .ribbon, .steps td").evaluate_all(is_cut) == 0
