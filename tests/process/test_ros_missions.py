@@ -166,6 +166,8 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a
             first = next(event for event in events_of(mission) if event.get("outcome"))
             assert first["outcome"]["status"] == "observed"
     assert robot.returncode == 0
+    summary = json.loads((tmp_path / "robot/latest/summary.json").read_text())
+    assert (summary["ending"], summary["exit_code"], summary["steps"]) == ("stopped", 0, 0)
 
 
 def in_the_checkout(arguments: str, root: Path) -> list[str]:

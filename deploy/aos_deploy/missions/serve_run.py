@@ -15,7 +15,8 @@ from aos_deploy.processes.supervisor import Supervisor, supervised
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.living import noted
 from aos_deploy.runs.record import record_of
-from aos_protocol.errors import AosError
+from aos_deploy.runs.summary import RunEnd, Summary
+from aos_protocol.errors import AosError, StorageError
 from aos_runtime.clock import Clock
 from aos_runtime.processes.lifecycle import root_cause
 from aos_runtime.processes.settings import ServiceSettings
@@ -55,7 +56,8 @@ class ServeRun:
             self._report(Told(f"run directory {from_here(run.path)}"))
             if not sandbox_support().is_whole:
                 self._report(Told(sandbox_text()))
-            code = ExitCode.GOAL_REACHED
+            begun_ns, begun_s = self._clock.now_ns(), self._clock.monotonic_s()
+            end = RunEnd(ending="stopped", remark="no mission ran", exit_code=int(ExitCode.GOAL_REACHED))
             try:
                 with noted(run):
                     await self._serve(run, endpoint)
@@ -63,9 +65,28 @@ class ServeRun:
                 self._report(Told("stopped"))
             except AosError as error:
                 self.error = error
-                code = exit_code_of_error(error)
+                end = RunEnd(ending="fault", remark=str(error), exit_code=int(exit_code_of_error(error)))
+            self._keep_end(run, end, begun_ns, self._clock.monotonic_s() - begun_s)
             run.close()
-        return ServeEnd(int(code))
+        return ServeEnd(end.exit_code)
+
+    def _keep_end(self, run: RunDirectory, end: RunEnd, begun_ns: int, duration_s: float) -> None:
+        summary = Summary(
+            robot=self._deployment.file.robot,
+            deploy_file=str(self._deployment.path),
+            seed=self._deployment.file.solver.seed,
+            started=time_text(begun_ns),
+            **msgspec.structs.asdict(end),
+            steps=0,
+            services_ready_s=None,
+            first_decision_s=None,
+            duration_s=round(duration_s, 3),
+            process_ends=tuple(self._supervisor.ends) if self._supervisor is not None else (),
+        )
+        try:
+            run.write_summary(summary)
+        except StorageError as error:
+            self.error = self.error or error
 
     def _meet_at(self, endpoint: str) -> None:
         """Nodes of ROS 2 have no credentials: they meet at a router that has nothing of the bus."""
