@@ -36,7 +36,10 @@ def told(*changes: tuple[str, str, str], texts: dict[str, str] = TEXTS) -> list[
 @pytest.mark.parametrize(
     ("change", "place"),
     [
-        (("mapping", "from_ros_service_response: true\n", ""), "walk.am:16 AOS105"),
+        (
+            ("mapping", "from_ros_service_response: true\n", ""),
+            "walk.am:16 AOS105 Take it from a skill parameter (`action_parameter:`), ",
+        ),
         (("mapping", "far_m = __input.far\n", ""), "walk.am:16 AOS105"),
         (("mapping", "code:\nfar_m", "far_m"), "walk.am:18 AOS104"),
         (("mapping", "parameter: steps\ncode:\n", "parameter: steps\n"), "walk.am:10 AOS104"),
@@ -48,6 +51,7 @@ def told(*changes: tuple[str, str, str], texts: dict[str, str] = TEXTS) -> list[
         (("environment", "__reward = 10", "__reard = 10"), "hall.ef:23 AOS110"),
         (("environment", "state_variable: Cell second\n", ""), "hall.ef:8 AOS103"),
         (("environment", "project: hall", "project: hal"), "hall.ef:1 AOS113"),
+        (("environment", "reward_code:", "reward code:"), "hall.ef:22 AOS102 Did you mean `reward_code:`?"),
         (("environment", "action_parameter: int near\n", ""), "hall.ef:12 AOS103"),
         (("environment", "define_type: Cell\n", ""), "hall.ef:4 AOS102"),
         (("environment", "variable: int x 0", "variable: int y 0"), "hall.ef:9 AOS110"),
@@ -66,8 +70,8 @@ def test_a_name_that_nothing_declares_is_told_once_with_its_places():
 
 
 def test_text_without_its_section_is_told_once_however_many_pieces_it_has():
-    (only,) = told(("skill", "dynamic_model:\n", "dynamic model:\n// It walks.\n"))
-    assert only == "walk.sd:8 AOS104 Did you mean `dynamic_model:`? Also: line 10"
+    (only,) = told(("skill", "dynamic_model:\n", "a line\n// It walks.\n"))
+    assert only == "walk.sd:8 AOS104 Also: line 10"
 
 
 def test_mistakes_that_have_nothing_to_do_with_each_other_are_told_together():

@@ -73,6 +73,11 @@ def test_a_condition_that_sets_what_may_only_be_read_is_one_error():
             "if state.first.x > 0:\n    __reward = 1\nelse:\n    __reward = 2",
             "9 AOS108 `if ...:` is Python. The model's code is C++: `if (...) { ... } else { ... }`",
         ),
+        ("if (steps => 2) __reward = 1;", "9 AOS108 `=>` is no operator of C++. Write `>=`"),
+        (
+            "if (to_string(steps) == '12' || '\\n' == '\\x41') __reward = 1;",
+            "9 AOS108 '12' is no character. A text stands in double quotes",
+        ),
         (
             "int x = 3\n__reward = x;",
             "9 AOS108 unexpected '3' in C++. Is a semicolon missing at the end of this line?",

@@ -31,9 +31,13 @@ _TOKEN = re.compile(
     | (?P<scope><::(?![:>]))
     | (?P<bracket>[()\[\]{}]|<%|%>|<:|:>)
     | (?P<quote>["'])
+    | (?P<arrow>(?<![<=>!])=>)
     | (?P<other>.)
     """,
     re.VERBOSE | re.DOTALL,
+)
+_ONE_CHARACTER = re.compile(
+    r"(?:u8|[uUL])?'(?:[^'\\]|\\(?:[0-7]{1,3}|x[0-9A-Fa-f]+|u[0-9A-Fa-f]{4}|U[0-9A-Fa-f]{8}|\D))'"
 )
 _CANONICAL = {"<%": "{", "%>": "}", "<:": "[", ":>": "]"}
 _PARTNER = {")": "(", "]": "[", "}": "{"}
@@ -163,6 +167,9 @@ def cut(code: str) -> Tokens:
             extent = lines.extent(match.start(), position)
         if kind in ("raw", "string", "char"):
             literals.append(extent)
+            if kind == "char" and _ONE_CHARACTER.fullmatch(match.group()) is None:
+                hint = "A text stands in double quotes"
+                faults.append(Fault(FaultKind.QUOTE, f"{match.group()} is no character", extent, hint))
         elif kind in ("line_comment", "block_comment"):
             comments.append(extent)
         elif kind == "bracket":
@@ -172,6 +179,8 @@ def cut(code: str) -> Tokens:
             faults.append(_directive(match.group(), lines.extent(start, match.end())))
         elif kind == "hash":
             faults.append(_no_comment(extent))
+        elif kind == "arrow":
+            faults.append(Fault(FaultKind.CHARACTER, "`=>` is no operator of C++", extent, "Write `>=`"))
         elif kind == "other":
             faults.append(_from_a_page(match.group(), extent))
         elif kind == "continuation":

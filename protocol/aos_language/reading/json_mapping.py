@@ -134,9 +134,7 @@ def _imports(record: Record) -> tuple[documents.Import, ...]:
     imports = []
     for item in record.records("ImportCode", "an import"):
         module = item.text("From")
-        told = len(record.findings)
         names = item.texts("Import")
-        is_told = len(record.findings) > told
         item.finish()
         if names:
             # Several names in one text are what Python's `import a, b` has.
@@ -144,7 +142,7 @@ def _imports(record: Record) -> tuple[documents.Import, ...]:
                 part.strip() for name in names for part in name.text.split(",") if part.strip()
             )
             imports.append(documents.Import(module.text if module else "", names_of_item, item.span))
-        elif not is_told:
+        else:
             record.findings.error("AOS105", 'an import lacks "Import"', item.span)
     return tuple(imports)
 

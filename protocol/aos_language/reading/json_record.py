@@ -41,6 +41,10 @@ _BUILT_ON = frozenset({
     "SpecialStates", "StateConditionCode", "StateFunctionCode", "TempVar", "Type", "TypeName", "Value",
     "VarName", "VariableType", "Variables",
 })  # fmt: skip
+_IN_PLACE_OF_TEXT = {
+    "a list": "A list stands in brackets, each of its texts in quotes",
+    "a number": "A number stands without quotes",
+}
 _BOOLEANS = {"true": True, "false": False}
 
 
@@ -211,7 +215,10 @@ class Record:
                 self._wrong(f'an item of "{key}"', "an object", item)
 
     def texts(self, key: str) -> list[Text]:
-        """The strings of a list, without the blanks around them."""
+        """The strings of a list, without the blanks around them; those of a single text, with an error."""
+        if isinstance(value := self._value(key), JsonString):
+            self._wrong(f'"{key}"', "a list", value)
+            return [Text(part.strip(), self.source.span(value.start)) for part in value.text.split(",")]
         texts = []
         for item in self._items(key):
             if isinstance(item, JsonString):
@@ -262,7 +269,8 @@ class Record:
 
     def _wrong(self, what: str, expected: str, value: JsonValue) -> None:
         message = f"{what} must be {expected}, not {describe(value)}"
-        self.findings.error("AOS106", message, self.source.span(value.start))
+        hint = _IN_PLACE_OF_TEXT.get(expected, "") if isinstance(value, JsonString) else ""
+        self.findings.error("AOS106", message, self.source.span(value.start), hint)
 
 
 def _boolean(value: JsonValue) -> bool | None:

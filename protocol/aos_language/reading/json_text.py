@@ -283,6 +283,8 @@ class _Reader:
             hint = f"Write {_PYTHON_CONSTANTS[word.group()]}"
         elif self._text[start : start + 1] == "'":
             hint = "Write double quotes"
+        elif word is not None:
+            hint = f'Text stands in double quotes: "{word.group()}"'
         raise _Unreadable(f"expected a value, found {self._found()}", start, hint)
 
     # --- between values ---

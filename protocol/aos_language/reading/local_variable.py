@@ -8,6 +8,9 @@ from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
 
+_JSON_SOURCES = ("`FromGlobalVariable`", "`FromROSServiceResponse`", "`RosTopicPath`")
+_SDL_SOURCES = ("`action_parameter:`", "`from_ros_service_response:`", "`topic:`")
+
 
 class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
     """The attributes that a document gives a local variable, as they were found."""
@@ -67,7 +70,11 @@ def _source(parts: LocalVariableParts, findings: Findings) -> LocalSource | None
     if len(sources) == 1:
         return sources[0]
     if not sources:
-        hint = "Take it from a skill parameter, from the service's response or from a topic"
+        is_json = span.file.endswith(".json")
+        parameter, result, topic = _JSON_SOURCES if is_json else _SDL_SOURCES
+        hint = (
+            f"Take it from a skill parameter ({parameter}), the call's result ({result}) or a topic ({topic})"
+        )
         findings.error("AOS105", "this local variable has no source", span, hint)
     else:
         given_at = [text.span for text in (parts.parameter_path, parts.topic) if text is not None]

@@ -22,6 +22,7 @@ from aos_protocol.documents import Snippet
 from aos_protocol.spelling import nearest
 
 _OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
+_APART = re.compile(r"[ \t]*([A-Za-z]+(?:[ -][A-Za-z]+)+)[ \t]*:(?!:)")
 _WORD_ALONE = re.compile(r"[ \t]*(?P<word>[a-z]+(?:_[a-z]+)*)(?:[ \t]+(?P<rest>\S.*?))?[ \t]*$")
 _BETWEEN_NAMES = frozenset({"and", "else", "for", "if", "in", "is", "not", "or"})
 _COMMENT = re.compile(r"\s*(?://|#|/\*(?:(?!\*/).)*(?:\*/\s*)?$)")
@@ -134,11 +135,22 @@ def enum_values(text: Text, findings: Findings) -> list[Text]:
     """The names between commas; an error where there are none."""
     pieces = [text.after(match.start()) for match in re.finditer(r"(?<![^,])[^,]*", text.text)]
     values = [Text(piece.text.split(",")[0], piece.span).strip() for piece in pieces]
+    values = [one for value in values for one in _apart(value, findings)]
     if values and not values[-1].text:  # A comma at the end.
         values.pop()
     if not values:
         findings.error("AOS105", "an enum needs names between commas", text.span)
     return values
+
+
+def _apart(value: Text, findings: Findings) -> list[Text]:
+    """The names of an enum between which commas are missing, with an error; else the value itself."""
+    words = list(re.finditer(r"\S+", value.text))
+    if len(words) < 2 or not all(word.group().isidentifier() for word in words):
+        return [value]
+    hint = f"Write `{', '.join(word.group() for word in words)}`"
+    findings.error("AOS104", "a comma is missing between these values", value.span, hint)
+    return [Text(word.group(), value.after(word.start()).span) for word in words]
 
 
 def parse_sdl(
@@ -205,8 +217,22 @@ class _Scanner:
         name = match.group(1) if match else ""
         if match is not None and self._opens(name, line.after(match.start(1)), line.after(match.end())):
             return
-        if not self._opens_without_colon(line):
+        if not self._opens_apart(line) and not self._opens_without_colon(line):
             self._add_to_body(line)
+
+    def _opens_apart(self, line: Text) -> bool:
+        """Opens the section or part whose word a line has with blanks or hyphens for underscores."""
+        match = _APART.match(line.text)
+        if match is None:
+            return False
+        at, word = line.after(match.start(1)), re.sub("[ -]", "_", match[1])
+        inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
+        if word not in inner and word not in self._grammar:
+            return False
+        mend = Mend(at.span, len(word), word)
+        message, hint = f"unknown section `{match[1]}:`", f"Did you mean `{word}:`?"
+        self._findings.error("AOS102", message, at.span, hint, mend)
+        return self._opens(word, at, line.after(match.end()))
 
     def _opens_without_colon(self, line: Text) -> bool:
         """Opens the section or part that a line begins with where only its colon is missing."""
@@ -325,10 +351,9 @@ class _Scanner:
         elif line.text.strip() and not is_comment:
             where = f"after `{self._current.word}:`" if self._current else "before the first section"
             if line.span.line != self._stray_line + 1:
-                message, word = f"text {where} that belongs to no section", "_".join(line.text.split())
+                message = f"text {where} that belongs to no section"
                 inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
-                of_code = "Write `code:` above it" if "code" in inner else ""
-                hint = f"Did you mean `{word}`?" if word[:-1] in self._grammar else of_code
+                hint = "Write `code:` above it" if "code" in inner else ""
                 self._findings.error("AOS104", message, line.strip().span, hint)
             self._stray_line = line.span.line
 
