@@ -1,3 +1,5 @@
+"""The exit codes of aos-up and aos: one number that says what happened."""
+
 from enum import IntEnum
 
 from aos_protocol.errors import AosError

@@ -1,3 +1,5 @@
+"""The text of a fault at the terminal."""
+
 import typer
 
 from aos_protocol.diagnostics import render

@@ -1,3 +1,5 @@
+"""Work that goes on beside whoever has begun it."""
+
 import asyncio
 from collections.abc import Coroutine
 from typing import Any

@@ -1,3 +1,5 @@
+"""`aos bundle`: documents sent to a running registry, and what it holds."""
+
 from pathlib import Path
 from typing import Annotated
 

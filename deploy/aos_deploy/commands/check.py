@@ -1,3 +1,5 @@
+"""`aos check`: the history of a run against the rules that every history holds to."""
+
 import asyncio
 from pathlib import Path
 from typing import Annotated

@@ -1,3 +1,5 @@
+"""`aos convert`: a bundle's documents in the other dialect."""
+
 from pathlib import Path
 from typing import Annotated
 

@@ -1,3 +1,5 @@
+"""`aos decisions`: follows a mission from another terminal, or reads one that is over."""
+
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator

@@ -1,3 +1,5 @@
+"""`aos down`: ends a system that runs."""
+
 import time
 from typing import Annotated
 

@@ -1,3 +1,5 @@
+"""`aos drift`: whether skills do what their documents say, over the missions of several runs."""
+
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any

@@ -1,3 +1,5 @@
+"""`aos export`: the records of runs to take home."""
+
 import json
 from pathlib import Path
 from typing import Annotated, Literal

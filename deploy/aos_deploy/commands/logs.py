@@ -1,3 +1,5 @@
+"""`aos logs`: the logs of a run, as they are or as they grow."""
+
 import os
 import time
 from pathlib import Path

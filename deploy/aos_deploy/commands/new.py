@@ -1,3 +1,5 @@
+"""`aos new`: documents to start from, that lint clean and can be planned with at once, and examples."""
+
 import os
 import re
 import shutil

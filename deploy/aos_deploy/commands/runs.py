@@ -1,3 +1,5 @@
+"""`aos runs`: the missions that run on this machine, and those that are kept in a folder."""
+
 from __future__ import annotations
 
 from collections.abc import Iterable

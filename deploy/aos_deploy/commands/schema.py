@@ -1,3 +1,5 @@
+"""`aos schema`: JSON Schemas for editors."""
+
 import json
 from enum import StrEnum
 from typing import Annotated

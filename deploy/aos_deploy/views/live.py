@@ -1,3 +1,5 @@
+"""The live view of a mission in a terminal."""
+
 import io
 import threading
 import time

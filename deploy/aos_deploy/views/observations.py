@@ -1,3 +1,5 @@
+"""Observations and values for people."""
+
 import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any

@@ -1,3 +1,5 @@
+"""Tables for people: the value of each action, and simulated missions."""
+
 from collections.abc import Iterable, Mapping
 
 from rich.bar import Bar

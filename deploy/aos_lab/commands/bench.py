@@ -1,3 +1,5 @@
+"""`aos bench`: the planner's figures on problems of the literature."""
+
 import asyncio
 from pathlib import Path
 from typing import Annotated, get_args

@@ -1,3 +1,5 @@
+"""`aos calibrate`: the probabilities of documents, beside what recorded missions say of them."""
+
 from __future__ import annotations
 
 import math

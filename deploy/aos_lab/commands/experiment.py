@@ -1,3 +1,5 @@
+"""`aos experiment`: the missions of an experiment, and its report."""
+
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence

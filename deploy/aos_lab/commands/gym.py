@@ -1,3 +1,5 @@
+"""`aos gym`: a bundle as an environment for learning programs."""
+
 from __future__ import annotations
 
 import importlib.util

@@ -1,3 +1,5 @@
+"""`aos simulate`: whole missions without a robot."""
+
 from __future__ import annotations
 
 import statistics

@@ -1,3 +1,5 @@
+"""`aos solve`: a policy for a bundle or a problem file, worked out before the mission."""
+
 import asyncio
 import hashlib
 import math

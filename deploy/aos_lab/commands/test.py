@@ -1,3 +1,5 @@
+"""`aos test`: missions of users, with what they claim of them, for their continuous integration."""
+
 from __future__ import annotations
 
 import asyncio

@@ -1,3 +1,5 @@
+"""The statements of a `.pomdp` file, as words."""
+
 import re
 from collections.abc import Iterator
 from itertools import pairwise

@@ -1,3 +1,5 @@
+"""Problem files of other planners, by the ending of their names."""
+
 from collections.abc import Callable
 from pathlib import Path
 

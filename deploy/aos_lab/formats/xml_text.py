@@ -1,3 +1,5 @@
+"""XML elements that know where they stand."""
+
 from __future__ import annotations
 
 from collections.abc import Iterator

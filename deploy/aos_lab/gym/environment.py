@@ -1,3 +1,5 @@
+"""One world as a `gymnasium.Env`."""
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar

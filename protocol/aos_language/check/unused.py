@@ -1,3 +1,5 @@
+"""Variables that are declared and then mentioned nowhere."""
+
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable

@@ -1,3 +1,5 @@
+"""Probabilities and weights that stand as numbers in the model code."""
+
 import re
 from collections.abc import Callable, Mapping
 

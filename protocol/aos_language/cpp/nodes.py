@@ -1,3 +1,5 @@
+"""The nodes of a syntax tree: their text, and all that is below one."""
+
 from collections.abc import Iterator
 
 import tree_sitter

@@ -1,3 +1,5 @@
+"""The result of a reader: one document with its identity."""
+
 import re
 from collections.abc import Iterable
 from enum import StrEnum

@@ -1,3 +1,5 @@
+"""A file's text with its places."""
+
 from __future__ import annotations
 
 import re

@@ -1,3 +1,5 @@
+"""The parts that the schemas of the JSON documents are put together from."""
+
 from typing import Any
 
 Schema = dict[str, Any]

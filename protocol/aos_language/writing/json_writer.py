@@ -1,3 +1,5 @@
+"""A document as AOS 1.x JSON."""
+
 import json
 from collections.abc import Iterable
 from typing import Any

@@ -1,3 +1,5 @@
+"""A document as SDL text."""
+
 import re
 from collections.abc import Iterable, Iterator
 

@@ -1,3 +1,5 @@
+"""The interface of an adapter, and a call as it sees it."""
+
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

@@ -1,3 +1,5 @@
+"""The settings that an adapter's process is started with."""
+
 from typing import Any
 
 import msgspec

@@ -1,3 +1,5 @@
+"""The settings that the middleware service is started with."""
+
 from aos_runtime.processes.settings import ServiceSettings
 
 

@@ -1,3 +1,5 @@
+"""A folder that is watched for bundles dropped into it."""
+
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable

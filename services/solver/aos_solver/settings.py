@@ -1,3 +1,5 @@
+"""The settings that the solver service is started with."""
+
 from typing import Literal
 
 import msgspec

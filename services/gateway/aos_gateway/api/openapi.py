@@ -1,3 +1,5 @@
+"""The OpenAPI document, made from the table of operations and the message types."""
+
 import re
 from collections.abc import Iterable
 from typing import Any

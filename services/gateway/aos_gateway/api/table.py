@@ -1,3 +1,5 @@
+"""All operations of the gateway, in the order of the documentation."""
+
 from aos_gateway.operations import EVENT_STREAM, Operation, operation
 from aos_gateway.resources import documents, reading, run_files, study, writing
 from aos_gateway.resources.state_picture import state_picture

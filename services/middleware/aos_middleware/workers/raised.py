@@ -1,3 +1,5 @@
+"""The error that code in a worker raised: its text, and the place in the generated module."""
+
 import re
 from types import CodeType, TracebackType
 

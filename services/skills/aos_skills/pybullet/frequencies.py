@@ -1,3 +1,5 @@
+"""Counting how picks end, each in a fresh world."""
+
 import argparse
 import sys
 from collections import Counter

@@ -1,3 +1,5 @@
+"""The node of each kind, from the options of a deploy file."""
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,3 +1,5 @@
+"""The compiler's messages as diagnostics at the documents' places."""
+
 import math
 import re
 

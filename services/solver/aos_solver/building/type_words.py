@@ -1,3 +1,5 @@
+"""Types in the compiler's messages, in the words of documents."""
+
 import re
 
 _WORDS = (

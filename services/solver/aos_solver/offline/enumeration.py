@@ -1,3 +1,5 @@
+"""A bundle's model as numbers, from its compiled engine."""
+
 from collections.abc import Callable, Iterator
 
 import msgspec

@@ -1,3 +1,5 @@
+"""The comparison of a replayed decision with the recorded one, bit for bit."""
+
 from collections.abc import Iterator
 
 import msgspec

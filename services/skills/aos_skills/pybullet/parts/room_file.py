@@ -1,3 +1,5 @@
+"""The parts of world files that several kinds of worlds have."""
+
 from typing import Annotated
 
 import msgspec

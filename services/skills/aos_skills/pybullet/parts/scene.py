@@ -1,3 +1,5 @@
+"""Simulated time and the bodies in it."""
+
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,3 +1,5 @@
+"""The answers of an engine child about beliefs, as typed data."""
+
 import math
 from collections.abc import Iterable
 

@@ -1,3 +1,5 @@
+"""The questions about what is believed, and the observations that change it."""
+
 import logging
 from collections.abc import Mapping
 from typing import Any

@@ -1,3 +1,5 @@
+"""The question how quickly the model gives samples."""
+
 from typing import Literal
 
 from aos_protocol.diagnostics import Span

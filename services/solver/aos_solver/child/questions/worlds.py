@@ -1,3 +1,5 @@
+"""The questions of simulated worlds: hidden states that the model moves."""
+
 from base64 import b64encode
 from collections.abc import Sequence
 

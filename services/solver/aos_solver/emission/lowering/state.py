@@ -1,3 +1,5 @@
+"""Types and variables of the environment."""
+
 from collections.abc import Iterable
 
 from aos_language.cpp.snippets import read_cpp

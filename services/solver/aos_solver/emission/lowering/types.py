@@ -1,3 +1,5 @@
+"""The types of the documents as C++ types of fixed storage."""
+
 import re
 from collections.abc import Iterable
 

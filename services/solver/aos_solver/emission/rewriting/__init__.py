@@ -1,0 +1,1 @@
+"""The edits that make document code C++ in its function."""

@@ -1,3 +1,5 @@
+"""The Panda on its table, with a pen in the hand."""
+
 import pybullet
 
 from aos_skills.pybullet.parts.arm import Arm

@@ -1,3 +1,5 @@
+"""The TurtleBot3: drive, lidar, and an estimate of where it is."""
+
 import math
 import random
 from pathlib import Path

@@ -1,3 +1,5 @@
+"""The form of the Armadillo's world files."""
+
 import msgspec
 
 from aos_skills.pybullet.parts.room_file import Deviation, Length, Place, RoomFile, Share

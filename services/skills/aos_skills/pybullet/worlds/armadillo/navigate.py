@@ -1,3 +1,5 @@
+"""Navigate: to a place in the room."""
+
 import math
 from typing import Any
 

@@ -1,3 +1,5 @@
+"""The Armadillo in its room: what its skills share."""
+
 import math
 from typing import Any
 

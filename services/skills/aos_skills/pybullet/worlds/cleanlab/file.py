@@ -1,3 +1,5 @@
+"""The form of the clean lab's world files."""
+
 from __future__ import annotations
 
 import msgspec

@@ -1,3 +1,5 @@
+"""The board on the table, and the ink on it."""
+
 import itertools
 import math
 import random

@@ -1,3 +1,5 @@
+"""The form of tic-tac-toe's world files."""
+
 from typing import Literal
 
 import msgspec

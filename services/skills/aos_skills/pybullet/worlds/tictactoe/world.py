@@ -1,3 +1,5 @@
+"""The Panda, its board, and who plays against it."""
+
 import random
 from typing import Any
 
