@@ -102,7 +102,7 @@ CellTables::Table CellTables::grown(Table table, std::uint32_t variable) const {
 // Adds the table that explains most: of one variable, of two if all pairs can be tried, or a known table
 // with one more variable.
 void CellTables::add_table(double min_gain) {
-  const auto count = static_cast<std::uint32_t>(cells_.size());
+  const std::uint32_t count = cells_.size();
   const bool tries_pairs = count <= max_paired_variables;
   const std::size_t numbers = count * (1 + tables_.size() + (tries_pairs ? count / 2 : 0));
   const std::size_t stride = std::max<std::size_t>(numbers * left_.size() / max_tried_lookups, 1);
@@ -133,7 +133,7 @@ void CellTables::add_table(double min_gain) {
     }
   }
   if (best.order == 0) return;
-  best.first = static_cast<std::uint32_t>(weights_[0].size());
+  best.first = weights_[0].size();
   for (auto& weights : weights_) weights.resize(best.first + best.size, 0);
   tables_.push_back(best);
   fit(best);

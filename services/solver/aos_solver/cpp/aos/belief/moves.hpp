@@ -244,7 +244,7 @@ class Moves {
   // One draw of all, at random. The block is the one after the last if there are no draws.
   DrawPlace random_draw(const Passage<Model>& passage) {
     if (passage.draws() == 0) return {passage.size(), 0};
-    auto left = static_cast<std::size_t>(random_.below(passage.draws()));
+    std::size_t left = random_.below(passage.draws());
     std::size_t place = 0;
     while (left >= passage.draws_of(place)) left -= passage.draws_of(place++);
     return {place, left};
@@ -328,7 +328,7 @@ class Moves {
     work_ += steps.runs() - runs_before;
     steps_ += steps.runs() - runs_before;
     chosen.likelihood = sum;
-    chosen.draws = static_cast<std::uint32_t>(chosen.values.size());
+    chosen.draws = chosen.values.size();
     proposed_.push_back(std::move(chosen));
     return sum / block.likelihood;
   }

@@ -63,7 +63,7 @@ class ParticleFilter {
     for (std::size_t drawn = 0; wants_more(drawn); ++drawn) {
       Block block = free_block();
       Model::initial(state, replay_);
-      block.draws = static_cast<std::uint32_t>(replay_.draws());
+      block.draws = replay_.draws();
       gathered.add(state, 1.0, 1.0, begun_trace(std::move(block)), random_);
     }
     History<Model> history;
@@ -131,7 +131,7 @@ class ParticleFilter {
     // beginning of a text on, or else at the end, and so are as many before these as have few combinations.
     std::size_t first_guided() {
       const auto begun = std::find_if(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.is_text_begun; });
-      auto first = static_cast<std::size_t>(begun - draws_.begin());
+      std::size_t first = begun - draws_.begin();
       for (long combinations = 1; first > 0; --first) {
         const int outcomes = draws_[first - 1].outcomes;
         combinations *= outcomes > 0 ? outcomes : max_branches;
@@ -280,7 +280,7 @@ class ParticleFilter {
   Updated propagated(const Cloud<Model>& before, HistoryStep step) {
     const Plan plan = plan_of(before, step);
     step.is_guided = plan.is_guided;
-    step.by_chance = static_cast<std::uint32_t>(plan.by_chance);
+    step.by_chance = plan.by_chance;
     GatheredCloud<Model> gathered;
     GuidedStep<Model> guided{step.action, step.observation, numbers_, random_};
     guided.leave_to_chance(plan.by_chance);
@@ -318,7 +318,7 @@ class ParticleFilter {
       Block block = free_block();
       ++update_effort.steps;
       const bool agrees = step.agrees(Model::step(next, step.action, replay_));
-      block.draws = static_cast<std::uint32_t>(replay_.draws());
+      block.draws = replay_.draws();
       block.likelihood = agrees ? replay_.weight() : 0;
       const bool is_certain = block.draws == 0;
       if (block.likelihood > 0) {
@@ -341,7 +341,7 @@ class ParticleFilter {
       for (auto& [next, likelihood, values] : outcomes_) {
         const double weight = (is_whole ? parent.weight : parent.weight_of_trial()) * likelihood;
         const double squares = is_whole ? parent.squares * likelihood * likelihood : weight * weight;
-        const auto draws = static_cast<std::uint32_t>(values.size());
+        const std::uint32_t draws = values.size();
         gathered.add(next, weight, squares, longer(parent.trace, {std::move(values), 0, sum, draws}), random_);
       }
       if (is_whole) return;

@@ -32,7 +32,7 @@ inline constexpr int risk_samples = 20'000;
 template <class Model>
 Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, Sampler& random) {
   using State = typename Model::State;
-  const auto count = static_cast<std::size_t>(Model::constraint_count());
+  const std::size_t count = Model::constraint_count();
   Risks risks{std::vector<double>(count)};
   const auto add = [&](const State& before, const State& next, double weight) {
     const Violations violations = violations_of<Model>(before, next, action);

@@ -18,7 +18,7 @@ namespace aos {
 template <class Model>
 void write_risks(JsonWriter& json, const Command& command, const Belief<Model>& belief) {
   Sampler random{command.number<std::uint64_t>("seed")};
-  const auto actions = static_cast<std::size_t>(Model::action_count());
+  const std::size_t actions = Model::action_count();
   const std::size_t max_paths = max_enumerated_paths / std::max<std::size_t>(actions, 1);
   bool is_sampled = false;
   json.begin_object().key("actions").begin_array();

@@ -306,7 +306,7 @@ void Enumerator::put_off() {
       dropped_ += choice.following_weight;
     }
     nodes_.push_back({last_, choice.taken, choice.first});
-    last_ = static_cast<std::uint32_t>(nodes_.size() - 1);
+    last_ = nodes_.size() - 1;
   }
 }
 

@@ -74,7 +74,7 @@ inline std::string unplayed_text(std::size_t played) {
 inline void set_between(std::vector<ActionEstimate>& estimates, const std::vector<double>& lowers,
                         const std::vector<double>& uppers, int choice) {
   static const double deviation_of_even = 1 / std::sqrt(12.0);
-  const auto chosen = static_cast<std::size_t>(choice);
+  const std::size_t chosen = choice;
   const double most = (lowers[chosen] + uppers[chosen]) / 2;
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     // The decision is by the lower bounds, and no action is told to be worth more than the one that was chosen.

@@ -163,7 +163,7 @@ class BeliefTree final : public TreePlanner<Model> {
   bool is_barred(std::uint32_t node, std::size_t action) const { return node == 0 && barred_.contains(action); }
 
   std::uint32_t add_node(const SmallBelief& belief, int left) {
-    const auto number = static_cast<std::uint32_t>(nodes_.size());
+    const std::uint32_t number = nodes_.size();
     nodes_.push_back({states_.size(), states_.size() + belief.size(), key_of(belief)});
     states_.insert(states_.end(), belief.begin(), belief.end());
     actions_.resize(actions_.size() + space_.actions());

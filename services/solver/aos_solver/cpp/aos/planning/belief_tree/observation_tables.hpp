@@ -58,7 +58,7 @@ class ObservationTables {
   std::uint32_t add(const std::vector<NumberedReport>& reports) {
     std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, std::vector<const NumberedReport*>> by_form;
     for (const NumberedReport& report : reports) by_form[{report.kind, report.distributions}].push_back(&report);
-    const auto first = static_cast<std::uint32_t>(forms_.size());
+    const std::uint32_t first = forms_.size();
     for (const auto& [form, same] : by_form) add_form(same, static_cast<double>(same.size()) / static_cast<double>(reports.size()));
     tables_.push_back({first, static_cast<std::uint32_t>(forms_.size())});
     return static_cast<std::uint32_t>(tables_.size() - 1);
@@ -158,8 +158,8 @@ class ObservationTables {
     double known = 1;
     for (std::size_t place = 0; place < reports[0]->symbols.size(); ++place) known *= 1 - add_piece(reports, place);
     number_ids_.insert(number_ids_.end(), reports[0]->distributions.begin(), reports[0]->distributions.end());
-    form.pieces_end = static_cast<std::uint32_t>(piece_ids_.size());
-    form.numbers_end = static_cast<std::uint32_t>(number_ids_.size());
+    form.pieces_end = piece_ids_.size();
+    form.numbers_end = number_ids_.size();
     forms_.push_back(form);
     unknown_ += share * (1 - known);
     texts_ += reports[0]->symbols.empty() ? 0 : share;

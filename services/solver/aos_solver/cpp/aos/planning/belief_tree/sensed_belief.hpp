@@ -116,7 +116,7 @@ class SensedBelief {
       if (place < after_.size() && after_[place].first == next) {
         after_[place].second += posterior;
       } else {
-        place = static_cast<std::uint32_t>(after_.size());
+        place = after_.size();
         after_.push_back({next, posterior});
       }
     }

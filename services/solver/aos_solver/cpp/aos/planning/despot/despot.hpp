@@ -194,7 +194,7 @@ class Despot final : public TreePlanner<Model> {
     draw_evenly<Model>(belief.particles(), static_cast<std::size_t>(std::ceil(count / running)), random,
                        [&](const State& state) {
                          if (Model::ending(state) != Ending::running) return;
-                         const auto number = static_cast<std::uint32_t>(outcomes_.size());
+                         const std::uint32_t number = outcomes_.size();
                          outcomes_.push_back({{state, number, evaluation_.seen(state)}, default_observation});
                        });
     scenario_count_ = outcomes_.size();
@@ -242,7 +242,7 @@ class Despot final : public TreePlanner<Model> {
     const std::size_t max_new = action_count() * nodes_[number].scenarios;
     const bool has_room = has_room_for(scenarios_, max_new) && has_room_for(nodes_, max_new);
     if (!has_room || !has_room_for(actions_, action_count())) return false;
-    const auto first_action = static_cast<std::uint32_t>(actions_.size());
+    const std::uint32_t first_action = actions_.size();
     bool has_tried = false;
     for (std::size_t a = 0; a < action_count(); ++a) {
       // At the root an action is tried in any case that can be taken.
@@ -260,7 +260,7 @@ class Despot final : public TreePlanner<Model> {
 
   void try_action(std::uint32_t number, int a) {
     const Node node = nodes_[number];
-    const auto depth = static_cast<int>(node.depth);
+    const int depth = node.depth;
     double reward = 0;
     double squares = 0;
     double immediate = 0;
@@ -279,7 +279,7 @@ class Despot final : public TreePlanner<Model> {
     }
     sort_by_observation(outcomes_, 0, outcomes_.size());
 
-    const auto action_number = static_cast<std::uint32_t>(actions_.size());
+    const std::uint32_t action_number = actions_.size();
     const double earned = weight_at(depth) * reward - penalty_;
     ActionNode& action = actions_.emplace_back(ActionNode{number, no_node, number == 0 ? 1u : 0u, earned, earned, earned});
     const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, depth + 1);

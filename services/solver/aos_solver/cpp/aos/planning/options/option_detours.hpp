@@ -97,7 +97,7 @@ class OptionDetours {
   // nothing elsewhere.
   void look_after(const Ahead& ahead, const BarredActions& barred, bool known, double& steps, Sampler& random) {
     for (int action = 0; action < Model::action_count() && ahead.goes_on && steps > 0 && !clock_.is_over(); ++action) {
-      const auto a = static_cast<std::size_t>(action);
+      const std::size_t a = action;
       if (barred.contains(a) || (known && !telling_[a])) continue;
       Look look{ahead, action, {}};
       bool goes_on = true;

@@ -43,7 +43,7 @@ class OptionPairs {
     const Telling elsewhere{move->reports, 1};
     for (OptionCandidate* test : tests) {
       if (steps <= 0 || clock_.is_over()) break;
-      const int times = static_cast<int>(test->way.size());
+      const int times = test->way.size();
       const Telling here{{tests_.reports_of(test->action)}, times};
       const Telling there{{reports_after(move->way, test->action, steps, random)}, times};
       if (std::ranges::equal(here.reports.front(), there.reports.front(), &StepReports::is_like)) continue;

@@ -233,7 +233,7 @@ class OptionPolicy {
   // Notes the option that is the best candidate so far, if one is.
   void note_way(const std::vector<std::size_t>& likely, std::size_t observing) {
     const auto best = std::ranges::max_element(candidates_, {}, &OptionCandidate::value);
-    const auto place = static_cast<std::size_t>(best - candidates_.begin());
+    const std::size_t place = best - candidates_.begin();
     taken_way_ = place >= observing && place < candidates_.size() ? library_.options()[likely[place - observing]] : Option{};
   }
 
@@ -301,7 +301,7 @@ class OptionPolicy {
       ActionEstimate& estimate = estimates_[candidate.action];
       const double value = running * (candidate.value + open + beyond);
       if (estimate.n == 0 || value > estimate.q) estimate.q = value;
-      estimate.n = static_cast<std::uint32_t>(belief_.size());
+      estimate.n = belief_.size();
       estimate.standard_error = running * error;
     }
     reason_ = best != nullptr ? best->reason : "nothing";

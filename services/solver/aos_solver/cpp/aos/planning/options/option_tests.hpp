@@ -42,7 +42,7 @@ class OptionTests {
   // Takes each action once from each state, and notes what is observed. `steps` is counted down. It takes half of the time that
   // is left at most, and begins next time with what is left out. Returns whether nothing was.
   bool observe_all(const BarredActions& barred, double& steps, Sampler& random) {
-    const auto actions = static_cast<std::size_t>(Model::action_count());
+    const std::size_t actions = Model::action_count();
     reports_.resize(actions);
     informations_.assign(actions, 0);
     tests_.clear();

@@ -28,7 +28,7 @@ class OptionValues {
   // Values a few states of a belief. `gains` times the gain of actions will be asked for: the fewer, the more states, and the
   // further they are followed. `steps` is counted down.
   void begin(const SampledBelief<Model>& belief, int horizon, std::size_t gains, double& steps, Sampler& random) {
-    horizon_ = static_cast<std::size_t>(horizon);
+    horizon_ = horizon;
     valued_.clear();
     following_.begin();
     const double affordable = of_values * steps / (1 + gains);

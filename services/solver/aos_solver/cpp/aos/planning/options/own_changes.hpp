@@ -38,7 +38,7 @@ class OwnChanges {
 
   // Takes each action once from each state. `steps` is counted down.
   void measure(const std::vector<State>& states, const LeafCells<Model>& cells, double& steps, Sampler& random) {
-    const auto actions = static_cast<std::size_t>(Model::action_count());
+    const std::size_t actions = Model::action_count();
     moves_.assign(actions, false);
     is_changed_.assign(cells.size(), false);
     is_worlds_.assign(cells.size(), false);

@@ -27,7 +27,7 @@ class SearchThreads {
 
   void prepare(int threads) {
     simulations_.clear();
-    const auto count = static_cast<std::size_t>(threads);
+    const std::size_t count = threads;
     if (trees_.size() == count) return;
     trees_.clear();
     for (std::size_t i = 0; i < count; ++i) trees_.push_back(std::make_unique<Tree>(max_search_bytes / count));
@@ -80,7 +80,7 @@ class SearchThreads {
   };
 
   static Budget share(Budget budget, std::size_t thread) {
-    const auto threads = static_cast<std::uint64_t>(budget.threads);
+    const std::uint64_t threads = budget.threads;
     if (budget.simulations > 0) budget.simulations = budget.simulations / threads + (thread < budget.simulations % threads);
     return budget;
   }

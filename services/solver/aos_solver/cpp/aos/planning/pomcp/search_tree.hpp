@@ -92,7 +92,7 @@ class SearchTree {
   bool give_actions(std::uint32_t number) {
     if (histories_[number].first_action != no_node) return true;
     if (!has_room_for(actions_, action_count_)) return false;
-    histories_[number].first_action = static_cast<std::uint32_t>(actions_.size());
+    histories_[number].first_action = actions_.size();
     actions_.resize(actions_.size() + action_count_);
     return true;
   }
@@ -113,7 +113,7 @@ class SearchTree {
   // Adds a history after an action. Returns `no_node` if there is no room for it.
   std::uint32_t add_child(std::uint32_t action, Observation observation) {
     if (!has_room_for(histories_, 1)) return no_node;
-    const auto number = static_cast<std::uint32_t>(histories_.size());
+    const std::uint32_t number = histories_.size();
     histories_.push_back({.observation = observation});
     hang(action, number);
     return number;
@@ -128,7 +128,7 @@ class SearchTree {
       const ActionNode* const originals = from.actions(from.histories_[sources_[copied]]);
       for (std::uint32_t a = 0; a < action_count_; ++a) {
         for (std::uint32_t child = originals[a].first_child; child != no_node; child = from.histories_[child].sibling) {
-          const auto number = static_cast<std::uint32_t>(histories_.size());
+          const std::uint32_t number = histories_.size();
           histories_.push_back({});
           copy_node(from, child, number);
           hang(histories_[copied].first_action + a, number);

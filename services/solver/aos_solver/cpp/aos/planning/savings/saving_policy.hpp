@@ -63,7 +63,7 @@ class SavingPolicy {
     index_->drop_worst();
     const double least = (1 - of_search) * affordable;
     for (std::size_t i = 0; i < searched && steps > least; ++i) {
-      const auto k = static_cast<std::size_t>(random.below(belief_.size()));
+      const std::size_t k = random.below(belief_.size());
       double left = steps - least;
       steps -= left;
       index_->extend(cells_, belief_.states()[k], left, random);
@@ -138,7 +138,7 @@ class SavingPolicy {
 
   // The actions by the income of the best way that begins with each; those that begin none by what they tell.
   std::vector<int> ordered_actions(double& steps, Sampler& random) {
-    const auto actions = static_cast<std::size_t>(Model::action_count());
+    const std::size_t actions = Model::action_count();
     constexpr double none = -std::numeric_limits<double>::infinity();
     std::vector<double> incomes(actions, none);
     incomes[index_->values().action()] = 0;
@@ -153,7 +153,7 @@ class SavingPolicy {
       if (incomes[a] == none) told[a] = told_by(a, steps, random);
     }
     const auto worth = [&](int action) {
-      const auto a = static_cast<std::size_t>(action);
+      const std::size_t a = action;
       return std::pair{incomes[a], told[a]};
     };
     sort_stably(ordered, [&](int one, int other) { return worth(one) > worth(other); });
@@ -177,7 +177,7 @@ class SavingPolicy {
     ActionEstimate& estimate = estimates_[action];
     if (estimate.n > 0 && value <= estimate.q) return;
     estimate.q = value;
-    estimate.n = static_cast<std::uint32_t>(belief_.size());
+    estimate.n = belief_.size();
   }
 
   bool has_learned_ = false;

@@ -107,7 +107,7 @@ class SavingSearch {
     found_.clear();
     nodes_.assign(1, {start, 0, -1, 0, 0});
     seen_.clear();
-    const auto actions = static_cast<std::size_t>(Model::action_count());
+    const std::size_t actions = Model::action_count();
     cells_before_.resize(cells_.size());
     cells_after_.resize(actions * cells_.size());
     after_.resize(actions, start);

@@ -62,7 +62,7 @@ class SeekPlaces {
     ways_.clear();
     after_.clear();
     std::unordered_map<std::uint64_t, std::uint32_t> known;
-    const auto actions = static_cast<std::size_t>(Model::action_count());
+    const std::size_t actions = Model::action_count();
     places_.push_back({belief.states(), {}, {}});
     known.emplace(running_down.place_of(places_[0].states), 0);
     std::vector<StepReports> reports(belief.size());
@@ -130,7 +130,7 @@ class SeekPlaces {
         if (to == nowhere || ways.distance[to] != nowhere) continue;
         ways.distance[to] = ways.distance[open[i]] + 1;
         ways.before[to] = open[i];
-        ways.by[to] = static_cast<int>(a);
+        ways.by[to] = a;
         ways.paid[to] = ways.paid[open[i]] + std::pow(Model::discount, ways.distance[open[i]]) * place.paid[a];
         open.push_back(to);
       }
@@ -181,7 +181,7 @@ class SeekPlaces {
     for (const auto& numbers : own) {
       std::vector<double> odds(cells_of_numbers, 0.01 / cells_of_numbers);
       for (const double number : numbers) {
-        const auto rank = static_cast<std::size_t>(std::ranges::lower_bound(all, number) - all.begin());
+        const std::size_t rank = std::ranges::lower_bound(all, number) - all.begin();
         odds[std::min<std::size_t>(rank * cells_of_numbers / all.size(), cells_of_numbers - 1)] += 0.99 / quantiles;
       }
       test.own.insert(test.own.end(), odds.begin(), odds.end());

@@ -56,7 +56,7 @@ class SeekPolicy {
     SampleMean returned;
     steps_ = std::max(steps_, affordable / 2);
     for (int mission = 0; mission < most_missions && (mission < fewest_missions || steps_ > 0); ++mission) {
-      const auto k = static_cast<std::size_t>(random.choose(belief_.weights().data(), belief_.size(), 1.0));
+      const std::size_t k = random.choose(belief_.weights().data(), belief_.size(), 1.0);
       returned.add(played(k, random));
     }
     return {first, returned.mean(), returned.error(), static_cast<int>(returned.count())};
@@ -235,7 +235,7 @@ class SeekPolicy {
       place = test->place;
       if (running_down_.differ(state, before)) return sum + discount * ended(place, state, random).returned;
       const double* const own = &test->own[k * test->outcomes];
-      const auto seen = static_cast<std::size_t>(random.choose(own, test->outcomes, 1.0));
+      const std::size_t seen = random.choose(own, test->outcomes, 1.0);
       double all = 0;
       for (std::size_t z = 0; z < classes_; ++z) all += weights[z] *= test->odds[z * test->outcomes + seen];
       if (!(all > 0)) return sum + discount * ended(place, state, random).returned;

@@ -260,7 +260,7 @@ class LearnedValues final : public StateValues<Model> {
         int after = left - 1;
         sum += Model::step(next, action, random).reward;
         sum += Model::discount * Model::rollout(next, after, random);
-        steps += static_cast<std::size_t>(left);
+        steps += left;
       }
       return sum;
     };
