@@ -65,6 +65,9 @@ class StateNumbers {
     return size_++;
   }
 
+  // Asks for the memory of a state that is added soon.
+  [[gnu::always_inline]] void prefetch(const State& state) const { numbers_.prefetch(hash_of(state)); }
+
   // The number of a state; `no_state` if it has none.
   std::uint32_t find(const State& state) const {
     if (!first_ || !agrees_elsewhere(state)) return no_state;

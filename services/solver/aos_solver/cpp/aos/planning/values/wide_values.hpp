@@ -1,6 +1,6 @@
 // The fully observable (MDP) values of models with up to eight million states, from which POMCP counts. A state has no more than
 // its distinct outcomes (compact_model.hpp), and draws that shape only what is observed are skipped. Random walks tell beforehand
-// whether the list, which takes some ten seconds, is worth beginning.
+// whether the list, which takes some seconds, is worth beginning.
 #pragma once
 
 #include <algorithm>
@@ -90,6 +90,20 @@ class WideValues final : public StateValues<Model> {
   }
 
  private:
+  static constexpr std::uint32_t states_of_block = 16;
+
+  // A way on from a state.
+  struct Path {
+    State next;
+    double probability;
+    bool stays;  // in the same state
+  };
+  // The paths of an action, up to `end`.
+  struct Row {
+    std::size_t end;
+    float reward;
+  };
+
   // Whether the outcomes of an action, without what is observed, are those of the action before.
   static bool is_like_the_one_before(int action) {
     const int skill = Model::skill_of(action);
@@ -137,20 +151,46 @@ class WideValues final : public StateValues<Model> {
 
   // --- the list
 
+  // Goes through blocks of states: the places of their next states in memory are known some time before these are added.
   void list(const Belief<Model>& belief) {
     lister_.add_states_of(belief);
-    for (std::uint32_t number = 0; number < lister_.numbers().size(); ++number) {
-      if (number % states_between_looks == 0) progress::tell("listing states without observations", number, lister_.numbers().size());
-      const State state = lister_.numbers()[number];
-      rows_.begin_state();
-      for (const int action : actions_) {
-        outcomes_.clear();
-        const double reward = lister_.walk(state, action, [&](const State& next, const Step&, double probability) {
-          outcomes_.push_back({lister_.numbers().are_same(next, state) ? number : lister_.add(next), probability});
-        });
-        rows_.add_row(outcomes_, static_cast<float>(reward));
-      }
+    const StateNumbers<Model>& numbers = lister_.numbers();
+    for (std::uint32_t first = 0; first < numbers.size();) {
+      const auto last = static_cast<std::uint32_t>(std::min<std::size_t>(first + states_of_block, numbers.size()));
+      block_.clear();
+      block_rows_.clear();
+      for (std::uint32_t number = first; number < last; ++number) walk_actions(number);
+      add_block(first, last);
+      first = last;
       if (rows_.words() > lister_.limits().outcomes) throw NotEnumerable{"there are too many outcomes to list"};
+    }
+  }
+
+  void walk_actions(std::uint32_t number) {
+    if (number % states_between_looks == 0) progress::tell("listing states without observations", number, lister_.numbers().size());
+    const State state = lister_.numbers()[number];
+    for (const int action : actions_) {
+      const double reward = lister_.walk(state, action, [&](const State& next, const Step&, double probability) {
+        const bool stays = lister_.numbers().are_same(next, state);
+        if (!stays) lister_.numbers().prefetch(next);
+        block_.push_back({next, probability, stays});
+      });
+      block_rows_.push_back({block_.size(), static_cast<float>(reward)});
+    }
+  }
+
+  void add_block(std::uint32_t first, std::uint32_t last) {
+    std::size_t at = 0;
+    auto row = block_rows_.begin();
+    for (std::uint32_t number = first; number < last; ++number) {
+      rows_.begin_state();
+      for (std::size_t action = 0; action < actions_.size(); ++action, ++row) {
+        outcomes_.clear();
+        for (; at < row->end; ++at) {
+          outcomes_.push_back({block_[at].stays ? number : lister_.add(block_[at].next), block_[at].probability});
+        }
+        rows_.add_row(outcomes_, row->reward);
+      }
     }
   }
 
@@ -160,6 +200,8 @@ class WideValues final : public StateValues<Model> {
   float highest_ = 0;
   // While listing:
   std::vector<int> actions_;  // one of those that are alike
+  std::vector<Path> block_;   // of the states of a block, action by action
+  std::vector<Row> block_rows_;
   CompactModel rows_;
   std::vector<CompactModel::Outcome> outcomes_;
 };
