@@ -79,6 +79,10 @@ def test_a_condition_that_sets_what_may_only_be_read_is_one_error():
             "9 AOS108 '12' is no character. A text stands in double quotes",
         ),
         (
+            "switch (steps) { case 1: __reward = 1; break; defualt: __reward = 2; }",
+            "9 AOS108 `defualt:` is a label in C++. Did you mean `default:`?",
+        ),
+        (
             "int x = 3\n__reward = x;",
             "9 AOS108 unexpected '3' in C++. Is a semicolon missing at the end of this line?",
         ),

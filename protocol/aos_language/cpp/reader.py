@@ -20,6 +20,7 @@ from aos_language.cpp.facts import (
 )
 from aos_language.cpp.nodes import below, child_of, names_of, picks_member, text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
+from aos_protocol.spelling import nearest
 
 _CHANGING_FUNCTIONS = frozenset({"Initialize", "SetNull", "Uninitialize", "exchange", "iota", "swap", "tie"})
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
@@ -100,6 +101,14 @@ class TreeReader:
         parts = whole.children if whole is not None else []
         self.idle_operators += [self.extent(part) for part in parts if part.type == "=="]
         self._push(node.children)
+
+    def _label(self, node: tree_sitter.Node, access: Access) -> None:
+        """A label that was meant as `default:`; no other is looked at."""
+        label = child_of(node, "label")
+        if nearest(text_of(label), ("default",)):
+            message, hint = f"`{text_of(label)}:` is a label", "Did you mean `default:`?"
+            self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(label), hint))
+        self._push(node.children[1:])
 
     def _comma(self, node: tree_sitter.Node, access: Access) -> None:
         """A comma that drops what stands before it; between two digits it was meant as a point."""
@@ -372,6 +381,7 @@ _HANDLERS = {
     "field_expression": TreeReader._path,
     "for_range_loop": TreeReader._declaration,
     "identifier": TreeReader._path,
+    "labeled_statement": TreeReader._label,
     "lambda_capture_specifier": TreeReader._captures,
     "optional_parameter_declaration": TreeReader._declaration,
     "parameter_declaration": TreeReader._declaration,
