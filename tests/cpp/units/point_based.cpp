@@ -137,6 +137,23 @@ TEST("A simple policy decides with a standard error above the bound, and with le
   EXPECT(0 < decided[0] && decided[0] < decided[1] && decided[1] < 26);
 }
 
+TEST("Beside a room of too many states, a plan for the room behind it opens all boxes in turn") {
+  constexpr std::uint32_t many = 400, boxes = 3, end = many + boxes;
+  Problem problem = units::world(end + 1, boxes, 0.9);
+  problem.sensings.push_back({{1, 1.0}});
+  problem.endings[end] = 1;
+  problem.starts.clear();
+  for (std::uint32_t state = 0; state < many; ++state) problem.starts.push_back({state, 1.0 / many});
+  for (std::uint32_t action = 0; action < boxes; ++action) {
+    for (std::uint32_t state = 0; state < many; ++state) units::row(problem, state, action) = {{1.0, many + state % boxes, 0, 0.0}};
+    for (std::uint32_t box = 0; box < boxes; ++box) units::row(problem, many + box, action) = {{1.0, many + box, 0, -1.0}};
+    units::row(problem, many + action, action) = {{1.0, end, 1, 10.0}};
+  }
+  point_based::OnlineSarsop search{flat_model(problem)};
+  EXPECT(search.move_to({{many, 1.0 / 3}, {many + 1, 1.0 / 3}, {many + 2, 1.0 / 3}}));
+  EXPECT_NEAR(search.bounds().first, (10 + (-1 + 0.9 * 10) + (-1 - 0.9 + 0.81 * 10)) / 3, 1e-6);
+}
+
 TEST("A belief of states that no start leads to is refused") {
   Problem problem = units::world(4, 1, 0.9);
   problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};

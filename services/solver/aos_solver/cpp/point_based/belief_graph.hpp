@@ -42,7 +42,7 @@ class BeliefGraph {
         largest_value_ = std::max(largest_value_, lower_.back()[number].size);
       }
     }
-    if (switches::certainty_equivalent && is_endless()) add_certainty_equivalent();
+    if (switches::certainty_equivalent && is_endless()) add_certainty_equivalent(bounds.blind.front());
     std::size_t largest = 0;
     for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
     posterior_.reserve(largest);
@@ -306,8 +306,8 @@ class BeliefGraph {
     return vector.length == node.left ? value : value + tail(vector.length, node.left);
   }
 
-  void add_certainty_equivalent() {
-    const CertaintyEquivalent plans{model_, regions_, informed_.front(), rounding_};
+  void add_certainty_equivalent(const ActionValues& blind) {
+    const CertaintyEquivalent plans{model_, regions_, informed_.front(), blind, rounding_};
     for (std::uint32_t region = 0; region < lower_.size(); ++region) {
       for (AlphaVector& vector : plans.vectors(region)) {
         largest_value_ = std::max(largest_value_, vector.size);
