@@ -10,7 +10,9 @@ import typer
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.constraints import constraint_of_option
 from aos_deploy.deployment.mission_values import values_of_options
+from aos_deploy.deployment.parts import MAX_COUNT, MAX_SEED
 from aos_deploy.options import finite
+from aos_protocol.documents import MAX_HORIZON
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
 
@@ -23,18 +25,23 @@ Bundle = Annotated[
         help="A directory of documents; or a deploy file, for its bundles, constraints and values together",
     ),
 ]
-Simulations = Annotated[int, typer.Option(min=1, help="Planning budget of a decision, in simulations")]
+Simulations = Annotated[
+    int, typer.Option(min=1, max=MAX_COUNT, help="Planning budget of a decision, in simulations")
+]
 Time = Annotated[
     float | None,
     typer.Option("--time", min=0.001, callback=finite, help="Planning budget in seconds, instead"),
 ]
 Horizon = Annotated[
-    int | None, typer.Option(min=1, help="Look-ahead in decisions; else the environment document's")
+    int | None,
+    typer.Option(min=1, max=MAX_HORIZON, help="Look-ahead in decisions; else the environment document's"),
 ]
 PolicyFile = Annotated[
     Path | None, typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching")
 ]
-Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
+Seed = Annotated[
+    int, typer.Option(min=0, max=MAX_SEED, help="The same seed and simulations give the same result")
+]
 PlannerName = Annotated[
     Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
 ]

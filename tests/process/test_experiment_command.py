@@ -49,6 +49,6 @@ def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(tmp_p
     assert len(records.read_text().splitlines()) == 4
     assert [verdict["held"] for verdict in again["verdicts"]] == [4, 4]
     text = (out / "report.md").read_text()
-    assert "| finer | it goes to the easy table | seen: 4 of 4, " in text
+    assert "| finer | it goes to the easy table | seen: 4 of 4 [" in text
     assert "## Beside the optimum" in text
     assert (out / "plots" / "steps.svg").is_file()

@@ -47,6 +47,15 @@ def test_people_see_the_bounds_come_nearer(tiger: Path):
     assert lines[-1].startswith("the policy gives at least 19.371")
 
 
+def test_small_rewards_have_bounds_in_digits_of_their_size(tmp_path: Path):
+    problem = tmp_path / "small.pomdp"
+    problem.write_text(
+        "discount: 0.5\nvalues: reward\nstates: 1\nactions: 1\nT: * identity\nR: * : * : * 0.000003\n"
+    )
+    lines = aos("solve", problem).stdout.splitlines()
+    assert "none more than 0.0000060" in lines[-1]
+
+
 def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path):
     saved = tmp_path / "tiger.policy"
     assert aos("solve", bundle, "--out", saved).exit_code == 0

@@ -92,12 +92,13 @@ def test_a_command_is_found_behind_two_dashes(arguments: list[str]):
     ("words", "said"),
     [
         ("simulate x --runs two", "'--runs': 'two' is not a whole number of at least 1, such as 10"),
+        ("plan x --horizon 10001", "'--horizon': 10001 is not a whole number from 1 to 10000, such as 1"),
         ("simulate x --runs 0", "'--runs': 0 is not a whole number of at least 1, such as 10"),
         ("plan x --threads 33", "'--threads': 33 is not a whole number from 1 to 32, such as 1"),
         ("plan x --time soon", "'--time': 'soon' is not a number of at least 0.001, such as 1"),
         ("serve --port -1", "'--port': -1 is not a whole number from 0 to 65535, such as 7480"),
         ("runs prune --keep all", "'--keep': 'all' is not a whole number of at least 0, such as 1"),
-        ("up x --seed z", "'--seed': 'z' is not a whole number of at least 0, such as 1"),
+        ("up x --seed z", f"'--seed': 'z' is not a whole number from 0 to {2**63 - 1}, such as 1"),
     ],
 )
 def test_a_number_that_is_not_taken_is_told_with_those_that_are(words: str, said: str):
@@ -112,7 +113,7 @@ def test_a_program_of_one_command_tells_of_numbers_too():
     done = subprocess.run(
         (*program, "x", "--seed", "z"), capture_output=True, text=True, check=False, timeout=60
     )
-    assert "'z' is not a whole number of at least 0, such as 1" in done.stderr
+    assert f"'z' is not a whole number from 0 to {2**63 - 1}, such as 1" in done.stderr
 
 
 def test_a_sentence_that_is_too_long_is_found():

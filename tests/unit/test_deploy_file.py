@@ -6,11 +6,13 @@ from deploy_files import HEAD, findings, read
 
 from aos_deploy.bundles.files import files_of_bundle
 from aos_deploy.deployment.own_programs import ReadyPart
+from aos_deploy.deployment.parts import MAX_SEED
 from aos_deploy.deployment.reading import check_endpoint, read_deploy_file, without_a_robot
 from aos_deploy.missions.readiness import misspelt_paths
 from aos_deploy.processes.needed_here import check_needed_here
 from aos_deploy.processes.program import programs_of_deployment
 from aos_protocol.errors import DeployError
+from aos_solver.child.search import Search
 
 
 def test_what_is_not_said_has_its_default(folder: Path):
@@ -21,6 +23,13 @@ def test_what_is_not_said_has_its_default(folder: Path):
     assert deployment.file.mission.goal_probability == 0.9
     assert deployment.file.bus.listen == "", "the bus is a socket in the run directory"
     assert deployment.world is None
+
+
+@pytest.mark.parametrize("seed", [1, MAX_SEED])
+def test_every_seed_of_a_deploy_file_gives_decisions_seeds_of_64_bits(seed: int):
+    of_steps = [Search(simulations=1, seed=seed).seed_of(step) for step in (1, 2)]
+    assert len(set(of_steps)) == 2
+    assert all(0 < each < 2**64 for each in of_steps)
 
 
 def test_a_bundle_may_be_an_archive(folder: Path):

@@ -83,7 +83,7 @@ def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_
     page, whole = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
     text = page.read_text()
     assert "| part | claim | played by model | played by system |" in text
-    broken = "**not seen**: 2 of 3, 0.67 [0.21, 0.94], wanted 0.90, not in seeds 3"
+    broken = "**not seen**: 2 of 3 [0.21, 0.94], wanted 0.90, not in seeds 3"
     assert f"| one | it \\| picks first | {broken} | " in text
     assert "| one | model | 3 (1 broke) | 0.33 [0.06, 0.79] |" in text
     assert "one, model, seed 3 broke: the engine | has ended" in text

@@ -3,6 +3,8 @@ import math
 import pytest
 
 from aos_deploy.views.tables import print_runs, print_values
+from aos_deploy.views.values import Digits
+from aos_protocol.chances import chance_text
 from aos_protocol.messages import ActionValue
 from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.simulation import SimulatedRun
@@ -49,3 +51,52 @@ def test_what_missions_did_stands_below_a_narrow_table(columns, capsys, monkeypa
     assert any("step_limit" in line and "-1.0" in line for line in lines)
     assert ("7: listen → tiger_left" in lines) == (columns == "50")
     assert sum("listen → tiger_left" in line for line in lines) == 1
+
+
+def test_small_values_are_told_in_digits_of_their_size(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "120")
+    values = [
+        ActionValue("open", 2.5e-6, 10, 1e-8, 2.4999996e-6, 2.5e-6),
+        ActionValue("wait", -1.25e-6, 10, 0.0),
+    ]
+    print_values(values, 30, "")
+    run = SimulatedRun(7, -4e-6, -4e-6, Ending.STEP_LIMIT, 1, ("listen",), ("tiger_left",))
+    summary = {"runs": 2, "mean_discounted_return": -4e-6, "stderr": 2e-7, "mean_steps": 1}
+    print_runs([run], summary, has_goals=False)
+    told = capsys.readouterr().out
+    for text in ("+0.000002500", "0.000000010", "+0.000002499", "-0.000001250", " -0.0000040 "):
+        assert text in told
+    assert "discounted return -0.00000400 ± 0.00000020" in told
+    assert "│ ██" in told
+
+
+def test_the_summary_of_missions_says_how_the_others_ended(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    endings = [Ending.GOAL, Ending.OVER, Ending.STEP_LIMIT, Ending.STEP_LIMIT]
+    runs = [SimulatedRun(seed, 1.0, 1.0, ending, 1, (), ()) for seed, ending in enumerate(endings)]
+    rates = dict.fromkeys(("goal_rate", "believed_goal_rate", "failure_rate"), 0.25)
+    print_runs(runs, {"runs": 4, "mean_discounted_return": 1, "mean_steps": 1} | rates)
+    assert "failure in 25%, step_limit in 50%, over in 25%, discounted" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("probability", "text"),
+    [(0.0, "0.000"), (1e-7, "<0.001"), (0.5, "0.500"), (0.9999, ">0.999"), (1 - 1e-15, "1.000")],
+)
+def test_what_is_not_certain_is_never_shown_as_certain(probability: float, text: str):
+    assert chance_text(probability) == text
+
+
+@pytest.mark.parametrize(
+    ("values", "usual", "texts"),
+    [
+        ([11.25, -0.0004], 2, ["+11.25", "-0.00"]),
+        ([0.5], 3, ["+0.5000"]),
+        ([123456.78], 3, ["+123456.8"]),
+        ([1e-13, math.inf], 2, ["+1.00e-13", "-"]),
+        ([5e-324], 2, ["+4.94e-324"]),
+        ([0.0], 2, ["+0.00"]),
+    ],
+)
+def test_numbers_that_are_printed_together_have_the_digits_of_the_largest(values, usual, texts):
+    assert [Digits.of(values, usual).signed(value) for value in values] == texts

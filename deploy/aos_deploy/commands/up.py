@@ -10,6 +10,7 @@ import msgspec
 import typer
 
 from aos_deploy.deployment.mission_values import SetValues
+from aos_deploy.deployment.parts import MAX_SEED
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
 from aos_deploy.marked_commands import command
@@ -36,7 +37,8 @@ Resume = Annotated[
     ),
 ]
 Seed = Annotated[
-    int | None, typer.Option(min=0, help="Seed of the planner and of the world, in place of the file's")
+    int | None,
+    typer.Option(min=0, max=MAX_SEED, help="Seed of the planner and of the world, in place of the file's"),
 ]
 Listen = Annotated[
     str | None, typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one")

@@ -13,9 +13,11 @@ from aos_solver.mission.rules.failures import SkillRule
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
 Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
-Count = Annotated[int, msgspec.Meta(ge=1, le=2**31 - 1)]
+MAX_COUNT = 2**31 - 1
+MAX_SEED = 2**63 - 1
+Count = Annotated[int, msgspec.Meta(ge=1, le=MAX_COUNT)]
 Horizon = Annotated[int, msgspec.Meta(ge=1, le=MAX_HORIZON)]
-Seed = Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)]
+Seed = Annotated[int, msgspec.Meta(ge=0, le=MAX_SEED)]
 
 
 class BusPart(msgspec.Struct, frozen=True, kw_only=True):

@@ -6,8 +6,10 @@ import time
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
-from aos_deploy.views.observations import by_worth, observation_text, value_text
+from aos_deploy.views.observations import observation_text
+from aos_deploy.views.values import Digits, by_worth
 from aos_protocol import messages
+from aos_protocol.chances import chance_text
 from aos_protocol.diagnostics import render
 
 _TELLING_AGAIN_S = 5.0
@@ -125,7 +127,9 @@ def decision_line(record: messages.DecisionRecord) -> str:
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
         others = by_worth(record.actions, record.simulations)
-        shown = [_value(action) for action in others[:_SHOWN_ACTIONS]]
+        best = others[:_SHOWN_ACTIONS]
+        digits = Digits.of((action.q for action in best), 2)
+        shown = [_value(action, digits) for action in best]
         if len(others) > len(shown):
             shown.append(f"{len(others) - len(shown)} more")
         values = f"[{', '.join(shown)}]  " if shown else ""
@@ -147,10 +151,10 @@ def decision_line(record: messages.DecisionRecord) -> str:
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
 
 
-def _value(action: messages.ActionValue) -> str:
+def _value(action: messages.ActionValue, digits: Digits) -> str:
     """`pick +2.71 ± 0.04`; an error that rounds to nothing is left out."""
-    error = f" ± {action.stderr:.2f}" if action.stderr >= 0.005 else ""
-    return f"{action.action} {value_text(action.q, 2)}{error}"
+    error = f" ± {digits.plain(action.stderr)}" if action.stderr >= digits.half_unit else ""
+    return f"{action.action} {digits.signed(action.q)}{error}"
 
 
 def effort_text(record: messages.DecisionRecord) -> str:
@@ -180,9 +184,10 @@ def endings_text(belief: messages.BeliefSummary) -> str:
     In brackets stands how probable the goal is if nothing ran that was not observed, where that differs.
     """
     others = {"over": belief.over_probability, "failure": belief.failure_probability}
-    shown = [f"{name} {probability:.3f}" for name, probability in others.items() if probability >= 0.0005]
-    cautious = "" if belief.cautious is None else f" (cautious {belief.cautious.goal_probability:.3f})"
-    return "  ".join([f"goal {belief.goal_probability:.3f}{cautious}", *shown])
+    shown = [f"{name} {chance_text(odds)}" for name, odds in others.items() if odds >= 0.0005]
+    of_cautious = belief.cautious
+    cautious = "" if of_cautious is None else f" (cautious {chance_text(of_cautious.goal_probability)})"
+    return "  ".join([f"goal {chance_text(belief.goal_probability)}{cautious}", *shown])
 
 
 def _report_lines(report: messages.BundleReport) -> list[str]:

@@ -16,6 +16,7 @@ from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.terminal import console as our_console
 from aos_deploy.views.lines import effort_text, endings_text, lines_of, risk_text
 from aos_deploy.views.panels import belief_bars, belief_lines, progress_text, step_table, value_table
+from aos_protocol.chances import chance_text
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
 
 _FIXED_ROWS = 11
@@ -124,7 +125,7 @@ class Screen:
     def _headline(self) -> Text:
         text = Text(self.title, style="bold", no_wrap=True, overflow="ellipsis")
         if self.state is not None:
-            goal = f"goal {self.state.goal_probability:.3f}"
+            goal = f"goal {chance_text(self.state.goal_probability)}"
             endings = endings_text(self.latest.belief) if self.latest is not None else goal
             text.append(f"   step {self.state.step}   {self.state.phase}   {endings}", style="not bold")
         return text

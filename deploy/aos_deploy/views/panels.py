@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from aos_deploy.views.observations import at_least_text, at_most_text, by_worth, observation_text, value_text
+from aos_deploy.views.observations import observation_text
+from aos_deploy.views.values import Digits, by_worth, proven_texts
+from aos_protocol.chances import chance_text
 from aos_protocol.messages import BeliefSummary, DecisionRecord, Marginal, SkillProgress
 
 _BAR_CELLS = 20
@@ -44,20 +46,25 @@ def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
         table.add_column(header, justify="right" if is_number else "left", no_wrap=True)
     room = max(room, _ROOM_CELLS)
     actions = _fitting([record.action for record in records], room * 2 // 3)
-    for record, action in zip(records, actions, strict=True):
-        chosen = next((value for value in record.actions if value.action == record.action), None)
+    values = [_chosen_value(record) for record in records]
+    digits = Digits.of((value for value in values if value is not None), 2)
+    for record, action, value in zip(records, actions, values, strict=True):
         observation = _observation(record)
         observation.truncate(max(room - max(map(len, actions)), room // 3), overflow="ellipsis")
         cells: dict[str, str | Text] = {
             "step": str(record.step),
             "action": action,
-            "value": "" if chosen is None else value_text(chosen.q, 2),
+            "value": "" if value is None else digits.signed(value),
             "observation": observation,
             "surprise": "" if record.outcome is None else f"{record.surprise:.2f}",
-            "goal": f"{record.belief.goal_probability:.3f}",
+            "goal": chance_text(record.belief.goal_probability),
         }
         table.add_row(*(cells[column] for column in columns))
     return table
+
+
+def _chosen_value(record: DecisionRecord) -> float | None:
+    return next((value.q for value in record.actions if value.action == record.action), None)
 
 
 def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
@@ -77,10 +84,11 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
     best = by_worth(record.actions, record.simulations)
     shown = best if len(best) <= rows else best[: max(rows - 1, 1)]
     names = _fitting([value.action for value in shown], width - 30 - (_BOUNDS_CELLS if has_bounds else 0))
+    digits = Digits.of((value.q for value in shown), 2)
     for value, name in zip(shown, names, strict=True):
         style = "bold" if value.action == record.action else ""
-        proven = (at_least_text(value, 2), at_most_text(value, 2)) if has_bounds else ()
-        numbers = (value_text(value.q, 2), f"{value.stderr:.2f}", *proven, f"{value.n:,}")
+        proven = proven_texts(value, digits) if has_bounds else ()
+        numbers = (digits.signed(value.q), digits.plain(value.stderr), *proven, f"{value.n:,}")
         risk = [risks[value.action]] if risks else []
         table.add_row(Text(name, style), *numbers, *risk, style=style)
     if len(shown) < len(best):
@@ -113,7 +121,7 @@ def belief_bars(belief: BeliefSummary, rows: int) -> Table:
         for index, (value, probability) in enumerate(list(marginal.values.items())[:_SHOWN_VALUES]):
             name = marginal.variable if index == 0 else ""
             if table.row_count < rows:
-                table.add_row(name, value, _bar(probability), f"{probability:.3f}")
+                table.add_row(name, value, _bar(probability), chance_text(probability))
     return table
 
 

@@ -3,7 +3,8 @@
 from aos_protocol.messages import Consequence, Flip, WhatIf, Why
 
 _SHOWN_TERMS = 4
-_LEAST_TERM = 5e-4
+_LEAST_SHARE = 5e-5
+"""The share of the largest difference from which on another one is told."""
 _LONG_UPDATE_S = 0.1
 """The time that a decision usually has. A shorter update is in `--json` alone."""
 
@@ -42,7 +43,7 @@ def _rounded(number: int) -> int:
 
 def _worth(value: float, stderr: float) -> str:
     """`+2.713 ± 0.04`; an error that no shown digit of the value has is left out."""
-    is_shown = stderr > max(1e-4 * abs(value), 1e-9)
+    is_shown = stderr > 1e-4 * abs(value)
     return f"{value:+.4g}" + (f" ± {stderr:.2g}" if is_shown else "")
 
 
@@ -70,7 +71,8 @@ def _consequence(each: Consequence) -> str:
 
 def _terms(why: Why) -> list[str]:
     """The lines of documents that the margin comes from, and what of it is not told apart."""
-    telling = [term for term in why.terms if abs(term.value - term.other) > _LEAST_TERM]
+    least = _LEAST_SHARE * max((abs(term.value - term.other) for term in why.terms), default=0.0)
+    telling = [term for term in why.terms if abs(term.value - term.other) > least]
     shown = [f"{term.value - term.other:+.4g} from {term.place}" for term in telling[:_SHOWN_TERMS]]
     left = sum(term.value - term.other for term in telling[_SHOWN_TERMS:])
     if telling[_SHOWN_TERMS:]:

@@ -1,6 +1,7 @@
 """Tables for people: the value of each action, and simulated missions."""
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping
 
 from rich.bar import Bar
 from rich.table import Table
@@ -8,10 +9,13 @@ from rich.text import Text
 
 from aos_deploy.printing import count
 from aos_deploy.terminal import console
-from aos_deploy.views.observations import at_least_text, at_most_text, by_worth, observation_text, value_text
+from aos_deploy.views.observations import observation_text
+from aos_deploy.views.values import Digits, by_worth, proven_texts
 from aos_protocol.messages import ActionValue
+from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.simulation import SimulatedRun
 
+_DECIMALS = 3
 BAR_WIDTH = 30
 LONGEST_ACTION = 48
 """The limit in letters; a longer action takes several lines."""
@@ -42,15 +46,19 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
     known = [value for value in values if value.is_known(simulations)]
     lowest = min((value.q for value in known), default=0.0)
     highest = max((value.q for value in known), default=0.0)
+    digits = Digits.of((value.q for value in values), _DECIMALS)
+    wider = max(digits.decimals - _DECIMALS, 0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
     out = console(is_wide=True)
     # Bars give way first: actions often differ in their last letters only.
     longest = min(max(len(value.action) for value in values), LONGEST_ACTION)
-    has_errors = bool(simulations) and longest + NUMBERS_WIDTH <= out.width
-    action_width = longest if has_errors else max(min(longest, out.width - VALUE_WIDTH), 1)
-    has_room = action_width + NUMBERS_WIDTH + BOUNDS_WIDTH <= out.width
+    numbers_width = NUMBERS_WIDTH + 2 * wider
+    bounds_width = BOUNDS_WIDTH + 2 * wider
+    has_errors = bool(simulations) and longest + numbers_width <= out.width
+    action_width = longest if has_errors else max(min(longest, out.width - VALUE_WIDTH - wider), 1)
+    has_room = action_width + numbers_width + bounds_width <= out.width
     has_bounds = has_room and any(value.at_least is not None or value.at_most is not None for value in values)
-    numbers_width = NUMBERS_WIDTH + (BOUNDS_WIDTH if has_bounds else 0)
+    numbers_width += bounds_width if has_bounds else 0
     bar_width = max(min(BAR_WIDTH, out.width - action_width - numbers_width), 1)
     table.add_column("action", overflow="fold", min_width=action_width)
     table.add_column("value", justify="right")
@@ -62,12 +70,12 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
         table.add_column("at most", justify="right")
     table.add_column("")
     for value in values:
-        row = [value.action, value_text(value.q, 3)]
+        row = [value.action, digits.signed(value.q)]
         if has_errors:
-            row += [f"{value.stderr:.3f}", f"{value.n:,}"]
+            row += [digits.plain(value.stderr), f"{value.n:,}"]
         if has_bounds:
-            row += [at_least_text(value, 3), at_most_text(value, 3)]
-        size = max(highest - lowest, 1e-9)
+            row += proven_texts(value, digits)
+        size = (highest - lowest) or 1.0
         table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
     out.print(table)
     if any(value.at_least is not None and value.q + 2 * value.stderr < value.at_least for value in known):
@@ -104,18 +112,29 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float], *, has_g
         out.print(_runs_table(runs))
         for seed, story in stories.items():
             out.print(f"{seed}: {story}")
-    error = f" ± {summary['stderr']:.2f}" if "stderr" in summary else ""
+    mean, stderr = summary["mean_discounted_return"], summary.get("stderr")
+    digits = Digits.of((mean, stderr or 0.0), 2)
+    error = "" if stderr is None else f" ± {digits.plain(stderr)}"
     endings = (
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
-        f"believed in {summary['believed_goal_rate']:.0%}, failure in {summary['failure_rate']:.0%}"
+        f"believed in {summary['believed_goal_rate']:.0%}, "
+        f"failure in {summary['failure_rate']:.0%}{_other_endings(runs)}"
         if has_goals
         else f"{summary['runs']:.0f} missions"
     )
-    returned = f"discounted return {summary['mean_discounted_return']:+.2f}{error}"
+    returned = f"discounted return {digits.signed(mean)}{error}"
     out.print(f"{endings}, {returned}, {summary['mean_steps']:.1f} steps")
 
 
-def _runs_table(runs: Iterable[SimulatedRun], stories: Mapping[int, str] | None = None) -> Table:
+def _other_endings(runs: Collection[SimulatedRun]) -> str:
+    """`, step_limit in 35%`: how the missions ended of which the belief says neither goal nor failure."""
+    told = Counter(run.ending.value for run in runs)
+    for ending in (Ending.GOAL, Ending.FAILURE):
+        told.pop(ending.value, None)
+    return "".join(f", {name} in {number / len(runs):.0%}" for name, number in told.most_common())
+
+
+def _runs_table(runs: Collection[SimulatedRun], stories: Mapping[int, str] | None = None) -> Table:
     """A row for each mission, with what it did by its seed where that stands in the table."""
     table = Table()
     for name in ("seed", "world", "mission", "steps", "return"):
@@ -123,10 +142,12 @@ def _runs_table(runs: Iterable[SimulatedRun], stories: Mapping[int, str] | None 
         table.add_column(name, justify="left" if is_text else "right", overflow="fold")
     if stories is not None:
         table.add_column("actions and observations", max_width=STORY_WIDTH, overflow="fold")
+    digits = Digits.of((run.total for run in runs), 1)
     for run in runs:
         world = run.world_ending.value if run.world_ending is not None else "goes on"
         story = () if stories is None else (stories[run.seed],)
-        table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", *story)
+        numbers = (str(run.steps), digits.signed(run.total))
+        table.add_row(str(run.seed), world, run.ending.value, *numbers, *story)
     return table
 
 

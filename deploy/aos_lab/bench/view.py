@@ -6,6 +6,7 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 
 from aos_deploy.terminal import console
+from aos_deploy.views.values import Digits
 from aos_lab.bench.rows import OURS, Report, Row
 
 _HEADINGS = ("problem", "metric", "aos", "±", "compared")
@@ -81,4 +82,6 @@ def _short(value: float) -> str:
 
 def _three(value: float) -> str:
     size = abs(value)
-    return f"{value:.0f}" if size >= 100 else f"{value:.1f}" if size >= 10 else f"{value:.2f}"
+    if size >= 10:
+        return f"{value:.0f}" if size >= 100 else f"{value:.1f}"
+    return Digits.of([value], 2).plain(value)

@@ -14,6 +14,7 @@ from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, writable
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import console, interruption_told, progress
+from aos_deploy.views.values import Digits
 
 if TYPE_CHECKING:
     from aos_lab.calibration.calibrate import Calibration
@@ -84,6 +85,8 @@ def print_calibration(result: Calibration) -> None:
         is_whole = not is_text and out.width >= _NUMBERS_WHOLE_FROM
         table.add_column(name, justify="left" if is_text else "right", overflow="fold", no_wrap=is_whole)
     for estimate in result.estimates:
+        rarest = min((each.document for each in estimate.outcomes if each.document), default=1.0)
+        digits = Digits.of([0.1 if rarest >= 0.01 else rarest], 2)
         for number, outcome in enumerate(estimate.outcomes):
             span = estimate.draw.span
             place = f"{span.file}:{span.line}" if number == 0 else ""
@@ -92,8 +95,10 @@ def print_calibration(result: Calibration) -> None:
                 place,
                 outcome.outcome,
                 f"{outcome.count:.{0 if estimate.is_counted else 1}f} of {estimate.count:.0f}",
-                f"{interval.value:.3f} [{interval.low:.3f}, {interval.high:.3f}]" if estimate.count else "",
-                f"{outcome.document:.3f}",
+                "{} [{}, {}]".format(*map(digits.plain, (interval.value, interval.low, interval.high)))
+                if estimate.count
+                else "",
+                digits.plain(outcome.document),
                 _verdict(estimate, number, result.missions),
             )
         table.add_section()
@@ -106,7 +111,7 @@ def print_calibration(result: Calibration) -> None:
         typer.echo(f"and {len(result.remarks) - SHOWN_REMARKS} more; --json tells them all")
     for line in result.by_hand:
         typer.echo(line)
-    typer.echo(result.patch.rstrip() or "no number is one that the records do not allow")
+    typer.echo(result.patch.rstrip() or "the records contradict no number")
 
 
 def _verdict(estimate: DrawEstimate, number: int, missions: int) -> str:

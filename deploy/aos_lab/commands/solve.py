@@ -2,7 +2,6 @@
 
 import asyncio
 import hashlib
-import math
 import shutil
 import signal
 import subprocess
@@ -17,11 +16,13 @@ from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
+from aos_deploy.deployment.parts import MAX_COUNT
 from aos_deploy.marked_commands import command
 from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, writable
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress, waiting
+from aos_deploy.views.values import Digits
 from aos_lab.formats import PROBLEM_ENDINGS
 from aos_lab.formats.graph_writers import c_header, graphviz, write_text
 from aos_lab.formats.policy_graph import PolicyGraph, policy_graph
@@ -34,7 +35,7 @@ from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.policy import Policy, PolicyHeader
 from aos_solver.offline.solver_program import build_solver
-from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount
+from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_discount, precision_of
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
 
@@ -114,7 +115,9 @@ def solve(
     precision: Precision = None,
     discount: Discount = None,
     stop_value: StopValue = None,
-    states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MAX_STATES,
+    states: Annotated[
+        int, typer.Option(min=1, max=MAX_COUNT, help="Give up beyond so many states")
+    ] = MAX_STATES,
     out: Out = None,
     export: Exports = None,
     graph: Annotated[
@@ -152,7 +155,8 @@ def solve(
     check_discount(found.model.name, found.model.discount)
     if not as_json:
         _print_size(found)
-    solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _print_bounds))
+    digits = _digits(precision_of(found.model, limits))
+    solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _printing(digits)))
     if out is not None:
         _policy(found, solution, stop_value).save(out)
         written.append(str(out))
@@ -162,7 +166,7 @@ def solve(
     if as_json:
         print_json(_report(found, solution, drawn, written))
     else:
-        _print_end(solution, drawn, written)
+        _print_end(solution, drawn, written, digits)
 
 
 def _check_names(exports: list[Path], graph: Path | None) -> None:
@@ -294,28 +298,37 @@ def _print_left_out(names: tuple[str, ...]) -> None:
         typer.echo(f"left out, as they change neither what is earned nor what is observed: {listing}")
 
 
-def _outwards(bounds: Bounds) -> tuple[float, float]:
-    """Both bounds so that they hold with four decimals as well."""
-    return math.floor(bounds.lower * 10_000) / 10_000, math.ceil(bounds.upper * 10_000) / 10_000
+def _outwards(bounds: Bounds, digits: Digits) -> tuple[str, str]:
+    """Both bounds so that they hold in the printed digits as well."""
+    return digits.plain(digits.down(bounds.lower)), digits.plain(digits.up(bounds.upper))
 
 
-def _print_bounds(bounds: Bounds) -> None:
-    if not bounds.ending:
-        lower, upper = _outwards(bounds)
-        values = f"{lower:12.4f} {upper:12.4f} {bounds.gap:10.4f}"
-        typer.echo(f"{bounds.seconds:9.2f} {values} {bounds.vectors:9,}")
+def _digits(precision: float) -> Digits:
+    """Four decimals for the usual precision of 0.001, and more for a smaller one."""
+    return Digits.of([1000 * min(precision, 1e-3)], 4)
 
 
-def _print_end(solution: Solution, drawn: PolicyGraph | None, written: list[str]) -> None:
+def _printing(digits: Digits) -> Callable[[Bounds], None]:
+    def print_bounds(bounds: Bounds) -> None:
+        if not bounds.ending:
+            lower, upper = _outwards(bounds, digits)
+            values = f"{lower:>12} {upper:>12} {digits.plain(bounds.gap):>10}"
+            typer.echo(f"{bounds.seconds:9.2f} {values} {bounds.vectors:9,}")
+
+    return print_bounds
+
+
+def _print_end(solution: Solution, drawn: PolicyGraph | None, written: list[str], digits: Digits) -> None:
     bounds = solution.bounds
-    lower, upper = _outwards(bounds)
+    lower, upper = _outwards(bounds, digits)
     typer.echo(
-        f"the policy gives at least {lower:.4f} from the start, and none more than {upper:.4f} "
+        f"the policy gives at least {lower} from the start, and none more than {upper} "
         f"({_MEANINGS[bounds.ending]}, {bounds.seconds:.2f} s)"
     )
     if drawn is not None:
         extent = "" if drawn.is_whole else "; likelier beliefs have nodes of their own, --nodes adds more"
-        typer.echo(f"as a graph of {count(len(drawn.nodes), 'node')} it gives {drawn.value:.4f}{extent}")
+        value = digits.plain(drawn.value)
+        typer.echo(f"as a graph of {count(len(drawn.nodes), 'node')} it gives {value}{extent}")
     for path in written:
         typer.echo(f"wrote {path}")
 

@@ -37,12 +37,16 @@ def row(*cells: str) -> str:
 
 
 def shown(interval: Interval | None, digits: int = 2) -> str:
-    """`0.95 [0.90, 0.98]`, without ends where they are not known; or nothing."""
+    """`0.95 [0.90, 0.98]`, without ends where none are known or both are the same; or nothing."""
     if interval is None:
         return ""
-    if math.isinf(interval.low):
-        return f"{interval.value:.{digits}f}"
-    return f"{interval.value:.{digits}f} [{interval.low:.{digits}f}, {interval.high:.{digits}f}]"
+    value = f"{interval.value:.{digits}f}"
+    has_ends = interval.low < interval.high and not math.isinf(interval.low)
+    return f"{value} {ends(interval, digits)}" if has_ends else value
+
+
+def ends(interval: Interval, digits: int = 2) -> str:
+    return f"[{interval.low:.{digits}f}, {interval.high:.{digits}f}]"
 
 
 def tally(counts: Mapping[str, int]) -> str:

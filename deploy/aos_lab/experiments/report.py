@@ -5,10 +5,10 @@ from base64 import b64encode
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from aos_lab.experiments.markdown import head, row, shown, tally
+from aos_lab.experiments.markdown import ends, head, row, shown, tally
 from aos_lab.experiments.markdown import page as page_of
 from aos_lab.experiments.results import PartResult, Results
-from aos_lab.trials.claims import Verdict
+from aos_lab.trials.claims import Verdict, usual_share
 
 _SHOWN_SEEDS = 20
 
@@ -42,7 +42,7 @@ def markdown_report(results: Results, *, has_pictures: bool = True) -> str:
     if results.about:
         lines += [results.about.strip(), ""]
     lines += [around.text(results.command), ""]
-    lines += ["## Claims", "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
+    lines += ["## Claims", "", _WANTED, "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
     lines += ["Steps of a mission, and how missions ended and began:", "", *_doings(results), ""]
     if any(part.regret or part.no_optimum for part in results.parts):
         lines += ["## Beside the optimum", "", _REGRET, "", *_regrets(results), ""]
@@ -60,20 +60,24 @@ def _claims(results: Results) -> Iterator[str]:
     cells: dict[tuple[str, str], dict[str, str]] = {}
     for part in results.parts:
         for verdict in part.verdicts:
-            cells.setdefault((part.name, verdict.says), {})[part.by] = _cell(verdict)
+            cells.setdefault((part.name, verdict.says), {})[part.by] = _cell(verdict, part.by)
     yield from head("part", "claim", *(f"played by {player}" for player in players))
     for (name, says), by in cells.items():
         yield row(name, says, *(by.get(player, "") for player in players))
 
 
-def _cell(verdict: Verdict) -> str:
+def _cell(verdict: Verdict, by: str) -> str:
     word = verdict.word if verdict.is_seen else f"**{verdict.word}**"
-    text = (
-        f"{word}: {verdict.held} of {verdict.missions}, {shown(verdict.share)}, wanted {verdict.wanted:.2f}"
-    )
+    text = f"{word}: {verdict.held} of {verdict.missions} {ends(verdict.share)}"
+    if verdict.wanted != usual_share(by):
+        text += f", wanted {verdict.wanted:.2f}"
     return text + (f", not in seeds {_first_of(verdict.failed_seeds)}" if verdict.failed_seeds else "")
 
 
+_WANTED = (
+    f"Wanted is that a claim holds in {usual_share('model'):.2f} of the missions that the model plays and in "
+    f"{usual_share('system'):.2f} of those of a system, unless another share is named."
+)
 _REGRET = (
     "The optimum is the best that a mission can bring on average, between SARSOP's proven bounds: the value "
     "of the initial belief, discounted, without a limit of steps. Where the deploy file has a "

@@ -110,6 +110,11 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
         return "seen" if self.is_seen else "not seen" if self.missions else "no case"
 
 
+def usual_share(by: str) -> float:
+    """The share of missions in which a claim has to hold that names none, by who plays them."""
+    return _MODEL_SHARE if by == "model" else _SYSTEM_SHARE
+
+
 def has_check(claim: Claim) -> bool:
     """Returns whether a claim says anything that could fail."""
     return any(getattr(claim, name) not in (None, ()) for name in _CHECKS)
@@ -125,7 +130,7 @@ def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
     """The verdict on a claim; it is not seen where no mission is one that it is about, or where one broke."""
     about = [trial for trial in trials if trial.fault or claim.when is None or _all_hold(claim.when, trial)]
     failed = [trial.seed for trial in about if trial.fault or not _all_hold(claim, trial)]
-    wanted = claim.share if claim.share is not None else _MODEL_SHARE if by == "model" else _SYSTEM_SHARE
+    wanted = claim.share if claim.share is not None else usual_share(by)
     share = interval_of_share(len(about) - len(failed), len(about))
     reached = share.low if claim.surely else share.value
     return Verdict(

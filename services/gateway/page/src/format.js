@@ -2,11 +2,18 @@
 
 export const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 
-// One size of digits for a value: as many as tell something.
-export function signed(value, digits = 2) {
-  if (!isNumber(value)) return "–";
-  const text = Math.abs(value) >= 1000 ? Math.round(Math.abs(value)).toLocaleString("en") : Math.abs(value).toFixed(digits);
-  return `${value < 0 ? "−" : "+"}${text}`;
+// The digits of a value that tell something: a small one has its first three.
+const isSmall = (value) => Math.abs(value) < 0.05 && Math.abs(value) > 1e-12;
+export function sized(value, digits = 2) {
+  if (value >= 1000) return Math.round(value).toLocaleString("en");
+  return isSmall(value) ? String(Number(value.toPrecision(digits + 1))) : value.toFixed(digits);
+}
+export const signed = (value, digits = 2) => (isNumber(value) ? `${value < 0 ? "−" : "+"}${sized(Math.abs(value), digits)}` : "–");
+
+// The error beside a value, unless no digit of the value has it.
+export function plusMinus(error, value) {
+  if (!isSmall(value)) return error >= 0.005 ? ` ± ${error.toFixed(2)}` : "";
+  return error > Math.abs(value) / 200 ? ` ± ${sized(error, 1)}` : "";
 }
 
 // A number of the world: to three digits of the span in which it lies, or of its own.

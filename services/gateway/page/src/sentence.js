@@ -1,6 +1,6 @@
 // The decision of a step in one sentence, and what was expected and seen in another.
 import { html } from "./ui.js";
-import { chance, isNumber, number, percent, plain, seconds, signed } from "./format.js";
+import { chance, isNumber, number, percent, plain, plusMinus, seconds, signed, sized } from "./format.js";
 import { at, progress, record } from "./store.js";
 import { isAsked } from "./timeline.js";
 
@@ -21,14 +21,14 @@ function worth(step) {
   const note = by && html`<span class="by">${by}</span>`;
   if (isAsked(step)) return step.chosen_by === "script" ? html`comes from a script of a person.` : html`was asked for by a person.`;
   if (!isNumber(step.value)) return html`was chosen. ${note}`;
-  const value = html`is worth <b>${signed(step.value)}</b>${step.error >= 0.005 ? ` ± ${plain(step.error)}` : ""}`;
+  const value = html`is worth <b>${signed(step.value)}</b>${plusMinus(step.error, step.value)}`;
   if (!step.second) return html`${value}; nothing else can be done. ${note}`;
   const error = Math.hypot(step.error ?? 0, step.second_error ?? 0);
   const other = html`<span class="other">${step.second}</span>`;
   if (isNumber(step.margin) && !step.is_proven && Math.abs(step.margin) < 2 * error) return html`${value}, too close to call against ${other}. ${note}`;
-  if (step.margin < 0) return html`${value}, ${plain(-step.margin)} less than ${other}. ${note}`;
+  if (step.margin < 0) return html`${value}, ${sized(-step.margin)} less than ${other}. ${note}`;
   if (step.margin === 0) return html`${value}, as much as ${other}. ${note}`;
-  return html`${value}, <b>${plain(step.margin)}</b> more than ${other}. ${note}`;
+  return html`${value}, <b>${sized(step.margin)}</b> more than ${other}. ${note}`;
 }
 
 function came(step) {

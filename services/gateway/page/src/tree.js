@@ -2,7 +2,7 @@
 // is asked for, and deeper when that is asked for.
 import { Card, Findings, html, useEffect, useState } from "./ui.js";
 import { read } from "./api.js";
-import { chance, percent, signed } from "./format.js";
+import { chance, percent, plusMinus, signed } from "./format.js";
 
 const DEEPEST = 4;
 const BRANCHES = 3;
@@ -51,4 +51,4 @@ function Actions({ node, seen }) {
   </li>`)}</ul>`;
 }
 
-const Action = ({ each }) => html`<span class="action">${each.action}</span> <b>${signed(each.q)}</b>${each.stderr >= 0.005 && html` <span class="muted">± ${each.stderr.toFixed(2)}</span>`}${each.n > 0 && html` <span class="muted">${each.n.toLocaleString("en")} simulations</span>`}`;
+const Action = ({ each }) => html`<span class="action">${each.action}</span> <b>${signed(each.q)}</b><span class="muted">${plusMinus(each.stderr, each.q)}</span>${each.n > 0 && html` <span class="muted">${each.n.toLocaleString("en")} simulations</span>`}`;

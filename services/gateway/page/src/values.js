@@ -1,6 +1,6 @@
 // The values of the actions at a step: an estimate with its error, and what is proven.
 import { html, useEffect, useState, useWidth, width } from "./ui.js";
-import { briefAction, isNumber, signed } from "./format.js";
+import { briefAction, isNumber, plusMinus, signed } from "./format.js";
 import { at, index, loadRecord, record, records, recordsChanged, steps } from "./store.js";
 import { canSteer, OfAction } from "./steering.js";
 
@@ -56,7 +56,7 @@ function Row({ each, scale, size, found }) {
   const room = Math.max(80, size - (width.value < 480 ? 84 : 92));
   const x = (value) => scale(value) * (room - 16) + 8;
   const error = each.stderr ?? 0;
-  const words = `${each.action}: ${signed(each.q)}${error >= 0.005 ? ` ± ${error.toFixed(2)}` : ""}${isChosen ? ", chosen" : ""}`;
+  const words = `${each.action}: ${signed(each.q)}${plusMinus(error, each.q)}${isChosen ? ", chosen" : ""}`;
   return html`<li class=${isChosen ? "value is-chosen" : "value"} aria-label=${words}>
     <span class="value-head"><span class="value-name" title=${each.action}>${isChosen && html`<span class="chosen-mark" aria-hidden="true">▸</span>`}${briefAction(each.action)}</span><${OfAction} action=${each.action} /></span>
     <span class="value-plot">

@@ -2,7 +2,7 @@
 // which another action wins. The answer is computed when it is asked for.
 import { Card, Findings, html, useEffect, useState, useWidth, width } from "./ui.js";
 import { read, write, hasToken } from "./api.js";
-import { briefAction, chance, percent, plain, signed } from "./format.js";
+import { briefAction, chance, percent, plusMinus, signed } from "./format.js";
 import { at, record } from "./store.js";
 import { addressOf, route } from "./route.js";
 import { Tree } from "./tree.js";
@@ -77,16 +77,15 @@ function verdict(why) {
     const more = why.simulations_to_tell ? `about ${Number(why.simulations_to_tell.toPrecision(2)).toLocaleString("en")} simulations would tell` : "no number of simulations is sure to tell";
     return `Too close to call against ${why.other}: ${more}.`;
   }
-  const error = why.margin_stderr >= 0.005 ? ` ± ${plain(why.margin_stderr)}` : "";
-  return `${signed(why.margin)}${error} over ${why.other}, ${why.is_exact ? "exactly" : `by ${why.planner}`}.`;
+  return `${signed(why.margin)}${plusMinus(why.margin_stderr, why.margin)} over ${why.other}, ${why.is_exact ? "exactly" : `by ${why.planner}`}.`;
 }
 
 function Terms({ why }) {
   const [ref, size] = useWidth();
-  const terms = (why.terms ?? []).map((each) => ({ ...each, margin: each.value - each.other })).filter((each) => Math.abs(each.margin) > 5e-4);
-  const rest = (why.rest ?? 0) - (why.other_rest ?? 0);
-  if (Math.abs(rest) > 5e-4) terms.push({ place: "later steps", margin: rest });
-  const most = Math.max(...terms.map((each) => Math.abs(each.margin)), 1e-9);
+  const all = (why.terms ?? []).map((each) => ({ ...each, margin: each.value - each.other }));
+  all.push({ place: "later steps", margin: (why.rest ?? 0) - (why.other_rest ?? 0) });
+  const most = Math.max(...all.map((each) => Math.abs(each.margin))) || 1;
+  const terms = all.filter((each) => Math.abs(each.margin) > 5e-5 * most);
   const room = Math.max(80, size - (width.value < 720 ? 70 : 250));
   const x = (value) => room / 2 + (value / most) * (room / 2 - 2);
   const address = addressOf(route.value.name, "documents", route.value.step);

@@ -34,8 +34,8 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         return "planner"
 
     def seed_of(self, step: int) -> int:
-        """The seed of decision `step`, so that missions with neighbouring seeds share none."""
-        return self.seed * SEEDS_PER_MISSION + step
+        """The seed of decision `step`, in 64 bits, so that missions with neighbouring seeds share none."""
+        return (self.seed * SEEDS_PER_MISSION + step) % 2**64
 
     def after_takeover(self) -> Search:
         """The way to decide with a model that has taken over."""

@@ -89,8 +89,7 @@ async def solve(
     with tempfile.TemporaryDirectory(prefix="aos-solve-") as folder:
         flat, found = Path(folder) / "model.flat", Path(folder) / "vectors"
         await asyncio.to_thread(model.write_flat, flat)
-        precision = float(min(largest, 1.0)) * 1e-3 if limits.precision is None else limits.precision
-        numbers = [repr(precision), repr(limits.cpu_s), str(limits.memory_bytes)]
+        numbers = [repr(precision_of(model, limits)), repr(limits.cpu_s), str(limits.memory_bytes)]
         with found.open("wb") as vectors_file:
             written = vectors_file.fileno()
             command = [str(executable), str(flat), str(written), *numbers]
@@ -99,6 +98,12 @@ async def solve(
         sizes = msgspec.json.decode(line, type=_Regions).regions
         vectors = AlphaVectors.of_bytes(len(model.actions), sizes, data)
     return Solution(history[-1], tuple(history), vectors)
+
+
+def precision_of(model: ExplicitModel, limits: SolvingLimits) -> float:
+    """The precision that the limits have, or that is usual for rewards of this size."""
+    largest = float(np.abs(model.rewards).max(initial=0.0))
+    return min(largest, 1.0) * 1e-3 if limits.precision is None else limits.precision
 
 
 def check_discount(name: str, discount: float) -> None:

@@ -5,6 +5,7 @@ from enum import StrEnum
 
 import msgspec
 
+from aos_protocol.chances import chance_text
 from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds
 
 
@@ -131,19 +132,19 @@ def is_worth_nothing(best: ActionValue, limits: MissionLimits) -> bool:
 def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> str:
     """Says why a mission ended, in one line for people; where nobody can tell how it ended, it says so."""
     if ending == Ending.GOAL:
-        cautious = belief.cautious
-        unless = (
-            f", and {cautious.goal_probability:.3f} if nothing ran that was not observed" if cautious else ""
-        )
-        reached = f"the goal is reached with probability {belief.goal_probability:.3f}"
+        reached = f"the goal is reached with probability {chance_text(belief.goal_probability)}"
+        unless = ""
+        if belief.cautious:
+            cautious = chance_text(belief.cautious.goal_probability)
+            unless = f", and {cautious} if nothing ran that was not observed"
         return f"{reached}, as the belief has it{unless}"
     if ending == Ending.STEP_LIMIT:
         return f"the step limit of {limits.step_limit} is reached"
     if ending == Ending.NOTHING_WORTHWHILE:
         return f"no action is expected to return more than {limits.stop_below_value}"
     odds = (
-        f"goal {belief.goal_probability:.3f}, over {belief.over_probability:.3f}, "
-        f"failure {belief.failure_probability:.3f}"
+        f"goal {chance_text(belief.goal_probability)}, over {chance_text(belief.over_probability)}, "
+        f"failure {chance_text(belief.failure_probability)}"
     )
     if ending == Ending.OVER and belief.over_probability >= limits.goal_probability:
         return f"the mission is over without its goal or a failure: {odds}"
