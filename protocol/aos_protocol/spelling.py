@@ -9,12 +9,17 @@ _ALIKE = 0.65
 
 
 _LONGEST_NAME = 200
+_LONG_BEGINNING = 8
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The known name that is most like `name`, or nothing where none is alike; letter case counts little."""
+    """The known name that is most like `name`, else one that a long `name` begins, or nothing; letter case
+    counts little."""
     by_lower = {candidate.lower(): candidate for candidate in reversed([*known])}
-    close = difflib.get_close_matches(name[:_LONGEST_NAME].lower(), by_lower, n=1, cutoff=_ALIKE)
+    lower = name[:_LONGEST_NAME].lower()
+    close = difflib.get_close_matches(lower, by_lower, n=1, cutoff=_ALIKE)
+    if not close and len(lower) >= _LONG_BEGINNING:
+        close = [candidate for candidate in by_lower if candidate.startswith(lower)]
     return by_lower[close[0]] if close else ""
 
 

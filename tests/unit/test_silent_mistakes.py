@@ -216,6 +216,13 @@ def test_a_mistyped_key_that_others_build_on_is_one_mistake():
         assert (only.code, only.hint, only.span.file) == ("AOS102", f"Did you mean `{name}`?", changed)
 
 
+def test_a_key_of_which_only_the_beginning_is_written_is_told_whole():
+    files = {path.name: path.read_bytes() for path in KETTLE.iterdir() if path.is_file()}
+    files["environment.json"] = files["environment.json"].replace(b"BeliefStateAssignments", b"Belief")
+    told = [one.hint for one in load_files(files).diagnostics if one.code == "AOS102"]
+    assert told == ["Did you mean `InitialBeliefStateAssignments`?"]
+
+
 @pytest.mark.parametrize(
     ("rule", "told"),
     [
