@@ -73,7 +73,7 @@ def plan(
 
     Prints the value of every action, found by search or exactly. With --belief
     the probability of a variable's value is another one, and all ratios inside
-    are kept: --belief "holding_can=true:0.5".
+    are kept: --belief "tiger_behind=Left:0.9" for deploy/bundles/bench/tiger.
     """
     supposed = _suppositions(belief or ())
     if exact and policy is not None:
