@@ -55,6 +55,11 @@ action_parameter: steps
 """
 
 
+def skill_after(code: str) -> str:
+    """The skill, whose step begins with the code."""
+    return SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")
+
+
 def found(
     *, environment: str = ENVIRONMENT, skill: str = SKILL, mapping: str = MAPPING
 ) -> tuple[Diagnostic, ...]:

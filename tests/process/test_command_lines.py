@@ -3,6 +3,7 @@ import json
 from asyncio.subprocess import PIPE
 from pathlib import Path
 
+from lamp import LAMP
 from models import built_text
 from processes import HANG_S
 
@@ -10,12 +11,6 @@ from aos_protocol.messages import WeightedStates
 from aos_solver.child.answers.beliefs import import_command
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.child.lines.command_line import command_line
-
-LAMP = {
-    "lamp.ef": "project: lamp\nhorizon: 3\nstate_variable: bool is_on\nreward_code:\n"
-    "if (state.is_on) __reward = 1;\n",
-    "press.sd": "project: lamp\ndynamic_model:\nstate__.is_on = !state.is_on;\n__moduleResponse = clicked;\n",
-}
 
 
 class Recorded(Engine):

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from hostile.counters import counting
+from lamp import LAMP
 from models import built_text, engine_of, engine_of_text
 from processes import HANG_S
 from scripted_models import text_project
@@ -19,19 +20,6 @@ from aos_solver.child.process.printed import PRINT_LIMIT_BYTES
 from aos_solver.mission.models.model_shelf import ModelShelf
 from aos_solver.mission.models.takeover import RunningModel
 
-LAMP = {
-    "lamp.ef": """project: lamp
-horizon: 3
-state_variable: bool is_on
-reward_code:
-if (state.is_on) __reward = 1;
-""",
-    "press.sd": """project: lamp
-dynamic_model:
-state__.is_on = !state.is_on;
-__moduleResponse = clicked;
-""",
-}
 BROKEN_START = """initial_belief:
 vector<int> none;
 state.is_on = none.at(3);

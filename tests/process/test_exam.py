@@ -47,10 +47,7 @@ def test_the_truth_is_what_all_histories_add_up_to(name: str, truth: Driver):
 def test_no_claim_about_random_models_is_false(executable: Path):
     found = Bounds()
     options = {"seed": 1, "simulations": 200, "truth": 0.05, "steps": 2}
-    for problem, answer in reports(
-        executable, "bounds", options, problems(list(FAMILIES), 44, 1, False, 100)
-    ):
-        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    all_pass(found, executable, "bounds", options, problems(list(FAMILIES), 44, 1, False, 100))
     assert found.claims > 1500
 
 
@@ -58,8 +55,7 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path):
     found = Regrets()
     options = {"simulations": 2000, "missions": 1, "planners": "auto,look-ahead", "truth": 1}
     asked = [*problems(list(FAMILIES), 22, 500, False, 100), *problems(NEEDLES, 6, 400, True, 200)]
-    for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    all_pass(found, executable, "regret", options, asked)
     excesses = [excess for excess, _ in found.worst["auto"]]
     assert len(excesses) >= 20
     assert sum(excesses) / len(excesses) <= MEAN_TARGET
@@ -69,10 +65,7 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path):
 def test_values_margins_and_changes_of_the_choice_are_within_the_errors_that_are_told(executable: Path):
     found = Intervals()
     options = {"seed": 5, "simulations": 2000, "truth": 0.04}
-    for problem, answer in reports(
-        executable, "intervals", options, problems(list(FAMILIES), 22, 3000, False, 100)
-    ):
-        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    all_pass(found, executable, "intervals", options, problems(list(FAMILIES), 22, 3000, False, 100))
     assert found.counts["decisions"] >= 45
     assert found.is_passed(), found.table()
 
@@ -81,8 +74,7 @@ def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(exec
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": "auto", "truth": 0.5}
     asked = [named_problem(name, 100) for name in ("counter/8", "late/306")]
-    for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    all_pass(found, executable, "regret", options, asked)
     assert [entry.planner for entry in found.all_of("auto")] == ["exact", "exact"]
 
 
@@ -100,8 +92,7 @@ def test_the_first_decision_of_a_tree_tells_what_missions_return(
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": planner, "truth": 0.5}
     asked = [named_problem(name, 1_000_000) for name in names]
-    for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    all_pass(found, executable, "regret", options, asked)
     assert len(found.all_of(planner)) == len(names)
 
 
@@ -110,8 +101,7 @@ def test_a_value_by_sarsop_tells_that_few_missions_were_played(executable: Path)
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": "sarsop", "truth": 0.2, "seed": 77}
     asked = [named_problem(name, 1000) for name in ("dense/4122", "doors/4105", "pursuit/2041")]
-    for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    all_pass(found, executable, "regret", options, asked)
     assert [entry.planner for entry in found.all_of("sarsop")] == ["sarsop"] * 3
 
 
@@ -152,12 +142,18 @@ async def test_with_a_broken_skill_no_goal_is_claimed_falsely_and_others_stand_i
     assert len(found.spared) == len(found.stood_in) >= 4
 
 
-def reports(
-    executable: Path, what: str, options: dict[str, object], asked: list[Problem]
-) -> Iterator[tuple[Problem, dict[str, object]]]:
+def all_pass(
+    found: Bounds | Regrets | Intervals | Values,
+    executable: Path,
+    what: str,
+    options: dict[str, object],
+    asked: list[Problem],
+):
     driver = Driver(executable, what, options, COMMAND_S)
     try:
-        yield from ((problem, driver.report(problem)) for problem in asked)
+        for problem in asked:
+            answer = driver.report(problem)
+            assert not found.add(problem, answer), found.faults_text(problem, answer)
     finally:
         driver.close()
 

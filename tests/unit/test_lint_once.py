@@ -1,7 +1,7 @@
 import json
 
 import pytest
-from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
+from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found, skill_after
 from marked_change import changed
 from test_reading_rules import JSON
 from texts import encoded
@@ -89,7 +89,7 @@ def test_a_condition_that_sets_what_may_only_be_read_is_one_error():
     ],
 )
 def test_what_other_languages_write_is_told_once(code, told):
-    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == [told]
+    assert finding_texts(skill=skill_after(code)) == [told]
 
 
 @pytest.mark.parametrize("name", ["__reward", "2fast", "__LINE__"])

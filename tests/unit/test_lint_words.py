@@ -1,7 +1,7 @@
 import re
 
 import pytest
-from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
+from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found, skill_after
 from texts import encoded
 
 from aos_language.load import load_files
@@ -17,7 +17,7 @@ def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code():
         "code:\nsteps", "code:\npath"
     )
     assert finding_texts(mapping=mapping) == []
-    skill = SKILL.replace("state__.second.x =", "int parameter = 1;\nparameter = 2;\nstate__.second.x =")
+    skill = skill_after("int parameter = 1;\nparameter = 2;")
     assert finding_texts(skill=skill) == []
 
 
@@ -54,7 +54,7 @@ def test_a_statement_that_only_compares_is_told_with_the_sign_that_was_meant():
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 10, 18)
     assert (only.mend.length, only.mend.text) == (2, "=")
     code = "steps == 1 ? void(__reward = 1) : void();\n__reward == steps > 0 ? 1 : 2;"
-    (only,) = found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x ="))
+    (only,) = found(skill=skill_after(code))
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 10, 10)
 
 
@@ -88,7 +88,7 @@ def test_a_name_of_the_language_in_another_section_is_told_with_those_that_have_
     ],
 )
 def test_a_condition_that_sets_is_told_with_the_sign_that_was_meant(code, column):
-    (only,) = found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x ="))
+    (only,) = found(skill=skill_after(code))
     assert (only.code, only.span.line, only.span.column) == ("AOS149", 9, column)
     assert (only.mend.length, only.mend.text) == (1, "==")
 
@@ -101,7 +101,7 @@ def test_the_condition_of_a_loop_over_variables_that_sets_is_told():
 
 def test_a_condition_that_sets_in_brackets_of_its_own_is_meant_so():
     code = "int n = 0; if ((n = steps)) __reward = n; while ((n = n - 1) > 0) n--;"
-    assert found(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == ()
+    assert found(skill=skill_after(code)) == ()
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_a_condition_that_sets_in_brackets_of_its_own_is_meant_so():
     ],
 )
 def test_code_of_cpp_is_no_python_and_no_decimal(code):
-    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
+    assert finding_texts(skill=skill_after(code)) == []
 
 
 def test_a_penalty_above_0_is_told():

@@ -111,18 +111,19 @@ def test_an_unknown_type_names_the_file_to_add(types: RosTypes):
     assert raised.value.code == "AOS806"
 
 
-def test_a_type_that_a_file_uses_and_nobody_defines_is_named_too(tmp_path):
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("Cup[] cups\n", r"lab/msg/Cup, which .*Shelf\.msg uses, .*lab/msg/Cup\.msg"),
+        ("(no definition)\n", r"Shelf\.msg is not an interface file of ROS"),
+    ],
+    ids=["it uses a type that nobody defines", "it is no interface"],
+)
+def test_what_is_wrong_with_a_file_is_an_error_with_its_path(tmp_path, text, told):
     (tmp_path / "lab" / "msg").mkdir(parents=True)
-    (tmp_path / "lab" / "msg" / "Shelf.msg").write_text("Cup[] cups\n")
-    with pytest.raises(DeployError, match=r"lab/msg/Cup, which .*Shelf\.msg uses, .*lab/msg/Cup\.msg"):
+    (tmp_path / "lab" / "msg" / "Shelf.msg").write_text(text)
+    with pytest.raises(DeployError, match=told):
         RosTypes("jazzy", [tmp_path]).hash("lab/msg/Shelf")
-
-
-def test_a_file_that_is_no_interface_is_an_error_with_its_path(tmp_path):
-    (tmp_path / "lab" / "msg").mkdir(parents=True)
-    (tmp_path / "lab" / "msg" / "Bad.msg").write_text("(no definition)\n")
-    with pytest.raises(DeployError, match=r"Bad\.msg is not an interface file of ROS"):
-        RosTypes("jazzy", [tmp_path]).hash("lab/msg/Bad")
 
 
 def test_an_unknown_distribution_is_an_error_that_lists_the_known():

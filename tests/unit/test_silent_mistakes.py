@@ -1,7 +1,7 @@
 from pathlib import Path
 
 import pytest
-from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found
+from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found, skill_after
 
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
@@ -94,7 +94,7 @@ def test_a_state_variable_that_is_set_without_its_state_is_told_with_it():
     ],
 )
 def test_names_that_code_declares_for_itself_are_no_state_variables(code):
-    assert finding_texts(skill=SKILL.replace("state__.second.x =", f"{code}\nstate__.second.x =")) == []
+    assert finding_texts(skill=skill_after(code)) == []
 
 
 @pytest.mark.parametrize(
@@ -244,8 +244,7 @@ def test_a_number_compared_with_a_text_in_a_mapping_is_told(rule, told):
 
 
 def test_a_missing_semicolon_before_a_copy_of_the_state_is_told_once():
-    code = "float far = state.first.x\nstate__.second.x ="
-    (only,) = found(skill=SKILL.replace("state__.second.x =", code))
+    (only,) = found(skill=skill_after("float far = state.first.x"))
     assert (only.code, only.span.line) == ("AOS108", 10)
     assert only.hint == "Is a semicolon missing at the end of the line above?"
 
