@@ -15,10 +15,14 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
     [
         (("environment", "horizon: 4", "horizon 4"), 2, "horizon"),
         (("environment", "state_variable: Cell second", "state_variable Cell second"), 11, "state_variable"),
+        (("environment", "initial_belief:", "initial_belief"), 19, "initial_belief"),
         (("environment", "reward_code:", "reward_code  "), 22, "reward_code"),
+        (("skill", "parameter: int", "parameter int"), 2, "parameter"),
         (("skill", "dynamic_model:", "dynamic_model"), 8, "dynamic_model"),
+        (("skill", "violate_penalty: -1", "violate_penalty -1"), 6, "violate_penalty"),
         (("mapping", "module_activation: skill", "module_activation skill"), 5, "module_activation"),
         (("mapping", "local_variable: steps", "local_variable steps"), 11, "local_variable"),
+        (("mapping", "response_rule: True", "response_rule True"), 3, "response_rule"),
     ],
 )
 def test_a_missing_colon_is_one_error(text, line, word):

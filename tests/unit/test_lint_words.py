@@ -36,6 +36,7 @@ def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment):
         (("environment", "__isGoalState", "__isGoalStat"), "__isGoalStat", "__isGoalState"),
         (("environment", "int x 0", "bool x False"), "False", "false"),
         (("skill", "__moduleResponse", "_moduleResponse"), "_moduleResponse", "__moduleResponse"),
+        (("skill", "__meetPrecondition", "meetPrecondition"), "meetPrecondition", "__meetPrecondition"),
     ],
 )
 def test_a_name_of_the_language_without_its_underscores_is_recognized(text, written, meant):
@@ -198,11 +199,16 @@ def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one
     ("statement", "line", "name"),
     [
         ('state__.first.is_wet = "false";', 10, "state__.first.is_wet"),
-        ('__isGoalState = "true";', 24, "__isGoalState"),
+        ('state__.marked[1] = "yes";', 10, "state__.marked[]"),
+        ('__isGoalState = "true";', 28, "__isGoalState"),
     ],
 )
 def test_a_text_is_no_truth_although_the_compiler_takes_it(statement, line, name):
     environment = ENVIRONMENT.replace("variable: int x 0", "variable: int x 0\nvariable: bool is_wet false")
+    environment = environment.replace(
+        "initial_belief:",
+        "state_variable: bool marked []\ncode:\nstate.marked = {true, false};\n\ninitial_belief:",
+    )
     skill = SKILL
     if name.startswith("state"):
         skill = SKILL.replace("__moduleResponse", f"{statement}\n__moduleResponse")
@@ -253,6 +259,7 @@ def test_parameters_of_a_skill_that_was_left_out_are_an_error_where_they_may_be_
     [
         ("Bernoulli(0.1)", "unknown function `Bernoulli`", "AOS.Bernoulli"),
         ("Bernouli(0.1)", "unknown function `Bernouli`", "AOS.Bernoulli"),
+        ("SampleNormal(0, 1)", "unknown function `SampleNormal`", "AOS.SampleNormal"),
         ("sample_discrete({0.5, 0.5})", "unknown function `sample_discrete`", "AOS.SampleDiscrete"),
         ("IsInitialized(steps)", "unknown function `IsInitialized`", "AOS.IsInitialized"),
         ("AOS::Bernoulli(0.1)", "`AOS::Bernoulli` is not how AOS writes it", "AOS.Bernoulli"),

@@ -92,7 +92,9 @@ WARNED = [
     Rule("go.am", "ok = __input.success«→§,»", "AOS149"),
     Rule("go.am", "response_rule: ok«→§,»\n", "AOS149"),
     Rule("go.am", "ok = __input.success«→\n§return»", "AOS121"),
+    Rule("room.json", '"Discount": 0.9§«→,»}', "AOS127"),
     Rule("room.json", 'false};"}§«→,»\n', "AOS127"),
+    Rule("room.json", '§«→// what counts\n»"SpecialStates"', "AOS127"),
     Rule("room.json", '§«→/* what\ncounts */»"SpecialStates"', "AOS127"),
     Rule("room.json", '"Default": §«"eHall"→0»},', "AOS127"),
     Rule("room.json", '"Type": "§«enum→Enum»"', "AOS127", title="a kind of type in capitals"),
@@ -113,16 +115,22 @@ WARNED = [
 ]  # fmt: skip
 
 REFUSED = [
+    Rule("room.json", '"Discount": §«0.9→1.1»', "AOS106"),
     Rule("room.json", '"Type": "«anyValue→int»"', "AOS106"),
     Rule("go.json", '"«Type→Kind»": "PLP"', "AOS105"),
+    Rule("go.json", '"Type": "«tDoor→float»"}', "AOS119"),
+    Rule("go.json", "§{«0.9, 0.1→0, 0»}", "AOS122"),
     Rule("go.json", '"eWell", "«eBadly→eDone»"]', "AOS126", title="a hidden response"),
     Rule("go.json", "__meetPrecondition =§«→\u00a0»", "AOS108", title="blank"),
     Rule("room.json", '"«IsArray": true→Parameters": ["tRom"]»,', "AOS110", title="keys of no enum"),
+    Rule("go.json", "§{«0.9, 0.1→0.5, 0.3, 0.2»}", "AOS122"),
     Rule("go.json", "§{«0.9, 0.1→1»}", "AOS122"),
     Rule("go.json", "AOS.SampleDiscrete(§«tEnd→tEdn»", "AOS110"),
     Rule("go.sd", "parameter: Door §door«→-2»", "AOS126"),
+    Rule("go.sd", "parameter: §«Door door→door int»", "AOS104"),
     Rule("go glue.json", '«"ok"→["ok", "§) or (ok"]»}', "AOS121"),
     Rule("go glue.json", '§"«FromROSServiceResponse": true→RosParameter": "/ok"»', "AOS124"),
+    Rule("room.ef", "is_open« true→[2]»", "AOS104"),
     Rule("go.am", "«→    ok = 1\n  »ok = __input", "AOS121"),
 ]  # fmt: skip
 
@@ -191,6 +199,7 @@ WHOLE_FILES = [
     Whole("carriage returns alone", JSON, lambda f: {n: d.replace(b"\n", b"\r") for n, d in f.items()}),
     Whole("a mark of the byte order", JSON, lambda f: {"go.json": b"\xef\xbb\xbf" + f["go.json"]},
           "warning", "AOS127"),
+    Whole("a byte order mark", SDL, lambda f: {"go.sd": b"\xef\xbb\xbf" + f["go.sd"]}, "warning", "AOS127"),
     Whole("no newline at the end", SDL, lambda f: {"go.am": f["go.am"].rstrip()}),
     Whole("tabs for blanks", JSON, lambda f: {"go.json": f["go.json"].replace(b"    ", b"\t")}),
     Whole("blanks in a file's name", JSON, lambda f: {"my room.json": f["room.json"], "room.json": None}),

@@ -92,6 +92,12 @@ def test_the_parts_of_a_section_are_its_own():
     assert findings == ()
 
 
+def test_both_spellings_of_the_service_response_are_one_word():
+    text = "local_variable: a\nfrom_ros_reservice_response: true\nfrom_ros_service_response: true"
+    (variable,), _ = sections(text, ".am")
+    assert [part.word for part in variable.parts] == ["from_ros_service_response"] * 2
+
+
 def test_python_loses_the_indentation_its_lines_share():
     text = "local_variable: v\ncode:\n\t\tif a:\n\t\t    return 1\n\n\t\treturn 2"
     (variable,), _ = sections(text, ".am")
