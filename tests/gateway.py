@@ -160,21 +160,17 @@ def _events(answer: HTTPResponse) -> Iterator[tuple[str, str, Any]]:
             fields = {}
 
 
-def environment(folder: Path, cache: Path) -> dict[str, str]:
+def environment(folder: Path) -> dict[str, str]:
     """The environment of commands that shall find no run but those of a folder."""
     own = {"AOS_RUNNING_DIR": "running", "AOS_GATEWAY_DIR": "gateway"}
-    return {
-        **os.environ,
-        **{name: str(folder / place) for name, place in own.items()},
-        "AOS_CACHE_DIR": str(cache),
-    }
+    return {**os.environ, **{name: str(folder / place) for name, place in own.items()}}
 
 
 @contextmanager
-def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
+def gateway(folder: Path, *options: str) -> Iterator[Gateway]:
     """A gateway of the runs and deploy files in a folder."""
     port = () if "--port" in options else ("--port", "0")
-    with running(folder, cache, "aos", "serve", *port, *options) as process:
+    with running(folder, "aos", "serve", *port, *options) as process:
         assert process.stdout is not None
         address = process.stdout.readline()
         found = re.match(r"http://[^:]+:(\d+)/#/\S*\?token=(\S+)", address)
@@ -183,14 +179,10 @@ def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
 
 
 @contextmanager
-def running(folder: Path, cache: Path, command: str, *options: str | Path) -> Iterator[subprocess.Popen[str]]:
+def running(folder: Path, command: str, *options: str | Path) -> Iterator[subprocess.Popen[str]]:
     """A command of ours in a folder, with its output in a pipe. It is told to stop at the block's end."""
     process = subprocess.Popen(
-        [BIN / command, *options],
-        cwd=folder,
-        env=environment(folder, cache),
-        stdout=subprocess.PIPE,
-        text=True,
+        [BIN / command, *options], cwd=folder, env=environment(folder), stdout=subprocess.PIPE, text=True
     )
     try:
         yield process
@@ -199,7 +191,7 @@ def running(folder: Path, cache: Path, command: str, *options: str | Path) -> It
         process.communicate(timeout=HANG_S)
 
 
-def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -> Path:
+def played(folder: Path, *options: str, said: Path | None = None) -> Path:
     """The directory of a mission that has run to its end, each skill played by its document.
 
     A file gets what was `said`; gateways that it starts write there as well.
@@ -216,18 +208,18 @@ def played(folder: Path, cache: Path, *options: str, said: Path | None = None) -
     ]
     with (said or folder / "said").open("wb") as out:
         subprocess.run(
-            command, cwd=folder, env=environment(folder, cache), stdout=out, timeout=COMMAND_S, check=False
+            command, cwd=folder, env=environment(folder), stdout=out, timeout=COMMAND_S, check=False
         )
     return (runs / "latest").resolve()
 
 
-def copied_past(shared: Path, folder: Path, cache: Path) -> Path:
+def copied_past(shared: Path, folder: Path) -> Path:
     """The directory, below a folder, of a copy of the mission that the first who asks plays for all."""
     shared.mkdir(exist_ok=True)
     with (shared / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (shared / "played").exists():
-            (shared / "played").write_text(played(shared, cache).name)
+            (shared / "played").write_text(played(shared).name)
     shutil.copytree(shared / "runs", folder / "runs", symlinks=True)
     return folder / "runs" / (shared / "played").read_text()
 
@@ -251,27 +243,27 @@ def slow_deploy_file(folder: Path, step_limit: int = 1_000_000) -> Path:
 
 
 @contextmanager
-def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
+def slow_system(folder: Path, *options: str) -> Iterator[Path]:
     """The directory of a mission that goes on: its robot listens once for each write to the pipe `turns`."""
-    with _up(folder, cache, slow_deploy_file(folder).name, *options) as lines:
+    with _up(folder, slow_deploy_file(folder).name, *options) as lines:
         next(line for line in lines if line["event"] == "decision")
         yield (folder / "runs/latest").resolve()
 
 
 @contextmanager
-def worn_system(folder: Path, cache: Path) -> Iterator[Path]:
+def worn_system(folder: Path) -> Iterator[Path]:
     """The directory of a system that stays, whose first mission has ended with an alarm of its only skill."""
     for name, text in WORN.items():
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text)
-    with _up(folder, cache, "worn.yaml") as lines:
+    with _up(folder, "worn.yaml") as lines:
         next(line for line in lines if line.get("phase") == "ended")
         yield (folder / "runs/latest").resolve()
 
 
 @contextmanager
-def _up(folder: Path, cache: Path, deploy_file: str, *options: str) -> Iterator[Iterator[dict[str, Any]]]:
+def _up(folder: Path, deploy_file: str, *options: str) -> Iterator[Iterator[dict[str, Any]]]:
     """The events of a system, which ends with the block."""
-    with running(folder, cache, "aos-up", deploy_file, "--json", *options) as process:
+    with running(folder, "aos-up", deploy_file, "--json", *options) as process:
         assert process.stdout is not None
         yield map(json.loads, process.stdout)

@@ -63,14 +63,13 @@ def main() -> int:
     )
     parser.add_argument("--examples", type=int, default=100, help="random requests to each operation")
     examples = parser.parse_args().examples
-    cache = ROOT / ".compiled"
     is_well = True
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        run = played(folder, cache)
-        with gateway(folder, cache) as served:
+        run = played(folder)
+        with gateway(folder) as served:
             is_well &= _told("a mission that is over", fuzz(served, run.name, examples))
-        with slow_system(folder, cache) as living, gateway(folder, cache) as served:
+        with slow_system(folder) as living, gateway(folder) as served:
             is_well &= _told("a mission that goes on", fuzz(served, living.name, examples))
     return 0 if is_well else 1
 

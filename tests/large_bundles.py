@@ -13,7 +13,6 @@ from mappings import mapping_text
 from models import built_text, engine_of
 from texts import encoded
 
-from aos_deploy.places import cache_dir
 from aos_language.load import load_files
 
 _VALUES = {"int": "7", "bool": "true", "double": "0.5", "Level": "High", "string": '"a"', "Cup": "Cup{true}"}
@@ -69,7 +68,7 @@ async def _measure(title: str, files: Mapping[str, str]) -> None:
     checking_s = time.perf_counter()
     load_files(encoded(files))
     building_s = time.perf_counter()
-    built = await built_text(files, cache_dir())
+    built = await built_text(files)
     built_s = time.perf_counter()
     sys.stdout.write(
         f"{title}: checked in {building_s - checking_s:.2f} s, built in {built_s - building_s:.2f} s"

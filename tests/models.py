@@ -4,28 +4,35 @@ from pathlib import Path
 
 from texts import encoded
 
+from aos_deploy.places import cache_dir
 from aos_language.load import load_bundle, load_files
+from aos_protocol.documents import Project
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, ImpossiblePolicy
 
 
-async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
+async def built_project(project: Project) -> BuiltModel:
+    """The compiled model, from the cache that commands use as well."""
+    return await build_project(project, cache_dir())
+
+
+async def built_bundle(bundle: Path) -> BuiltModel:
     loaded = load_bundle(bundle)
     assert loaded.project is not None, loaded.diagnostics
-    return await build_project(loaded.project, cache_dir)
+    return await built_project(loaded.project)
 
 
-async def built_bundles(bundles: Sequence[Path], cache_dir: Path) -> BuiltModel:
+async def built_bundles(bundles: Sequence[Path]) -> BuiltModel:
     """The compiled model of several; documents of a later one stand in place of those with the same name."""
     files = {file.name: file.read_text() for bundle in bundles for file in sorted(bundle.iterdir())}
-    return await built_text(files, cache_dir)
+    return await built_text(files)
 
 
-async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:
+async def built_text(files: Mapping[str, str]) -> BuiltModel:
     loaded = load_files(encoded(files))
     assert loaded.project is not None, loaded.diagnostics
-    return await build_project(loaded.project, cache_dir)
+    return await built_project(loaded.project)
 
 
 @asynccontextmanager
@@ -38,18 +45,14 @@ async def engine_of(
 
 @asynccontextmanager
 async def engine_of_text(
-    files: Mapping[str, str],
-    cache_dir: Path,
-    *,
-    seed: int = 1,
-    impossible_observation: ImpossiblePolicy = "widen",
+    files: Mapping[str, str], *, seed: int = 1, impossible_observation: ImpossiblePolicy = "widen"
 ) -> AsyncIterator[Engine]:
-    built = await built_text(files, cache_dir)
+    built = await built_text(files)
     async with engine_of(built, seed=seed, impossible_observation=impossible_observation) as engine:
         yield engine
 
 
 @asynccontextmanager
-async def engine_of_bundle(bundle: Path, cache_dir: Path, *, seed: int = 1) -> AsyncIterator[Engine]:
-    async with engine_of(await built_bundle(bundle, cache_dir), seed=seed) as engine:
+async def engine_of_bundle(bundle: Path, *, seed: int = 1) -> AsyncIterator[Engine]:
+    async with engine_of(await built_bundle(bundle), seed=seed) as engine:
         yield engine

@@ -13,6 +13,7 @@ from exam.programs import PATIENCE_S, run, what_decides
 from processes import COMMAND_S
 from texts import encoded
 
+from aos_deploy.places import cache_dir
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
@@ -109,14 +110,14 @@ def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
     return emit(program), diagnostics
 
 
-def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
+def scripted(project: Project) -> ScriptedModel:
     emitted, _ = lowered(project)
-    return ScriptedModel(emitted, asyncio.run(_compiled(emitted, cache_dir)) / _EXECUTABLE)
+    return ScriptedModel(emitted, asyncio.run(_compiled(emitted)) / _EXECUTABLE)
 
 
-async def _compiled(emitted: EmittedModel, cache_dir: Path) -> Path:
+async def _compiled(emitted: EmittedModel) -> Path:
     compiler = await find_compiler()
-    cache = BuildCache(cache_dir)
+    cache = BuildCache(cache_dir())
     decides = [*_OPTIONS, *what_decides(compiler, _DRIVER)]
 
     async def make_driver(staging: Path) -> None:

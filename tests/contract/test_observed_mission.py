@@ -200,8 +200,8 @@ async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path)
 
 
 @pytest_asyncio.fixture
-async def stock(cache_dir: Path) -> BuiltModel:
-    return await built_text(STOCK, cache_dir)
+async def stock() -> BuiltModel:
+    return await built_text(STOCK)
 
 
 async def mission(built: BuiltModel, robot: Robot) -> MissionState:

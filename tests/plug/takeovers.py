@@ -15,8 +15,6 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
-from aos_deploy.places import cache_dir
-
 from .changes import KINDS
 from .pushes import Played, Pushed, played
 from .shelf import interleaved
@@ -64,7 +62,7 @@ def measure_pushes(options: argparse.Namespace) -> int:
 
 async def _truth(models: int, seed: int) -> bool:
     found = []
-    async for each in examined_problems(models, seed, cache_dir()):
+    async for each in examined_problems(models, seed):
         found.append(each)
         if each.replay > EXACT or each.kept > KEPT or abs(each.drawn) > STANDARD_ERRORS:
             _say(f"  {each}")

@@ -3,7 +3,6 @@ import random
 from collections import defaultdict
 from collections.abc import AsyncIterator, Mapping
 from contextlib import AsyncExitStack
-from pathlib import Path
 
 import msgspec
 from exam.problem import Problem
@@ -48,13 +47,13 @@ class _LongClock(SystemClock):
         return self._now_s
 
 
-async def examined_problems(count: int, seed: int, cache_dir: Path) -> AsyncIterator[Examined]:
+async def examined_problems(count: int, seed: int) -> AsyncIterator[Examined]:
     """Examines so many models; those whose seeds are too large give way."""
     for problem in small_problems(count, seed):
-        yield await examined(problem, cache_dir)
+        yield await examined(problem)
 
 
-async def examined(problem: Problem, cache_dir: Path) -> Examined:
+async def examined(problem: Problem) -> Examined:
     """Plays a random past, and lets documents with the weather take over by each way."""
     source = random.Random(f"plug/{problem.name}")
     weather = Weather(source)
@@ -62,8 +61,8 @@ async def examined(problem: Problem, cache_dir: Path) -> Examined:
     last = len(problem.world.actions) - 1
     without = frozenset({last} if last > 0 and source.random() < 0.5 else ())
     past, truth, foreign = _past(problem, weather, without, source)
-    old = await built_text(documents(problem, None), cache_dir)
-    new = await built_text(documents(problem, weather, without), cache_dir)
+    old = await built_text(documents(problem, None))
+    new = await built_text(documents(problem, weather, without))
     async with AsyncExitStack() as stack:
         running = RunningModel(1, await stack.enter_async_context(engine_of(old)))
         for evidence in past.steps:

@@ -17,22 +17,22 @@ def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
 
 
 @pytest.fixture(scope="module")
-def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Gateway, str]]:
     """A gateway, and a mission that has run to its end: one for all processes of a run of the tests."""
     base = tmp_path_factory.getbasetemp()
     shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "played"
     folder = tmp_path_factory.mktemp("past")
-    run = copied_past(shared, folder, cache_dir)
-    with gateway(folder, cache_dir) as served:
+    run = copied_past(shared, folder)
+    with gateway(folder) as served:
         yield served, run.name
 
 
 @pytest.fixture
-def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
-    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+def living(tmp_path: Path) -> Iterator[tuple[Gateway, Path]]:
+    with slow_system(tmp_path) as run, gateway(tmp_path) as served:
         yield served, run
 
 
 @pytest.fixture
-async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
+async def tiger(bundles: Path) -> BuiltModel:
+    return await built_bundle(bundles / "bench" / "tiger")

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import built_text, engine_of
 
@@ -31,8 +29,8 @@ __moduleResponse = done;
 LEAVE = 0
 
 
-async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off(cache_dir: Path):
-    built = await built_text(EXIT, cache_dir)
+async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off():
+    built = await built_text(EXIT)
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
         assert plan.planner == "exact"
@@ -44,8 +42,8 @@ async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off(cache
         assert (await engine.summary()).is_exact
 
 
-async def test_the_world_still_draws_the_reward(cache_dir: Path):
-    built = await built_text(EXIT, cache_dir)
+async def test_the_world_still_draws_the_reward():
+    built = await built_text(EXIT)
     async with engine_of(built) as engine:
         rewards = []
         for seed in range(200):

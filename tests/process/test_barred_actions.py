@@ -7,8 +7,8 @@ from aos_solver.child.engine import Planner, Restriction
 
 
 @pytest.mark.parametrize("planner", ["pomcp", "despot", "sarsop", "auto"])
-async def test_a_barred_action_is_never_the_decision(bundles: Path, cache_dir: Path, planner: Planner):
-    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
+async def test_a_barred_action_is_never_the_decision(bundles: Path, planner: Planner):
+    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
         barred: list[int] = []
         while len(barred) < 4:
             plan = await engine.plan(

@@ -5,6 +5,7 @@ from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
 from scripted_models import text_project
 
+from aos_deploy.places import cache_dir
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
@@ -78,14 +79,12 @@ def after_time(places: list[float], steps: int) -> list[float]:
 @pytest.mark.parametrize("idle", [0, 1, 3])
 @pytest.mark.parametrize("given", [(), ("state.place != 1",)])
 @pytest.mark.parametrize("is_kept", [False, True])
-async def test_a_beginning_is_the_belief_by_enumeration(
-    cache_dir: Path, idle: int, given: tuple[str, ...], is_kept: bool
-):
-    built = await built_text(WALK, cache_dir)
+async def test_a_beginning_is_the_belief_by_enumeration(idle: int, given: tuple[str, ...], is_kept: bool):
+    built = await built_text(WALK)
     start = StartMission("keep" if is_kept else "initial", given, idle)
 
     async def conditioned() -> Engine:
-        return await Engine.start(await built_with_conditions(project(), given, cache_dir), seed=1)
+        return await Engine.start(await built_with_conditions(project(), given, cache_dir()), seed=1)
 
     async with engine_of(built) as last, engine_of(built) as engine:
         places = [0.5, 0.3, 0.2]
@@ -105,9 +104,9 @@ async def test_a_beginning_is_the_belief_by_enumeration(
         assert len(believed) == len(weights)
 
 
-async def test_a_state_that_had_ended_goes_on_in_the_next_mission(cache_dir: Path):
+async def test_a_state_that_had_ended_goes_on_in_the_next_mission():
     files = WALK | {"walk.ef": WALK["walk.ef"].replace("state.place == 9", "state.place == 1")}
-    built = await built_text(files, cache_dir)
+    built = await built_text(files)
     async with engine_of(built) as engine:
         assert (await engine.summary()).goal_probability == pytest.approx(0.3)
         places = [0.5, 0.3, 0.2]
@@ -115,12 +114,12 @@ async def test_a_state_that_had_ended_goes_on_in_the_next_mission(cache_dir: Pat
         assert began.goal_probability == pytest.approx(after_time(places, 2)[1])
 
 
-async def test_what_is_impossible_begins_nothing(cache_dir: Path):
-    built = await built_text(WALK, cache_dir)
+async def test_what_is_impossible_begins_nothing():
+    built = await built_text(WALK)
     given = ("state.place == 7",)
 
     async def conditioned() -> Engine:
-        return await Engine.start(await built_with_conditions(project(), given, cache_dir), seed=1)
+        return await Engine.start(await built_with_conditions(project(), given, cache_dir()), seed=1)
 
     async with engine_of(built) as engine:
         before = await distribution(engine)
@@ -130,9 +129,9 @@ async def test_what_is_impossible_begins_nothing(cache_dir: Path):
         assert await distribution(engine) == before
 
 
-async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_process(cache_dir: Path):
+async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_process():
     aside = await Engine.start(
-        await built_with_conditions(project(), ("state.place == 7",), cache_dir), seed=1
+        await built_with_conditions(project(), ("state.place == 7",), cache_dir()), seed=1
     )
     try:
         before = (await aside.update("look", "low")).summary
@@ -158,31 +157,29 @@ async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_p
         ('state.place == "x"', "AOS201", "--given:1:13"),
     ],
 )
-async def test_a_condition_that_cannot_be_used_is_told_with_its_column(
-    cache_dir: Path, text: str, code: str, place: str
-):
+async def test_a_condition_that_cannot_be_used_is_told_with_its_column(text: str, code: str, place: str):
     with pytest.raises(AosError, match="what is given has errors") as refused:
-        await built_with_conditions(project(), [text], cache_dir)
+        await built_with_conditions(project(), [text], cache_dir())
     (found, *_) = refused.value.diagnostics
     assert (found.code, str(found.span)) == (code, place)
 
 
-async def test_a_condition_that_faults_is_told_at_its_place(cache_dir: Path):
-    built = await built_with_conditions(project(), ["1 / (state.place - 1) == 0"], cache_dir)
+async def test_a_condition_that_faults_is_told_at_its_place():
+    built = await built_with_conditions(project(), ["1 / (state.place - 1) == 0"], cache_dir())
     async with engine_of(built) as engine:
         with pytest.raises(AosError, match="--given:1:1"):
             await engine.condition(0.01)
 
 
-async def test_a_belief_is_kept_from_a_mission_before(cache_dir: Path, tmp_path: Path):
+async def test_a_belief_is_kept_from_a_mission_before(tmp_path: Path):
     def terms(name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
         return Terms(name=name, epoch=epoch, search=Search(simulations=1, seed=seed))
 
     async def documents(revision: int) -> Project:
         return project()
 
-    succession = Succession(Logbooks(tmp_path, 1, stay=True), terms, documents, cache_dir)
-    async with engine_of_text(WALK, cache_dir) as engine:
+    succession = Succession(Logbooks(tmp_path, 1, stay=True), terms, documents, cache_dir())
+    async with engine_of_text(WALK) as engine:
         with pytest.raises(PlanningError, match="there is no mission before this one") as refused:
             await succession.next(RunningModel(1, engine), StartMission("keep"), None)
         assert refused.value.code == "AOS516"

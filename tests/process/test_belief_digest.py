@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import msgspec
 import pytest
 from models import built_text, engine_of
@@ -16,7 +14,7 @@ DRAWN_START = "state.at = AOS.SampleNormal(0, 2);"
 LISTED_START = "state.at = AOS.SampleDiscrete(vector<double>{0.25, 0.25, 0.25, 0.25}) - 1.5;"
 
 
-async def drifting(start: str, cache_dir: Path) -> BuiltModel:
+async def drifting(start: str) -> BuiltModel:
     """A place that drifts, and a skill that says on which side it is, more or less."""
     files = {
         "drift.ef": f"project: drift\nhorizon: 5\nstate_variable: double at\ninitial_belief:\n{start}\n",
@@ -26,7 +24,7 @@ async def drifting(start: str, cache_dir: Path) -> BuiltModel:
             "__moduleResponse = AOS.Bernoulli(odds) ? right : left;\n"
         ),
     }
-    return await built_text(files, cache_dir)
+    return await built_text(files)
 
 
 async def take_step(engine: Engine, step: int) -> str:
@@ -43,10 +41,8 @@ async def kill(engine: Engine):
 
 
 @pytest.mark.parametrize("start", [DRAWN_START, LISTED_START], ids=["drawn", "exact"])
-async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_asked_other_things(
-    start: str, cache_dir: Path
-):
-    built = await drifting(start, cache_dir)
+async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_asked_other_things(start: str):
+    built = await drifting(start)
     async with engine_of(built, seed=3) as engine, engine_of(built, seed=3) as disturbed:
         assert (await engine.summary()).is_exact == (start == LISTED_START)
         digests = set()
@@ -61,8 +57,8 @@ async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_a
         assert len(digests) == STEPS
 
 
-async def test_particles_are_those_of_the_missions_seed(cache_dir: Path):
-    built = await drifting(DRAWN_START, cache_dir)
+async def test_particles_are_those_of_the_missions_seed():
+    built = await drifting(DRAWN_START)
     async with engine_of(built, seed=3) as engine, engine_of(built, seed=4) as other:
         at_start = await engine.summary()
         after = await take_step(engine, 1)
@@ -72,8 +68,8 @@ async def test_particles_are_those_of_the_missions_seed(cache_dir: Path):
         assert (await other.reset_belief()).digest != (await other.reset_belief()).digest
 
 
-async def test_the_digest_does_not_depend_on_the_order_of_the_states(cache_dir: Path):
-    built = await drifting(LISTED_START, cache_dir)
+async def test_the_digest_does_not_depend_on_the_order_of_the_states():
+    built = await drifting(LISTED_START)
     async with engine_of(built) as engine, engine_of(built) as other:
         digest = await take_step(engine, 1)
         belief = await engine.export_belief()

@@ -1,6 +1,5 @@
 import random
 import re
-from pathlib import Path
 
 import pytest
 from models import built_text, engine_of, engine_of_text
@@ -66,10 +65,10 @@ class RandomModel:
         return action, dice.choices(range(RESPONSES), odds)[0]
 
 
-async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path):
+async def test_a_random_chain_is_followed_as_bayes_rule_says():
     model, dice = RandomModel(1), random.Random(1)
     belief = model.start
-    async with engine_of_text(model.documents(), cache_dir) as engine:
+    async with engine_of_text(model.documents()) as engine:
         for _ in range(20):
             action, response = model.drawn(belief, dice)
             belief, probability = model.updated(belief, action, response)
@@ -81,10 +80,10 @@ async def test_a_random_chain_is_followed_as_bayes_rule_says(cache_dir: Path):
             assert [found.get(str(state), 0.0) for state in range(STATES)] == pytest.approx(belief, abs=1e-9)
 
 
-async def test_particles_follow_a_random_chain_closely(cache_dir: Path):
+async def test_particles_follow_a_random_chain_closely():
     model, dice = RandomModel(1), random.Random(4)
     belief = model.start
-    async with engine_of_text(model.documents(), cache_dir) as engine:
+    async with engine_of_text(model.documents()) as engine:
         assert (await engine.draw_belief()).error_bound == 1
         for _ in range(20):
             action, response = model.drawn(belief, dice)
@@ -132,8 +131,8 @@ MANY_STATES = {
 """2^18 states, more than a belief holds; each lamp is independent of the others."""
 
 
-async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound(cache_dir: Path):
-    async with engine_of_text(MANY_STATES, cache_dir) as engine:
+async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound():
+    async with engine_of_text(MANY_STATES) as engine:
         first = await engine.summary()
         update = await engine.update("read(number=9)", "yes")
     assert not first.is_exact
@@ -172,8 +171,8 @@ __moduleResponse = is_open && AOS.Bernoulli(0.01 * state__.level) ? yes : no;
 """A response of probability 1 in 10,000, decided by the last two draws after a continuous one."""
 
 
-async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cache_dir: Path):
-    async with engine_of_text(RARE, cache_dir) as engine:
+async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for():
+    async with engine_of_text(RARE) as engine:
         update = await engine.update("read", "yes")
     assert update.probability == pytest.approx(1e-4, rel=0.05)
     assert update.summary.error_bound == 1
@@ -201,10 +200,10 @@ async def turn_and_look(engine: Engine, card: int, hand: list[bool]):
     assert marginals[f"cards[{card}]"].get("true" if hand[card] else "false", 0.0) > 0.9, card
 
 
-async def test_particles_outlive_more_observations_than_they_can_tell_apart(cache_dir: Path):
+async def test_particles_outlive_more_observations_than_they_can_tell_apart():
     dice = random.Random(1)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
-    async with engine_of_text(DEPLETING, cache_dir) as engine:
+    async with engine_of_text(DEPLETING) as engine:
         for card in range(CARDS):
             update = await turn(engine, card, hand)
     told = re.search(r"(\d+) particles moved \d+ times since \d+ effective samples remained", update.effort)
@@ -225,13 +224,11 @@ SHAKEN = DEPLETING | {
 """The same with noise that differs in all states, so that particles stay many and their ancestors do not."""
 
 
-async def test_what_particles_have_by_chance_is_given_up_also_after_a_crash_and_a_change_of_engines(
-    cache_dir: Path,
-):
+async def test_what_particles_have_by_chance_is_given_up_also_after_a_crash_and_a_change_of_engines():
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
 
-    built = await built_text(SHAKEN, cache_dir)
+    built = await built_text(SHAKEN)
     async with engine_of(built) as first, engine_of(built) as second:
         for card in range(CARDS // 2):
             await turn_and_look(first, card, hand)
@@ -260,9 +257,9 @@ state__.is_dealt = true;""",
 """The same, but the cards are dealt when the first one is turned: the initial belief leaves none open."""
 
 
-async def test_what_opened_up_since_the_beginning_is_given_up_as_well(cache_dir: Path):
+async def test_what_opened_up_since_the_beginning_is_given_up_as_well():
     dice = random.Random(3)
     hand = [dice.random() < 0.5 for _ in range(CARDS)]
-    async with engine_of_text(DEALT, cache_dir) as engine:
+    async with engine_of_text(DEALT) as engine:
         for card in range(CARDS):
             await turn_and_look(engine, card, hand)

@@ -18,12 +18,10 @@ NORMAL = ("laser-normal", "lightdark-normal")
 
 
 @pytest.mark.parametrize("problem", MODELS)
-async def test_rewards_observations_and_beliefs_are_the_literatures(
-    problem: str, bundles: Path, cache_dir: Path
-):
+async def test_rewards_observations_and_beliefs_are_the_literatures(problem: str, bundles: Path):
     model = MODELS[problem]
     draws = random.Random(f"walks of {problem}")
-    async with engine_of_bundle(bundles / "bench" / problem, cache_dir) as engine:
+    async with engine_of_bundle(bundles / "bench" / problem) as engine:
         assert [action.name for action in engine.description.actions] == sorted(model.actions)
         for walk in range(WALKS):
             belief = initial_belief(model)
@@ -47,7 +45,7 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
             assert (ending == "goal") == (not belief)
 
 
-async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_dir: Path):
+async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path):
     """The robot starts in one of nine cells; after a step north it measures its place."""
     east_m, north_m = 2.9, 1.4
     weights = {}
@@ -56,7 +54,7 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_d
         squares = ((east_m - x) / deviation) ** 2 + ((north_m - y) / deviation) ** 2
         weights[x, y] = math.exp(-squares / 2) / (2 * math.pi * deviation**2) / 9
     density = sum(weights.values())
-    async with engine_of_bundle(bundles / "bench" / "lightdark-normal", cache_dir) as engine:
+    async with engine_of_bundle(bundles / "bench" / "lightdark-normal") as engine:
         numbers = {"east_m": east_m, "north_m": north_m}
         update = await engine.update("move(direction=north)", "moved", numbers=numbers)
     assert update.probability == pytest.approx(density, rel=1e-9)

@@ -78,7 +78,7 @@ async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, ca
     baselines = await Baselines.built(await find_compiler(), cache_dir)
     for problem in PROBLEMS:
         steps = (await baselines.measure(problem, 0.05, seed=1))[0]
-        async with engine_of_bundle(bundles / "bench" / problem, cache_dir) as engine:
+        async with engine_of_bundle(bundles / "bench" / problem) as engine:
             walked = await engine.rate(0.5, seed=2)
         assert walked.mean_reward == pytest.approx(steps.check, rel=0.02), problem
 

@@ -23,8 +23,8 @@ class Recorded(Engine):
         return await super()._ask(command, kind, **more)
 
 
-async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
-    built = await built_text(LAMP, cache_dir)
+async def commands_of(executable: list[Path]) -> list[str]:
+    built = await built_text(LAMP)
     executable.append(built.executable)
     Recorded.asked = []
     engine = await Recorded.start(built, seed=1)
@@ -56,11 +56,11 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
     return [*Recorded.asked, command_line("restore_belief", change=1)]
 
 
-async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path, tmp_path: Path):
+async def test_the_engine_names_each_field_that_a_command_lacks(tmp_path: Path):
     executable: list[Path] = []
     lines: list[str] = []
     lacking: list[tuple[str, str]] = []
-    for line in await commands_of(cache_dir, executable):
+    for line in await commands_of(executable):
         name, *rest = line.split("\t")
         fields = rest[: rest.index("")] if "" in rest else rest
         # Every question may have a limit to its processor time.

@@ -6,17 +6,17 @@ from gateway import gateway, slow_system
 
 
 def test_a_system_at_an_endpoint_is_shown_followed_and_steered(
-    tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     there, here = tmp_path / "there", tmp_path / "here"
     there.mkdir()
     here.mkdir()
-    with slow_system(there, cache_dir, "--listen", "tcp/127.0.0.1:0") as run:
+    with slow_system(there, "--listen", "tcp/127.0.0.1:0") as run:
         endpoint = json.loads((run / "run.json").read_text())["endpoint"]
         monkeypatch.setenv("AOS_USER", "operator")
         monkeypatch.setenv("AOS_PASSWORD_FILE", str(run / "credentials" / "operator"))
         connected = ("--connect", endpoint, "--robot", "tiger", "--metrics")
-        with gateway(here, cache_dir, *connected) as served:
+        with gateway(here, *connected) as served:
             (entry,) = served.ask("/v1/runs").json["runs"]
             assert (entry["robot"], entry["is_running"], entry["missions"]) == ("tiger", True, [run.name])
             mission = f"/v1/missions/{run.name}"
@@ -39,6 +39,6 @@ def test_a_system_at_an_endpoint_is_shown_followed_and_steered(
             assert tree["root"]["actions"][0]["action"] == "listen"
             assert served.ask(f"{mission}/documents").json["code"] == "AOS902"
         assert not list(here.glob("runs/*"))
-    with gateway(here, cache_dir, *connected) as served:
+    with gateway(here, *connected) as served:
         (entry,) = served.ask("/v1/runs").json["runs"]
         assert (entry["is_running"], entry["ending"]) == (False, "unreachable")

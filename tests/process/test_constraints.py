@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from models import engine_of
+from models import built_project, engine_of
 from scripted_models import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
 
@@ -18,7 +18,7 @@ from aos_lab.trials.intervals import interval_of_share
 from aos_protocol.documents import Project
 from aos_protocol.messages import Activate, Outcome
 from aos_solver.building.build import BuiltModel
-from aos_solver.building.project_build import build_project, emitted_model
+from aos_solver.building.project_build import emitted_model
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
 from aos_solver.mission.loop import Mission
@@ -113,9 +113,9 @@ def with_constraints(project: Project, *constraints: str) -> Project:
     return constrained(project, [constraint_of_option(text) for text in constraints])
 
 
-async def built(files: Mapping[str, str], cache_dir: Path, *constraints: str) -> BuiltModel:
+async def built(files: Mapping[str, str], *constraints: str) -> BuiltModel:
     project = with_constraints(text_project(files), *constraints)
-    return await build_project(project, cache_dir)
+    return await built_project(project)
 
 
 async def risk_of(engine: Engine, action: str, constraint: int = 0) -> float:
@@ -135,8 +135,8 @@ async def play(
         ]
 
 
-async def test_the_risk_of_an_action_is_its_probability_under_the_belief(cache_dir: Path):
-    model = await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}")
+async def test_the_risk_of_an_action_is_its_probability_under_the_belief():
+    model = await built(HOB, f"0.05: {TOUCHES_HOT}")
     async with engine_of(model) as engine:
         assert await risk_of(engine, "touch") == pytest.approx(0.3)
         assert await risk_of(engine, "look") == 0
@@ -147,8 +147,8 @@ async def test_the_risk_of_an_action_is_its_probability_under_the_belief(cache_d
         assert not (await engine.risks(seed=1)).is_sampled
 
 
-async def test_what_a_step_leads_to_is_enumerated(cache_dir: Path):
-    model = await built(SAW, cache_dir, f"0.01: {GETS_HURT}", "0.5: state__.cuts > 1 && cut")
+async def test_what_a_step_leads_to_is_enumerated():
+    model = await built(SAW, f"0.01: {GETS_HURT}", "0.5: state__.cuts > 1 && cut")
     async with engine_of(model) as engine:
         assert await risk_of(engine, "cut") == pytest.approx(0.004)
         assert (await risk_of(engine, "rest"), await risk_of(engine, "cut", 1)) == (0, 0)
@@ -157,60 +157,58 @@ async def test_what_a_step_leads_to_is_enumerated(cache_dir: Path):
         assert await risk_of(engine, "cut", 1) == pytest.approx(1)
 
 
-async def test_a_risk_that_cannot_be_enumerated_is_an_estimate_and_says_so(cache_dir: Path):
-    model = await built(GAUGE, cache_dir, "0.9: drain && state__.level > 0")
+async def test_a_risk_that_cannot_be_enumerated_is_an_estimate_and_says_so():
+    model = await built(GAUGE, "0.9: drain && state__.level > 0")
     async with engine_of(model) as engine:
         assert (await engine.risks(seed=1)).is_sampled
         assert await risk_of(engine, "drain") == pytest.approx(0.5, abs=0.05)
 
 
 @pytest.mark.parametrize("planner", ["auto", "pomcp", "despot", "sarsop"])
-async def test_whichever_planner_decides_it_looks_until_the_risk_is_allowed(
-    cache_dir: Path, planner: Planner
-):
-    for run in await play(await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}"), range(1, 11), planner):
+async def test_whichever_planner_decides_it_looks_until_the_risk_is_allowed(planner: Planner):
+    for run in await play(await built(HOB, f"0.05: {TOUCHES_HOT}"), range(1, 11), planner):
         blacks = run.observations.count("black") - run.observations.count("red")
         assert (run.actions[-1] == "touch") == (blacks == 2)
         assert run.risked[TOUCHES_HOT] == pytest.approx(AFTER_TWO if blacks == 2 else 0)
-    for run in await play(await built(HOB, cache_dir), range(1, 4), planner):
+    for run in await play(await built(HOB), range(1, 4), planner):
         assert run.actions == ("touch",)
 
 
-async def test_missions_violate_a_constraint_less_often_than_it_allows(cache_dir: Path):
-    runs = await play(await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}"), range(1, 301))
+async def test_missions_violate_a_constraint_less_often_than_it_allows():
+    runs = await play(await built(HOB, f"0.05: {TOUCHES_HOT}"), range(1, 301))
     violations = sum(run.violated == (TOUCHES_HOT,) for run in runs)
     assert interval_of_share(violations, len(runs)).high < 0.05
     # Every touch risks the same, which is known by hand.
     touches = sum("touch" in run.actions for run in runs)
     share = interval_of_share(violations, touches)
     assert share.low < AFTER_TWO < share.high
-    free = await play(await built(HOB, cache_dir, f"0.999: {TOUCHES_HOT}"), range(1, 101))
+    free = await play(await built(HOB, f"0.999: {TOUCHES_HOT}"), range(1, 101))
     touched_hot = interval_of_share(sum(bool(run.violated) for run in free), len(free))
     assert 0.05 < touched_hot.low < 0.3 < touched_hot.high
 
 
-async def test_what_many_steps_risk_adds_up(cache_dir: Path):
-    model = await built(SAW, cache_dir, f"0.01: {GETS_HURT}")
+async def test_what_many_steps_risk_adds_up():
+    model = await built(SAW, f"0.01: {GETS_HURT}")
     for run in await play(model, range(1, 6), steps=8):
         assert run.actions.count("cut") == 2
         assert run.risked[GETS_HURT] == pytest.approx(0.004 + 0.996 * 0.004)
 
 
-async def test_an_event_may_be_forbidden_altogether(cache_dir: Path):
-    for run in await play(await built(SAW, cache_dir, f"0: {GETS_HURT}"), range(1, 3), steps=4):
+async def test_an_event_may_be_forbidden_altogether():
+    for run in await play(await built(SAW, f"0: {GETS_HURT}"), range(1, 3), steps=4):
         assert run.actions == ("rest",) * 4
 
 
-async def test_a_mission_ends_where_every_action_is_too_risky(cache_dir: Path):
-    (run,) = await play(await built(GAUGE, cache_dir, "0.1: drain && state__.level > 0"), range(1, 2))
+async def test_a_mission_ends_where_every_action_is_too_risky():
+    (run,) = await play(await built(GAUGE, "0.1: drain && state__.level > 0"), range(1, 2))
     assert (run.ending, run.actions) == (Ending.TOO_RISKY, ())
 
 
-async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path):
+async def test_a_cost_is_what_searches_count_for_a_violation():
     project = with_constraints(text_project(HOB), f"0.9: {TOUCHES_HOT}")
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
     costly_project = msgspec.structs.replace(project, constraints=(costly,))
-    free, costs = [await build_project(documents, cache_dir) for documents in (project, costly_project)]
+    free, costs = [await built_project(documents) for documents in (project, costly_project)]
     values = []
     for model in (free, costs):
         async with engine_of(model) as engine:
@@ -226,13 +224,13 @@ def test_constraints_without_a_cost_leave_the_model_what_it_is(bundles: Path):
     assert emitted_model(bounded).cpp != emitted_model(project).cpp
 
 
-async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path):
+async def test_a_decision_record_tells_what_every_action_risks():
     looks = iter(["black", "black"])
 
     def robot(request: Activate) -> Outcome:
         return observed(request, "touched" if request.skill == "touch" else next(looks))
 
-    model = await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}")
+    model = await built(HOB, f"0.05: {TOUCHES_HOT}")
     around = Surroundings(robot)
     terms = Terms(name="m", search=Search(simulations=500, seed=1))
     async with engine_of(model) as engine:
@@ -249,9 +247,9 @@ async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path):
     }
 
 
-async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left(cache_dir: Path):
+async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left():
     files = {name: text for name, text in HOB.items() if not name.startswith("look")}
-    model = await built(files, cache_dir, f"0.05: {TOUCHES_HOT}")
+    model = await built(files, f"0.05: {TOUCHES_HOT}")
     around = Surroundings(lambda request: observed(request, "touched"))
     terms = Terms(name="m", search=Search(simulations=500, seed=1))
     async with engine_of(model) as engine:

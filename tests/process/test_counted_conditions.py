@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import engine_of_text
 from wide.writing import BundleWriter
@@ -35,10 +33,10 @@ if (is_real && state.charge && state.place && !state.is_ready) __reward = 7;
 
 
 @pytest.mark.parametrize("code", [NUMBERS_TEXTS_AND_POINTERS, A_CONSTANT_EXPRESSION])
-async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(code: str, cache_dir: Path):
+async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(code: str):
     writer = BundleWriter("counted", ENVIRONMENT)
     end = "state__.doors[2] = 1;\nstate__.is_ready = true;\n__moduleResponse = ok;\n"
     writer.skill("close", ["ok"], code + end)
-    async with engine_of_text(writer.files, cache_dir) as engine:
+    async with engine_of_text(writer.files) as engine:
         exact = await engine.exact_values(1)
     assert exact.values[0].q == pytest.approx(17)

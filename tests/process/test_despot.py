@@ -64,8 +64,8 @@ __moduleResponse = done;
 """Two hundred actions, all of which cost."""
 
 
-async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Path, cache_dir: Path):
-    built = await built_bundle(bundles / "bench" / "tag", cache_dir)
+async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Path):
+    built = await built_bundle(bundles / "bench" / "tag")
     plans = []
     for _ in range(2):
         async with engine_of(built) as engine:
@@ -74,8 +74,8 @@ async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Pat
     assert plans[0].planner == "despot"
 
 
-async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path, cache_dir: Path):
-    async with engine_of_bundle(bundles / "bench" / "tiger", cache_dir) as engine:
+async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path):
+    async with engine_of_bundle(bundles / "bench" / "tiger") as engine:
         first = await engine.plan(simulations=5_000, seed=1, planner="despot")
         for _ in range(3):
             await engine.update("listen", "tiger_left")
@@ -85,8 +85,8 @@ async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path, cache_
     assert later.best.action == "open(door=right_door)"
 
 
-async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path):
-    async with engine_of_bundle(bundles / "bench" / "tag", cache_dir) as engine:
+async def test_an_opponent_that_flees_is_tagged(bundles: Path):
+    async with engine_of_bundle(bundles / "bench" / "tag") as engine:
         search = Search(simulations=500, seed=1, planner="despot")
         limits = MissionLimits(goal_probability=0.999, step_limit=90)
         run = await simulate_mission(engine, search, limits)
@@ -94,8 +94,8 @@ async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path):
     assert run.discounted_return > -16  # random actions end at some -50
 
 
-async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts(cache_dir: Path):
-    async with engine_of_text(COUNTER, cache_dir) as engine:
+async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts():
+    async with engine_of_text(COUNTER) as engine:
         plan = await engine.plan(simulations=5_000, seed=1, planner="despot")
         other = [await engine.plan(simulations=2_000, seed=1, planner=name) for name in ("auto", "sarsop")]
     assert plan.best.action == "stop"
@@ -103,8 +103,8 @@ async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts(cache_di
     assert all("states of the belief differ" in chosen.why for chosen in other)
 
 
-async def test_a_belief_that_has_ended_needs_no_decision(bundles: Path, cache_dir: Path):
-    async with engine_of_bundle(bundles / "bench" / "rocksample-7-8", cache_dir) as engine:
+async def test_a_belief_that_has_ended_needs_no_decision(bundles: Path):
+    async with engine_of_bundle(bundles / "bench" / "rocksample-7-8") as engine:
         for _ in range(7):
             summary = (await engine.update("move(direction=east)", "moved")).summary
         assert summary.goal_probability == 1
@@ -113,8 +113,8 @@ async def test_a_belief_that_has_ended_needs_no_decision(bundles: Path, cache_di
             assert {action.q for action in plan.actions} == {0}, planner
 
 
-async def test_an_action_that_was_not_tried_is_told_by_its_bound_and_not_chosen(cache_dir: Path):
-    async with engine_of_text(DEAR, cache_dir) as engine:
+async def test_an_action_that_was_not_tried_is_told_by_its_bound_and_not_chosen():
+    async with engine_of_text(DEAR) as engine:
         within = Restriction(barred=[0, 1, 2])
         plan = await engine.plan(simulations=1, seed=1, planner="despot", within=within)
     untried = [action for action in plan.actions if action.n == 0]

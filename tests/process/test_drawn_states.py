@@ -106,9 +106,9 @@ def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: P
     assert found.count("AOS148") == 1
 
 
-async def test_lint_draws_the_beginning_of_a_mission(bundles: Path, cache_dir: Path):
+async def test_lint_draws_the_beginning_of_a_mission(bundles: Path):
     files = read_bundle_files(bundles / "errand")[0]
-    built = await built_bundle(bundles / "errand", cache_dir)
+    built = await built_bundle(bundles / "errand")
     assert await picture_findings(files, built) == ()
     wrong = {**files, "picture.py": f"{HEAD}    return state['lion']\n".encode()}
     (found,) = await picture_findings(wrong, built)

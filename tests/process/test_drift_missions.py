@@ -1,5 +1,3 @@
-from pathlib import Path
-
 from models import engine_of_text
 from scripted_missions import Surroundings, observed
 from test_taking_up import rows_of
@@ -33,20 +31,20 @@ if (state.is_on) { __reward = 10; __isGoalState = true; }
 
 
 async def played(
-    files: dict[str, str], cache_dir: Path, response: str, drift: DriftTests | None = None
+    files: dict[str, str], response: str, drift: DriftTests | None = None
 ) -> tuple[Mission, Surroundings]:
     """A mission of eight steps, each with the same response."""
     around = Surroundings(lambda request: observed(request, response))
     limits = MissionLimits(step_limit=8, goal_probability=2.0)
     terms = Terms(name="m", limits=limits, search=Search(simulations=50, seed=1))
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         mission = Mission(terms, RunningModel(1, engine), around, drift=drift)
         await mission.run_or_raise()
         return mission, around
 
 
-async def test_a_skill_that_does_not_do_what_its_document_says_is_told_in_the_records(cache_dir: Path):
-    mission, around = await played(LAMP, cache_dir, "stuck")
+async def test_a_skill_that_does_not_do_what_its_document_says_is_told_in_the_records():
+    mission, around = await played(LAMP, "stuck")
     alarmed = [record for record in around.outcomes if record.drift]
     assert 2 <= alarmed[0].step <= 6
     assert [record.step for record in alarmed] == [*range(alarmed[0].step, 9)]
@@ -57,10 +55,10 @@ async def test_a_skill_that_does_not_do_what_its_document_says_is_told_in_the_re
     assert folded(rows_of(around.journalled)).drift == mission.drift
 
 
-async def test_the_tests_go_over_to_the_next_mission_and_not_to_other_documents(cache_dir: Path):
-    first, _ = await played(LAMP, cache_dir, "pressed")
-    second, _ = await played(LAMP, cache_dir, "pressed", first.drift)
+async def test_the_tests_go_over_to_the_next_mission_and_not_to_other_documents():
+    first, _ = await played(LAMP, "pressed")
+    second, _ = await played(LAMP, "pressed", first.drift)
     assert [test.uses for test in second.drift.tests] == [16, 16]
     other = LAMP | {"press.sd": PRESS.replace("0.9", "0.8")}
-    third, _ = await played(other, cache_dir, "pressed", second.drift)
+    third, _ = await played(other, "pressed", second.drift)
     assert [test.uses for test in third.drift.tests] == [8, 8]

@@ -35,17 +35,17 @@ def speaking(code: str) -> dict[str, str]:
     return LAMP | {"tell.sd": f"project: lamp\ndynamic_model:\n{code}\n"}
 
 
-async def test_a_response_is_any_text(cache_dir: Path):
+async def test_a_response_is_any_text():
     code = r'__moduleResponseStr = AOS.Bernoulli(0.25) ? "a\tb\n\\n\"é" : "";'
-    async with engine_of_text(speaking(code), cache_dir) as engine:
+    async with engine_of_text(speaking(code)) as engine:
         told = {each.response: each.probability for each in (await engine.predict(1)).predicted}
         assert told == {'a\tb\n\\n"é': pytest.approx(0.25), "": pytest.approx(0.75)}
         assert (await engine.update("tell", 'a\tb\n\\n"é')).probability == pytest.approx(0.25)
 
 
-async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line(cache_dir: Path):
+async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line():
     async with engine_of_text(
-        speaking('__moduleResponseStr = "aé";\n__moduleResponseStr.pop_back();'), cache_dir
+        speaking('__moduleResponseStr = "aé";\n__moduleResponseStr.pop_back();')
     ) as engine:
         with pytest.raises(ModelError, match="no UTF-8 at its byte 1") as caught:
             await engine.predict(1)
@@ -54,7 +54,7 @@ async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line(cache_d
 
 
 async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path):
-    built = await built_text(LAMP, cache_dir)
+    built = await built_text(LAMP)
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
     wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
     project = text_project(wider)
@@ -84,7 +84,7 @@ async def refused(documents: dict[str, str], cache_dir: Path) -> Diagnostic:
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
     project = text_project(documents)
     good = counting("lamp", "press", steps="1000")
-    async with engine_of_text(good, cache_dir) as engine:
+    async with engine_of_text(good) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
     return refusal
@@ -113,16 +113,16 @@ async def test_of_slow_code_in_many_places_the_environment_document_is_told(cach
     assert "no one place" in refusal.message
 
 
-async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path):
-    built = await built_text(LAMP, cache_dir)
+async def test_an_engine_that_does_not_understand_says_so(tmp_path: Path):
+    built = await built_text(LAMP)
     command = [str(built.executable), "-1", "-1", "1", "widen", "12"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
     answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=HANG_S)
     assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS217"
 
 
-async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_what_to_report(cache_dir: Path):
-    built = await built_text(LAMP, cache_dir)
+async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_what_to_report():
+    built = await built_text(LAMP)
     child = await EngineChild.start(built, EngineStart(seed=1, policy="widen"))
     try:
         with pytest.raises(EngineDefectError, match=r"AOS217.*please report it with the bundle") as caught:
@@ -133,11 +133,9 @@ async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_wha
         await child.close()
 
 
-async def test_a_model_that_prints_without_end_fills_no_log(
-    cache_dir: Path, capfd: pytest.CaptureFixture[str]
-):
+async def test_a_model_that_prints_without_end_fills_no_log(capfd: pytest.CaptureFixture[str]):
     shouting = LAMP["press.sd"] + "printf(\"%s\\n\", string(4000, 'x').c_str());\n"
-    built = await built_text(LAMP | {"press.sd": shouting}, cache_dir)
+    built = await built_text(LAMP | {"press.sd": shouting})
     async with engine_of(built) as engine:
         await engine.rate(0.3, seed=1)
     printed = capfd.readouterr().err

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import engine_of_text
 
@@ -61,8 +59,8 @@ __moduleResponse = high;
 """The only skill that play-outs prefer cannot be run."""
 
 
-async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path):
-    async with engine_of_text(GAUGE, cache_dir) as engine:
+async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do():
+    async with engine_of_text(GAUGE) as engine:
         first = await engine.update("read", "high")
         plan = await engine.plan(simulations=1000, seed=1, planner="pomcp")
         second = await engine.update("read", "high")
@@ -73,8 +71,8 @@ async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(ca
     assert plan.predicted[0].probability == pytest.approx(2 / 3, abs=0.03)
 
 
-async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path):
-    async with engine_of_text(SWITCHES, cache_dir) as engine:
+async def test_too_many_combinations_of_draws_are_sampled():
+    async with engine_of_text(SWITCHES) as engine:
         summary = await engine.summary()
         update = await engine.update("read", "high")
     assert not summary.is_exact
@@ -83,8 +81,8 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path):
     assert min(int(value) for value in update.summary.marginals[0].values) >= 13
 
 
-async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(cache_dir: Path):
-    async with engine_of_text(TEMPTING, cache_dir) as engine:
+async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs():
+    async with engine_of_text(TEMPTING) as engine:
         plan = await engine.plan(simulations=2, seed=1, planner="pomcp")
     values = {value.action: value for value in plan.actions}
     assert (values["leap"].n, values["read"].n) == (1, 1)
@@ -118,11 +116,9 @@ __moduleResponse = high;
 
 
 @pytest.mark.parametrize(("leap", "best"), [("-3", "read"), ("-1", "leap")])
-async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
-    leap: str, best: str, cache_dir: Path
-):
+async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(leap: str, best: str):
     files = PREJUDICED | {"leap.sd": PREJUDICED["leap.sd"].format(leap=leap)}
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         plan = await engine.plan(simulations=10_000, seed=1, planner="pomcp")
     assert plan.best.action == best
     five_steps = (1 - 0.95**5) / 0.05
@@ -132,13 +128,13 @@ async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
         assert -five_steps - 0.95**3 - 0.95**4 - 0.15 < plan.best.q < -five_steps + 0.15
 
 
-async def test_what_holds_in_every_particle_is_certain_whatever_their_weights_sum_up_to(cache_dir: Path):
+async def test_what_holds_in_every_particle_is_certain_whatever_their_weights_sum_up_to():
     counted = (
         "state_variable: int hour\nextrinsic_code:\nstate_.hour++;\n"
         "reward_code:\nif (state.hour >= 5) __isGoalState = true, __reward = 1;\n"
     )
     files = {**GAUGE, "gauge.ef": GAUGE["gauge.ef"].replace("initial_belief", f"{counted}\ninitial_belief")}
-    async with engine_of_text(files, cache_dir, seed=2) as engine:
+    async with engine_of_text(files, seed=2) as engine:
         for response in ("high", "low", "high", "high"):
             before = await engine.update("read", response)
             assert before.summary.goal_probability == 0

@@ -169,8 +169,8 @@ def approximately(odds: dict[int, Fraction]) -> dict[str, float]:
     return {str(value): pytest.approx(float(odds), abs=1e-12) for value, odds in odds.items()}
 
 
-async def test_beliefs_and_values_after_loops_are_closed_forms(cache_dir: Path):
-    async with engine_of_text(FILES, cache_dir) as engine:
+async def test_beliefs_and_values_after_loops_are_closed_forms():
+    async with engine_of_text(FILES) as engine:
         start = await engine.summary()
         sides = {str(side): pytest.approx(float(odds), abs=1e-12) for side, odds in SIDES.items()}
         assert start.is_exact

@@ -1,7 +1,6 @@
 """The claims of a mission where skills fail, and with what it goes on: docs/when-a-skill-fails.md."""
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 import pytest
 from models import built_text, engine_of_text
@@ -68,8 +67,8 @@ Build = Callable[[Mapping[str, str]], BuiltModel]
 
 
 @pytest.fixture
-async def tutorial(cache_dir: Path) -> BuiltModel:
-    return await built_text(fetch(look=LOOK, take=TAKE), cache_dir)
+async def tutorial() -> BuiltModel:
+    return await built_text(fetch(look=LOOK, take=TAKE))
 
 
 def goals(around: Surroundings) -> list[float]:
@@ -88,8 +87,8 @@ async def test_a_jammed_arm_never_reaches_the_goal(tutorial: BuiltModel):
 
 
 @pytest.mark.parametrize("look", [jammed, lambda request: observed(request, "fine_weather")])
-async def test_beside_a_camera_that_always_fails_or_says_words_of_no_document_the_robot_asks(look, cache_dir):
-    built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
+async def test_beside_a_camera_that_always_fails_or_says_words_of_no_document_the_robot_asks(look):
+    built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE))
     answers = {"ask": "said_right", "take": "taken"}
 
     def robot(request: Activate) -> Outcome:
@@ -127,8 +126,8 @@ __reward = state__.is_taken ? -2 : -20;
 """
 
 
-async def test_what_follows_from_the_remedy_of_nonsense_alone_is_not_claimed(cache_dir: Path):
-    built = await built_text(fetch(look=LOOK, ask=ASK, take=SURE_TAKE), cache_dir)
+async def test_what_follows_from_the_remedy_of_nonsense_alone_is_not_claimed():
+    built = await built_text(fetch(look=LOOK, ask=ASK, take=SURE_TAKE))
 
     def robot(request: Activate) -> Outcome:
         answers = {"look": "seen_left", "ask": "said_left", "take": "missed"}
@@ -159,8 +158,8 @@ __reward = -0.5;
 """
 
 
-async def test_observations_can_refute_that_nothing_ran(cache_dir: Path):
-    async with engine_of_text(fetch(take=TAKE, feel=FEEL), cache_dir) as engine:
+async def test_observations_can_refute_that_nothing_ran():
+    async with engine_of_text(fetch(take=TAKE, feel=FEEL)) as engine:
         ran = await engine.update_without_observation("take(side=left_side)", ran_probability=0.5)
         assert ran.summary.goal_probability == pytest.approx(0.5 * 0.5 * 0.9)
         assert ran.summary.cautious == EndingOdds(0.0, 0.0, 0.0)
@@ -181,10 +180,10 @@ __reward = -6;
 """
 
 
-async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_taken(cache_dir: Path):
+async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_taken():
     only_costs = fetch(look=LOOK.replace("-0.3", "-2"), take=TAKE.replace("-20", "-2"), grab=GRAB)
     only_costs["fetch.ef"] = SHELF.replace("__reward = 20", "__isFailureState = false")
-    built = await built_text(only_costs, cache_dir)
+    built = await built_text(only_costs)
 
     def robot(request: Activate) -> Outcome:
         answers = {"look": "seen_left", "grab": "grabbed"}
@@ -196,9 +195,9 @@ async def test_where_steps_only_cost_a_skill_that_leads_to_the_goal_is_still_tak
     assert skills.count("take") == 3
 
 
-async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason(cache_dir: Path):
+async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the_reason():
     dear = fetch(look=LOOK, take=TAKE, grab=GRAB.replace("-6", "-30"))
-    built = await built_text(dear, cache_dir)
+    built = await built_text(dear)
 
     limits = MissionLimits(goal_probability=0.9, step_limit=40, stop_below_value=0.0)
     state, around = await run_mission(built, sees_left_and(jammed), limits=limits)
@@ -207,8 +206,8 @@ async def test_where_what_is_left_is_too_poor_the_skill_that_is_set_aside_is_the
     assert "grab" not in [record.skill for record in around.decisions]
 
 
-async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure(cache_dir: Path):
-    built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE), cache_dir)
+async def test_a_skill_comes_back_after_its_pause_and_goes_with_one_more_failure():
+    built = await built_text(fetch(look=GOOD_LOOK, ask=ASK, take=TAKE))
     around = Surroundings(jammed)
     around.clock = clock = Clock()
 
@@ -230,7 +229,7 @@ def told_failure(request: Activate, response: str) -> Outcome:
     return Outcome(request.id, request.skill, "observed", response, fault=fault)
 
 
-async def test_failures_that_a_rule_tells_count_by_how_improbable_they_are(cache_dir: Path):
+async def test_failures_that_a_rule_tells_count_by_how_improbable_they_are():
     look = """project: fetch
 dynamic_model:
 bool seems_left = AOS.Bernoulli(0.97) == (state.thing_at == Left);
@@ -238,7 +237,7 @@ bool works = AOS.Bernoulli(0.5);
 __moduleResponse = works ? (seems_left ? seen_left : seen_right) : no_picture;
 __reward = -0.1;
 """
-    built = await built_text(fetch(ask=ASK, take=TAKE, look=look), cache_dir)
+    built = await built_text(fetch(ask=ASK, take=TAKE, look=look))
 
     def robot(request: Activate) -> Outcome:
         answers = {"ask": "said_right", "take": "taken"}

@@ -1,5 +1,4 @@
 import json
-from pathlib import Path
 
 import pytest
 from mappings import mapping_text
@@ -152,8 +151,8 @@ async def fault_of(built: BuiltModel, skill: str, name: str) -> ModelError:
     ("name", "document"),
     [*((name, "slip.sd") for name in FAULTS), ("eLambda", "trip.json"), ("eResponse", "trip.json")],
 )
-async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_dir: Path):
-    fault = await fault_of(await built_text(BUNDLE, cache_dir), document.partition(".")[0], name)
+async def test_a_fault_is_told_at_its_statement(name: str, document: str):
+    fault = await fault_of(await built_text(BUNDLE), document.partition(".")[0], name)
     (diagnostic,) = fault.diagnostics
     code, message = FAULTS[name]
     file, text = ("ward.ef", WARD) if name == "eShared" else (document, DOCUMENTS[document])
@@ -192,9 +191,9 @@ __moduleResponse = drawn;
 """
 
 
-async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot(cache_dir: Path):
+async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot():
     drawing = ANSWERING.replace("ward", "board").replace("response: ok", "response: drawn")
-    built = await built_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing}, cache_dir)
+    built = await built_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing})
     async with engine_of(built) as running:
         await running.reset_world(1)
         await running.step_world(0)  # Theirs, then ours; with their second mark the board is full.

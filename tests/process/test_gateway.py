@@ -67,20 +67,20 @@ def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(pa
     assert (unknown.status, unknown.json["code"]) == (404, "AOS501")
 
 
-def test_a_run_that_somebody_has_sent_is_shown(past: tuple[Gateway, str], tmp_path: Path, cache_dir: Path):
+def test_a_run_that_somebody_has_sent_is_shown(past: tuple[Gateway, str], tmp_path: Path):
     served, name = past
     file = tmp_path / "sent.aosrun"
     write_bundle([served.folder / "runs" / name], file)
-    with gateway(tmp_path, cache_dir, str(file)) as other:
+    with gateway(tmp_path, str(file)) as other:
         (run,) = other.ask("/v1/runs").json["runs"]
         assert (run["run"], run["ending"]) == (name, "goal")
         path = f"/v1/missions/{name}/trace"
         assert other.ask(path).json == served.ask(path).json
 
 
-def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path):
+def test_a_mission_tells_the_address_of_its_page(tmp_path: Path):
     said = tmp_path / "said"
-    run = played(tmp_path, cache_dir, "--page", said=said)
+    run = played(tmp_path, "--page", said=said)
     note = json.loads((tmp_path / "gateway/gateway.json").read_text())
     try:
         found = re.search(
@@ -97,9 +97,9 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path: Path, cache_dir: Path
         os.kill(note["pid"], signal.SIGTERM)
 
 
-def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path: Path, cache_dir: Path):
-    with gateway(tmp_path, cache_dir, "--runs", str(tmp_path / "others")) as served:
-        run = played(tmp_path, cache_dir, "--page")
+def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path: Path):
+    with gateway(tmp_path, "--runs", str(tmp_path / "others")) as served:
+        run = played(tmp_path, "--page")
         assert served.ask(f"/v1/missions/{run.name}").json["state"]["ending"] == "goal"
 
 
@@ -309,7 +309,7 @@ def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(past: tuple[Gatew
 
 
 def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_stop_it(
-    living: tuple[Gateway, Path], cache_dir: Path
+    living: tuple[Gateway, Path],
 ):
     served, run = living
     path, stream = f"/v1/missions/{run.name}", f"/v1/events?mission={run.name}"
@@ -325,7 +325,7 @@ def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_s
         assert outcome["record"]["outcome"]["response"] == "tiger_left"
 
     # A stream that comes back gets each record once, also from a gateway that was started again.
-    with gateway(served.folder, cache_dir) as again, again.events(stream, last=last) as events:
+    with gateway(served.folder) as again, again.events(stream, last=last) as events:
         decisions = (data["record"]["sequence"] for _, kind, data in events if kind == "decision")
         assert [next(decisions) for _ in range(2)] == [1, 2]
 
@@ -347,10 +347,8 @@ def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_s
     assert end["ending"] == "cancelled"
 
 
-def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(
-    tmp_path: Path, cache_dir: Path
-):
-    with worn_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(tmp_path: Path):
+    with worn_system(tmp_path) as run, gateway(tmp_path) as served:
         path = f"/v1/runs/{run.name}/missions"
         assert served.ask(f"/v1/missions/{run.name}-1").json["parameters"] == {"room": "hall"}
         refused = served.post(path, {"given": ["state.is_lit == maybe"]})

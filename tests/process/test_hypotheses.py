@@ -1,6 +1,5 @@
 import os
 import signal
-from pathlib import Path
 
 import pytest
 from models import built_text, engine_of, engine_of_text
@@ -36,8 +35,8 @@ __moduleResponse = AOS.Bernoulli(0.8) == state.red ? light : darkness;
 
 
 @pytest.fixture
-async def lamps(cache_dir: Path) -> Engine:
-    async with engine_of_text(LAMPS, cache_dir) as engine:
+async def lamps() -> Engine:
+    async with engine_of_text(LAMPS) as engine:
         yield engine
 
 
@@ -135,8 +134,8 @@ async def test_hypotheses_outlive_the_engine(lamps: Engine):
     assert await lamps.export_beliefs() == wanted
 
 
-async def test_hypotheses_move_to_another_engine(cache_dir: Path):
-    built = await built_text(LAMPS, cache_dir)
+async def test_hypotheses_move_to_another_engine():
+    built = await built_text(LAMPS)
     async with engine_of(built) as old, engine_of(built) as new:
         await lost(old, "red")
         await lost(old, "blue", times=2)

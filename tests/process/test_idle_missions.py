@@ -1,5 +1,3 @@
-from pathlib import Path
-
 from models import built_text
 from scripted_missions import Surroundings, observed, run_mission
 from wide.writing import BundleWriter
@@ -42,10 +40,8 @@ if (state.is_through) __isGoalState = true;
     return writer.files
 
 
-async def _mission(
-    by_itself: str, limits: MissionLimits, cache_dir: Path
-) -> tuple[MissionState, Surroundings]:
-    built = await built_text(_door(by_itself), cache_dir)
+async def _mission(by_itself: str, limits: MissionLimits) -> tuple[MissionState, Surroundings]:
+    built = await built_text(_door(by_itself))
     return await run_mission(
         built,
         lambda request: observed(request, "closed"),
@@ -54,21 +50,21 @@ async def _mission(
     )
 
 
-async def test_the_step_limit_and_each_record_tell_that_nothing_happened(cache_dir: Path):
-    state, around = await _mission("", MissionLimits(step_limit=7), cache_dir)
+async def test_the_step_limit_and_each_record_tell_that_nothing_happened():
+    state, around = await _mission("", MissionLimits(step_limit=7))
     assert state.ending == "step_limit"
     assert state.remark == f"the step limit of 7 is reached; the last 7 decisions {_SAID}"
     assert "which changes nothing and tells nothing" in around.decisions[0].why
 
 
-async def test_a_mission_that_may_stop_for_nothing_gives_up(cache_dir: Path):
-    state, _around = await _mission("", MissionLimits(step_limit=9, stop_below_value=0), cache_dir)
+async def test_a_mission_that_may_stop_for_nothing_gives_up():
+    state, _around = await _mission("", MissionLimits(step_limit=9, stop_below_value=0))
     assert (state.ending, state.step) == ("nothing_worthwhile", 4)
     assert state.remark == f"the last 5 decisions {_SAID}"
 
 
-async def test_who_waits_for_what_happens_by_itself_is_not_idle(cache_dir: Path):
+async def test_who_waits_for_what_happens_by_itself_is_not_idle():
     opens = "if (!state.is_open) state_.is_open = AOS.Bernoulli(0.3);"
-    state, around = await _mission(opens, MissionLimits(step_limit=7, stop_below_value=0), cache_dir)
+    state, around = await _mission(opens, MissionLimits(step_limit=7, stop_below_value=0))
     assert state.ending == "step_limit"
     assert "changes nothing" not in around.decisions[0].why

@@ -1,5 +1,4 @@
 from collections.abc import AsyncIterator
-from pathlib import Path
 
 import pytest
 from mappings import mapping_text
@@ -53,8 +52,8 @@ NOW_VARIABLE = FILES | {"read.sd": READ.replace("dynamic_model:\n", "dynamic_mod
 
 
 @pytest.fixture
-async def engine(cache_dir: Path) -> AsyncIterator[Engine]:
-    async with engine_of_text(FILES, cache_dir) as engine:
+async def engine() -> AsyncIterator[Engine]:
+    async with engine_of_text(FILES) as engine:
         yield engine
 
 
@@ -77,14 +76,12 @@ async def test_a_correction_keeps_what_is_known_of_the_error(engine: Engine):
     assert update.summary.error_bound == pytest.approx(before.error_bound / update.probability)
 
 
-async def test_a_belief_goes_over_in_pieces_to_documents_with_other_constants(
-    engine: Engine, cache_dir: Path
-):
+async def test_a_belief_goes_over_in_pieces_to_documents_with_other_constants(engine: Engine):
     before = (await engine.update("read", "yes")).summary
     belief = await engine.export_belief()
     assert sum(len(state) for _, state in belief.particles) > ANSWER_LIMIT_BYTES
     assert belief.constants == {"unit": "3"}
-    async with engine_of_text(NOW_VARIABLE, cache_dir) as other:
+    async with engine_of_text(NOW_VARIABLE) as other:
         after = await other.import_belief(belief)
         moved = await other.export_belief()
         back = await engine.import_belief(moved)

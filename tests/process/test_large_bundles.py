@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from large_bundles import long_array, many_variables
 from models import engine_of_text
@@ -22,8 +20,8 @@ def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]):
     assert {finding.code for finding in found} <= {"AOS139"}  # There is no goal.
 
 
-async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path):
-    async with engine_of_text(many_variables(VARIABLES), cache_dir) as engine:
+async def test_a_thousand_variables_are_believed_one_by_one():
+    async with engine_of_text(many_variables(VARIABLES)) as engine:
         belief = (await engine.update("act(at=2)", "one")).summary
         again = (await engine.update("act(at=1)", "one")).summary
         exported = await engine.export_belief()
@@ -37,8 +35,8 @@ async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path):
     assert taken_over == again
 
 
-async def test_a_long_array_is_believed_element_by_element(cache_dir: Path):
-    async with engine_of_text(long_array(ELEMENTS, drawn=5), cache_dir) as engine:
+async def test_a_long_array_is_believed_element_by_element():
+    async with engine_of_text(long_array(ELEMENTS, drawn=5)) as engine:
         belief = (await engine.update("act(at=1)", "one")).summary
         plan = await engine.plan(simulations=50, seed=1, planner="pomcp")
     assert belief.states == 32

@@ -133,21 +133,19 @@ state__.full[state.at] = false;
 """A robot before 16 shelves: a million states. Looks at all shelves lead to the same states."""
 
 
-async def _why(documents: dict[str, str], cache_dir: Path) -> str:
-    built = await built_text(documents, cache_dir)
+async def _why(documents: dict[str, str]) -> str:
+    built = await built_text(documents)
     async with engine_of(built) as engine:
         return (await engine.plan(simulations=500, seed=3, planner="pomcp")).why
 
 
-async def test_values_of_a_million_states_are_computed(cache_dir: Path):
-    why = await _why(SHELVES, cache_dir)
+async def test_values_of_a_million_states_are_computed():
+    why = await _why(SHELVES)
     assert f"without observations all {16 * 2**16} can be" in why
 
 
-async def test_values_are_learned_where_tables_of_few_variables_hold_them_and_with_the_same_seed_the_same(
-    cache_dir: Path,
-):
-    built = await built_text(COINS, cache_dir)
+async def test_values_are_learned_where_tables_of_few_variables_hold_them_and_with_the_same_seed_the_same():
+    built = await built_text(COINS)
     plans = []
     for _ in range(2):
         async with engine_of(built) as engine:
@@ -156,8 +154,8 @@ async def test_values_are_learned_where_tables_of_few_variables_hold_them_and_wi
     assert plans[0].actions == plans[1].actions
 
 
-async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much(cache_dir: Path):
-    assert "learned" not in await _why(BERRIES, cache_dir)
+async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much():
+    assert "learned" not in await _why(BERRIES)
 
 
 async def test_what_missions_return_is_told_where_values_are_learned(tmp_path: Path):
@@ -169,11 +167,9 @@ async def test_what_missions_return_is_told_where_values_are_learned(tmp_path: P
     assert abs(told.value - told.returned) < 2 * told.error
 
 
-async def test_played_missions_never_take_what_everybody_knows_not_to_be_possible(
-    cache_dir: Path, tmp_path: Path
-):
+async def test_played_missions_never_take_what_everybody_knows_not_to_be_possible(tmp_path: Path):
     """A state that is left without others to choose for it takes an action whose precondition holds."""
-    assert "what states are worth is learned" in await _why(JAMMING_COINS, cache_dir)
+    assert "what states are worth is learned" in await _why(JAMMING_COINS)
     write_texts(JAMMING_COINS, tmp_path)
     told = await told_of_bundle(tmp_path, "pomcp", missions=1, seed=1, seconds=None, simulations=300)
     assert -20 < told.returned < -5

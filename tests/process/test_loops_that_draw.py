@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import engine_of_text
 
@@ -67,12 +65,12 @@ __moduleResponse = yes;
 """
 
 
-async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir: Path):
+async def test_loops_are_followed_whatever_the_order_of_their_outcomes():
     files = {"loops.ef": ENVIRONMENT}
     for name, (loop, _) in LOOPS.items():
         files |= {f"{name}.sd": SKILL.format(loop=loop)}
     files |= {"weights.sd": MANY_WEIGHTS}
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         names = [action.name for action in engine.description.actions]
         start = await engine.summary()
         assert start.marginals[0].values == {"1": pytest.approx(2 / 3), "0": pytest.approx(1 / 3)}
@@ -131,9 +129,9 @@ __moduleResponse = placed;
 """
 
 
-async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_dir: Path):
+async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes():
     files = {"slots.ef": SLOTS, "place.sd": PLACE}
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         # The reward before the loop is not earned.
         values = await engine.exact_values(horizon=1)
         assert values.values[0].q == pytest.approx(0.25 * 9 + 0.375 * 5 - 0.375 * 4)
@@ -147,9 +145,9 @@ async def test_a_step_that_never_ends_is_a_failure_that_nobody_observes(cache_di
         assert "state.is_full[Left]=true, state.is_full[Right]=true" in loop.state
 
 
-async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision(cache_dir: Path):
+async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decision():
     files = {"slots.ef": SLOTS, "place.sd": PLACE}
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         chooser = Chooser(
             Terms(name="m", search=Search(simulations=100, seed=1)), Failures(), QuietPorts(), RiskBudget(())
         )
@@ -159,10 +157,10 @@ async def test_a_mission_tells_a_loop_without_an_end_in_the_record_of_one_decisi
     assert [why.count("place.sd:9:1: this loop never ends in") for why in whys] == [1, 0]
 
 
-async def test_a_loop_that_draws_without_an_end_is_told_at_its_line(cache_dir: Path):
+async def test_a_loop_that_draws_without_an_end_is_told_at_its_line():
     files = {"loops.ef": ENVIRONMENT, "turn.sd": ENDLESS}
     with pytest.raises(ModelError) as raised:
-        async with engine_of_text(files, cache_dir) as engine:
+        async with engine_of_text(files) as engine:
             await engine.update("turn", "yes")
     assert raised.value.code == "AOS211"
     (diagnostic,) = raised.value.diagnostics

@@ -20,18 +20,18 @@ def samples(served: Gateway) -> dict[str, float]:
 
 
 @contextmanager
-def resumed(run: Path, cache_dir: Path) -> Iterator[None]:
-    with running(run.parents[1], cache_dir, "aos-up", "--resume", run, "--json") as process:
+def resumed(run: Path) -> Iterator[None]:
+    with running(run.parents[1], "aos-up", "--resume", run, "--json") as process:
         assert process.stdout is not None
         next(line for line in process.stdout if json.loads(line)["event"] == "decision")
         yield
 
 
-def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cache_dir: Path):
+def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path):
     write_long_run(tmp_path / "runs", 2)
-    with gateway(tmp_path, cache_dir) as served:
+    with gateway(tmp_path) as served:
         assert served.ask("/metrics").status == 404
-    with gateway(tmp_path, cache_dir, "--metrics") as served, slow_system(tmp_path, cache_dir) as run:
+    with gateway(tmp_path, "--metrics") as served, slow_system(tmp_path) as run:
         assert served.ask("/metrics", has_token=False).status == 401
         begun = samples(served)
         assert not [name for name in begun if "marathon" in name]  # It counts nothing of before.
@@ -62,7 +62,7 @@ def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path, cac
 
 
 def test_a_run_that_was_killed_and_taken_up_is_counted_once_also_by_who_was_not_asked_meanwhile(
-    tmp_path: Path, cache_dir: Path
+    tmp_path: Path,
 ):
     running, killed, cancelled = (
         f"aos_missions_{what}}}"
@@ -73,9 +73,9 @@ def test_a_run_that_was_killed_and_taken_up_is_counted_once_also_by_who_was_not_
         )
     )
     with (
-        slow_system(tmp_path, cache_dir) as run,
-        gateway(tmp_path, cache_dir, "--metrics") as served,
-        gateway(tmp_path, cache_dir, "--metrics") as asked,
+        slow_system(tmp_path) as run,
+        gateway(tmp_path, "--metrics") as served,
+        gateway(tmp_path, "--metrics") as asked,
     ):
         assert samples(asked)[running] == samples(served)[running] == 1
         os.kill(json.loads((run / "run.json").read_text())["pid"], signal.SIGKILL)
@@ -84,9 +84,9 @@ def test_a_run_that_was_killed_and_taken_up_is_counted_once_also_by_who_was_not_
         for one in (served, asked):
             assert samples(one)[killed] == 1
             assert running not in samples(one)
-        with gateway(tmp_path, cache_dir, "--metrics") as later:
+        with gateway(tmp_path, "--metrics") as later:
             assert killed not in samples(later)
-            with resumed(run, cache_dir):
+            with resumed(run):
                 assert asked.ask(f"/v1/runs/{run.name}").json["is_running"] is True
                 assert samples(asked)[running] == 1
             assert served.ask(f"/v1/runs/{run.name}").json["ending"] == "cancelled"

@@ -22,8 +22,8 @@ ANSWERS = {
 
 
 @pytest.fixture
-async def finer(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "armadillo-finer", cache_dir)
+async def finer(bundles: Path) -> BuiltModel:
+    return await built_bundle(bundles / "armadillo-finer")
 
 
 async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(finer: BuiltModel):
@@ -180,12 +180,12 @@ FIELD_SKILLS = {
 
 
 @pytest.fixture
-async def field(cache_dir: Path) -> BuiltModel:
+async def field() -> BuiltModel:
     """A field that is first flooded in the north, and then watered in the south."""
     files = {"field.ef": FIELD}
     for skill, code in FIELD_SKILLS.items():
         files[f"{skill}.sd"] = f"project: field\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
-    return await built_text(files, cache_dir)
+    return await built_text(files)
 
 
 def done(request: Activate) -> Outcome:
@@ -302,14 +302,14 @@ async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(
     assert state.ending == "cancelled"
 
 
-async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over(cache_dir: Path):
+async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over():
     spray = "state__.is_sprayed = true;"
     skills = {"inspect": "__reward = 0;", "spray": spray}
     environment = FIELD.replace("field", "row").replace("is_watered", "is_sprayed")
     files = {"row.ef": environment.replace("0.95", "1.0")}
     for skill, code in skills.items():
         files[f"{skill}.sd"] = f"project: row\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
-    row = await built_text(files, cache_dir)
+    row = await built_text(files)
     around = Surroundings(done)
     around.announced = dict.fromkeys(skills, 1)
     around.unavailable = {"spray": "its adapter has left"}

@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from commands import aos
-from models import built_bundle, built_text, engine_of
+from models import built_bundle, built_project, built_text, engine_of
 from processes import COMMAND_S, HANG_S
 from scripted_models import text_project
 
@@ -22,7 +22,6 @@ from aos_protocol.errors import DocumentError, PlanningError
 from aos_protocol.messages import MissionBegun, ProjectRevision
 from aos_runtime.disk.journal import Journal
 from aos_solver.building.build import BuiltModel
-from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.model_shelf import ModelShelf
 from aos_solver.mission.models.past import Evidence, Past, updated
@@ -46,15 +45,15 @@ def with_constant(bundle: Path, person: str) -> dict[str, str]:
     return files
 
 
-async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Path, cache_dir: Path):
-    built = await built_bundle(bundles / "errand", cache_dir)
+async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Path):
+    built = await built_bundle(bundles / "errand")
     async with engine_of(built) as engine:
         pids = set()
         for person in ("alice", "bob", "alice"):
             await engine.start_with({"target": person})
             pids.add(engine.pid)
             assert engine.description.mission_parameters == {"target": person}
-            constant = await built_text(with_constant(bundles / "errand", person), cache_dir)
+            constant = await built_text(with_constant(bundles / "errand", person))
             async with engine_of(constant) as written:
                 truth = await exact_values(written)
                 assert [a.name for a in engine.description.actions] == list(truth)
@@ -65,10 +64,8 @@ async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Pa
         assert len(pids) == 3
 
 
-async def test_an_engine_that_is_killed_comes_back_with_its_values_and_its_belief(
-    bundles: Path, cache_dir: Path
-):
-    built = await built_bundle(bundles / "errand", cache_dir)
+async def test_an_engine_that_is_killed_comes_back_with_its_values_and_its_belief(bundles: Path):
+    built = await built_bundle(bundles / "errand")
     async with engine_of(msgspec.structs.replace(built, mission_values={"target": "bob"})) as engine:
         await engine.update("look", "nobody")
         before = await engine.export_belief()
@@ -126,12 +123,10 @@ if (state.dock.near == soda) __reward += 1000;
         (["far_m=7", "word=ßo", "dock.near=soda"], 10 + 7 + 200 + 1000),
     ],
 )
-async def test_defaults_and_initial_values_follow_from_what_is_set(
-    cache_dir: Path, options: list[str], value: float
-):
+async def test_defaults_and_initial_values_follow_from_what_is_set(options: list[str], value: float):
     values = tuple(map(mission_value_of_option, options))
     project = msgspec.structs.replace(text_project(PARTS), mission_values=values)
-    built = await build_project(project, cache_dir)
+    built = await built_project(project)
     async with engine_of(built) as engine:
         assert await exact_values(engine) == {"act": value}
 

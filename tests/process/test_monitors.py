@@ -26,8 +26,8 @@ BATTERY = Path(__file__).parents[1] / "data" / "bundles" / "battery"
 
 
 @pytest.fixture
-async def battery(cache_dir: Path) -> BuiltModel:
-    return await built_bundle(BATTERY, cache_dir)
+async def battery() -> BuiltModel:
+    return await built_bundle(BATTERY)
 
 
 @pytest.fixture

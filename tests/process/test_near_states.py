@@ -80,9 +80,9 @@ __reward = -3;
 
 
 @pytest.fixture
-async def counted_tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
+async def counted_tiger(bundles: Path) -> BuiltModel:
     files = {file.name: file.read_text() for file in sorted((bundles / "bench" / "tiger").iterdir())}
-    return await built_text(files | {"tiger.ef": files["tiger.ef"] + COUNT}, cache_dir)
+    return await built_text(files | {"tiger.ef": files["tiger.ef"] + COUNT})
 
 
 async def decide(engine: Engine, horizon: int) -> Plan:
@@ -91,10 +91,8 @@ async def decide(engine: Engine, horizon: int) -> Plan:
     return plan
 
 
-async def test_a_count_that_matters_to_nothing_moves_no_bound(
-    bundles: Path, cache_dir: Path, counted_tiger: BuiltModel
-):
-    plain = await built_bundle(bundles / "bench" / "tiger", cache_dir)
+async def test_a_count_that_matters_to_nothing_moves_no_bound(bundles: Path, counted_tiger: BuiltModel):
+    plain = await built_bundle(bundles / "bench" / "tiger")
     async with engine_of(plain) as engine, engine_of(counted_tiger) as counted:
         exact = {value.action: value.q for value in (await engine.exact_values(6)).actions}
         plan = await decide(counted, 6)
@@ -117,8 +115,8 @@ async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: Bui
         assert plan.best.at_least == pytest.approx(first.best.at_least, abs=0.2)
 
 
-async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path):
-    built = await built_text(VACUUM, cache_dir)
+async def test_a_robot_with_a_battery_without_bounds_comes_home():
+    built = await built_text(VACUUM)
     search = Search(simulations=3_000, seed=1)
     async with engine_of(built) as engine:
         runs = [
@@ -129,9 +127,7 @@ async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path)
     assert [run.world_ending for run in runs] == ["goal", "goal"]
 
 
-async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_the_only_reward(
-    cache_dir: Path,
-):
+async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_the_only_reward():
     """The states that lead to a reward are found one by one, and not in one pass for each step of the way."""
     files = {
         "count.ef": "project: count\nhorizon: 2\ndiscount: 0.9\nstate_variable: int count\n"
@@ -139,7 +135,7 @@ async def test_a_belief_is_decided_on_that_is_a_hundred_thousand_steps_before_th
         "reward_code:\nif (state.count >= 99000) { __reward = 10; __isGoalState = true; }\n",
         "step.sd": "project: count\ndynamic_model:\nstate__.count++;\n__moduleResponse = done;\n",
     }
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         plan = await engine.plan(simulations=20, seed=1, planner="sarsop")
     assert plan.planner == "sarsop"
     assert plan.actions[0].q == pytest.approx(0, abs=1e-6)

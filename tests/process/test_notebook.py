@@ -35,13 +35,13 @@ print(json.dumps([len(names["behind_left"]), names["state"].held_by != "", names
 """Runs each cell as a task of its own in one loop, as IPython does."""
 
 
-def test_the_notebook_starts_follows_steers_studies_and_plots(root: Path, tmp_path: Path, cache_dir: Path):
+def test_the_notebook_starts_follows_steers_studies_and_plots(root: Path, tmp_path: Path):
     (tmp_path / "deploy").symlink_to(root / "deploy")
     (tmp_path / "docs").mkdir()
     done = subprocess.run(
         [sys.executable, "-W", "ignore::UserWarning", "-c", RUN_CELLS, root / "docs/notebook.ipynb"],
         cwd=tmp_path / "docs",
-        env=environment(tmp_path, cache_dir),
+        env=environment(tmp_path),
         capture_output=True,
         text=True,
         timeout=COMMAND_S,

@@ -1,6 +1,5 @@
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -126,9 +125,9 @@ EXACT = gauge(
 """Skills whose numbers leave beliefs exact."""
 
 
-async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path):
+async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule():
     """The noise depends on the state, so that both the mean and the deviation tell."""
-    async with engine_of_text(EXACT, cache_dir) as engine:
+    async with engine_of_text(EXACT) as engine:
         belief = dict(enumerate(PRIOR))
         for depth in (1.3, -0.4, 2.9, 3.3):
             likelihood = {level: normal(depth, 2.0 * level, 1.0 + 0.5 * level) for level in belief}
@@ -141,7 +140,7 @@ async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(c
 
 
 @pytest.mark.parametrize(("kind", "beeps"), [(0, True), (1, False), (-1, None)])
-async def test_several_numbers_and_a_response_count_together(kind: int, beeps: bool | None, cache_dir: Path):
+async def test_several_numbers_and_a_response_count_together(kind: int, beeps: bool | None):
     """Discrete draws by their probability; also whether a number is reported tells something."""
     likelihood = {}
     for level in range(3):
@@ -152,7 +151,7 @@ async def test_several_numbers_and_a_response_count_together(kind: int, beeps: b
         beep = {True: 0.3 + 0.2 * level, False: 0.7 - 0.2 * level, None: 1.0}
         likelihood[level] = chance * warmth * shade * kinds[kind] * 0.5 * beep[beeps]
     expected, density = posterior(dict(enumerate(PRIOR)), likelihood)
-    async with engine_of_text(EXACT, cache_dir) as engine:
+    async with engine_of_text(EXACT) as engine:
         numbers = {"warmth": 0.7, "shade": 1, "kind": kind, "beeps": beeps}
         update = await engine.update("feel", "read", numbers=numbers)
         assert update.probability == pytest.approx(density, rel=1e-9)
@@ -162,9 +161,9 @@ async def test_several_numbers_and_a_response_count_together(kind: int, beeps: b
         assert prediction == pytest.approx(sum(p * (1 - 0.1 * level) for level, p in expected.items()))
 
 
-async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache_dir: Path):
+async def test_arrays_count_by_element_whatever_the_order_of_their_reports():
     beams = [0.4, 1.7, 1.2, 4.4]
-    async with engine_of_text(EXACT, cache_dir) as engine:
+    async with engine_of_text(EXACT) as engine:
         update = await engine.update("scan", "read", numbers={"beams": beams, "hits": [True, False]})
         # Only at level 1 there are two hits.
         density = math.prod(normal(beam, i, 1.5) for i, beam in enumerate(beams)) * 0.4 * 0.6 * PRIOR[1]
@@ -172,7 +171,7 @@ async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache
         assert await levels(engine) == pytest.approx({1: 1.0})
 
 
-async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(cache_dir: Path):
+async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same():
     """Their density is far below what a double can hold."""
     beams = [8.0 + 0.01 * i for i in range(100)]
     logs = [
@@ -180,7 +179,7 @@ async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(c
         + math.log(PRIOR[level])
         for level in range(3)
     ]
-    async with engine_of_text(EXACT, cache_dir) as engine:
+    async with engine_of_text(EXACT) as engine:
         update = await engine.update("sweep", "read", numbers={"beams": beams})
         total = max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs))
         assert total < -7000
@@ -188,7 +187,7 @@ async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(c
         assert await levels(engine) == pytest.approx({2: 1.0})
 
 
-async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Path):
+async def test_a_drifting_place_is_followed_as_by_a_kalman_filter():
     """Both the state and what is reported are continuous, so particles are weighed by the density."""
     files = documents(
         "state__.place = state.place + AOS.SampleNormal(0.3, 0.4);\n"
@@ -197,7 +196,7 @@ async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Pat
         mapping("double sight"),
         belief="state.place = AOS.SampleNormal(0, 1);",
     )
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         (place,) = (each for each in (await engine.summary()).marginals if each.variable == "place")
         assert place.quantiles == pytest.approx((-1.65, -0.67, 0.0, 0.67, 1.65), abs=0.15)
         mean, variance = 0.0, 1.0
@@ -226,8 +225,8 @@ async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.flo
     return weights, bits.view(np.float64)
 
 
-async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path):
-    async with engine_of_text(EXACT, cache_dir) as engine:
+async def test_other_numbers_than_the_model_reports_leave_the_response_alone():
+    async with engine_of_text(EXACT) as engine:
         missing = await engine.update("poke", "read", {"depth": "null", "code": '"read"'}, {})
         assert not missing.is_impossible
         assert missing.remark == (
@@ -253,8 +252,8 @@ DEPTH_AND_BEAM = documents(
 )
 
 
-async def test_simulated_worlds_give_numbers_that_their_belief_learns_from(cache_dir: Path):
-    async with engine_of_text(DEPTH_AND_BEAM, cache_dir) as engine:
+async def test_simulated_worlds_give_numbers_that_their_belief_learns_from():
+    async with engine_of_text(DEPTH_AND_BEAM) as engine:
         limits = MissionLimits(goal_probability=0.9, step_limit=12)
         run = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
         again = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
@@ -290,9 +289,9 @@ FAULTY = gauge(
 
 
 @pytest.mark.parametrize("skill", FAULTS)
-async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str, cache_dir: Path):
+async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str):
     _, why, line = FAULTS[skill]
-    async with engine_of_text(FAULTY, cache_dir) as engine:
+    async with engine_of_text(FAULTY) as engine:
         with pytest.raises(ModelError, match=why) as raised:
             await engine.update(skill, "read", numbers={"depth": 0.5, "beams": [True]})
     assert raised.value.code == "AOS215"
@@ -300,8 +299,8 @@ async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str
     assert (diagnostic.span.file, diagnostic.span.line) == (f"{skill}.sd", line)
 
 
-async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path):
-    async with engine_of_text(DEPTH_AND_BEAM, cache_dir) as engine:
+async def test_what_enumerates_observations_says_that_it_cannot():
+    async with engine_of_text(DEPTH_AND_BEAM) as engine:
         with pytest.raises(ModelError, match="what is observed are numbers") as raised:
             await engine.exact_values()
         assert raised.value.code == "AOS220"
@@ -309,27 +308,27 @@ async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path)
             await engine.list_states(1000)
 
 
-async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_dir: Path):
+async def test_numbers_of_too_many_combinations_are_searched_in_beliefs():
     files = documents(
         "__moduleResponse = read;\n"
         "for (int i = 0; i < 9; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 1.5);\n",
         mapping("float[] beams"),
     )
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         plan = await engine.plan(seed=1, simulations=200, planner="auto")
         assert plan.planner == "belief-tree"
         assert "SARSOP cannot be used: 9 numbers are observed at once" in plan.why
 
 
-async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution(cache_dir: Path):
+async def test_numbers_of_many_values_have_the_quantiles_of_their_distribution():
     """The place that drifts has those of the normal distribution, for its belief is drawn."""
     look = ("__moduleResponse = read;\n", mapping())
     tenths = (
         "state.level = AOSUtils::SampleDiscrete(vector<double>(20, 0.05)); state.place = state.level / 10.0;"
     )
-    async with engine_of_text(documents(*look, belief=tenths), cache_dir) as engine:
+    async with engine_of_text(documents(*look, belief=tenths)) as engine:
         found = {each.variable: each.quantiles for each in (await engine.summary()).marginals}
         assert found == {"level": (0, 4, 9, 14, 18), "place": (0.0, 0.4, 0.9, 1.4, 1.8)}
     few = "state.level = AOSUtils::SampleDiscrete(vector<double>(9, 1.0)); state.place = state.level % 8;"
-    async with engine_of_text(documents(*look, belief=few), cache_dir) as engine:
+    async with engine_of_text(documents(*look, belief=few)) as engine:
         assert [each.quantiles for each in (await engine.summary()).marginals] == [(), ()]

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import engine_of_text
 
@@ -52,8 +50,8 @@ NOTHING = {"odd.ef": CROWDED["odd.ef"], "dig.sd": CROWDED["dig.sd"].replace("cel
 """No action at all."""
 
 
-async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir: Path):
-    async with engine_of_text(CROWDED, cache_dir) as engine:
+async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart():
+    async with engine_of_text(CROWDED) as engine:
         assert len(engine.description.actions) == 1000
         plan = await engine.plan(simulations=20_000, seed=1, threads=2, planner="pomcp")
         assert plan.index in (7, 8)
@@ -75,16 +73,16 @@ __moduleResponse = gone;
 }
 
 
-async def test_a_short_question_is_answered_after_one_that_went_over_the_limit(cache_dir: Path):
-    async with engine_of_text(MANY, cache_dir) as engine:
+async def test_a_short_question_is_answered_after_one_that_went_over_the_limit():
+    async with engine_of_text(MANY) as engine:
         with pytest.raises(IntractableError):
             await engine.exact_values(3)
         (value,) = (await engine.exact_values(1)).actions
     assert value.q == pytest.approx(0.5)
 
 
-async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path):
-    async with engine_of_text(SINGLE, cache_dir) as engine:
+async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned():
+    async with engine_of_text(SINGLE) as engine:
         plan = await engine.plan(simulations=5_000, seed=1, planner="pomcp")
         assert plan.best.q == pytest.approx(1 + 0.9 + 0.81 + 0.729 + 0.6561, abs=0.3)
         assert {response.response for response in plan.predicted} == {"it is hot", "it is cold"}
@@ -93,8 +91,8 @@ async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache
     assert marginals["is_hot"] == {"true": pytest.approx(1)}
 
 
-async def test_a_model_without_an_action_is_refused(cache_dir: Path):
+async def test_a_model_without_an_action_is_refused():
     with pytest.raises(DocumentError) as error:
-        async with engine_of_text(NOTHING, cache_dir):
+        async with engine_of_text(NOTHING):
             pass
     assert error.value.code == "AOS119"

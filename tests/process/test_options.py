@@ -1,4 +1,3 @@
-from pathlib import Path
 from statistics import fmean
 
 from models import built_text, engine_of, engine_of_text
@@ -16,9 +15,9 @@ from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 
-async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path):
+async def test_many_things_are_tested_before_they_are_sent_off():
     """Parcels sent where most of them belong lose 1.0 each, so that 14 of them lose 6 in all."""
-    built = await built_text(parcels(14), cache_dir)
+    built = await built_text(parcels(14))
     async with engine_of(built) as engine, engine_of(built) as other:
         plan = await engine.plan(simulations=1000, seed=1, planner="auto")
         assert plan.planner == "options"
@@ -33,17 +32,17 @@ async def test_many_things_are_tested_before_they_are_sent_off(cache_dir: Path):
     assert run.discounted_return > 10
 
 
-async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it(cache_dir: Path):
-    async with engine_of_text(open_field(9), cache_dir) as engine:
+async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it():
+    async with engine_of_text(open_field(9)) as engine:
         search = Search(simulations=2000, seed=2)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
     assert sum(action == "move(direction=0)" for action in run.actions) >= 3
     assert run.actions[-1] == "stop"
 
 
-async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_dir: Path):
+async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are():
     """A lift breaks at any step, whatever the robot does, and all ways to a reward change its place."""
-    async with engine_of_text(delivery(6), cache_dir) as engine:
+    async with engine_of_text(delivery(6)) as engine:
         plan = await engine.plan(simulations=4000, seed=1, planner="auto")
         assert plan.planner == "options"
         assert plan.simulations < 5000
@@ -53,11 +52,9 @@ async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are(cache_d
     assert run.discounted_return > 10
 
 
-async def test_a_budget_in_time_ends_a_decision_of_options_after_a_first_look_that_is_long_enough(
-    cache_dir: Path,
-):
+async def test_a_budget_in_time_ends_a_decision_of_options_after_a_first_look_that_is_long_enough():
     """A mission is prepared by what its first look finds."""
-    built = await built_text(parcels(40), cache_dir)
+    built = await built_text(parcels(40))
     async with engine_of(built) as engine, engine_of(built) as other:
         hurried = await engine.plan(simulations=1, time_s=1e-6, seed=1)
         unhurried = await other.plan(simulations=1, time_s=2, seed=1)
@@ -65,7 +62,7 @@ async def test_a_budget_in_time_ends_a_decision_of_options_after_a_first_look_th
     assert 100 < hurried.simulations < unhurried.simulations
 
 
-async def test_a_mission_of_one_decision_is_told_the_mean_reward_of_each_action(cache_dir: Path):
+async def test_a_mission_of_one_decision_is_told_the_mean_reward_of_each_action():
     """Nothing follows a look, and what is seen by it is worth nothing."""
     writer = BundleWriter(
         "reach",
@@ -82,7 +79,7 @@ state.x = AOS.SampleUniform(0, 4);
     writer.skill("look", ["left", "right"], look)
     reach = "__reward = state.x < 1 + where ? 10 - 3.5 * where : -2;\n__moduleResponse = done;"
     writer.skill("reach", ["done"], reach, over={"where": "3"})
-    async with engine_of_text(writer.files, cache_dir) as engine:
+    async with engine_of_text(writer.files) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     told = {value.action: value for value in plan.actions}
     assert abs(told["look"].q + 0.1) < 1e-9
@@ -92,27 +89,27 @@ state.x = AOS.SampleUniform(0, 4);
     assert plan.best.action == "reach(where=1)"
 
 
-async def test_a_reward_that_asks_for_many_conditions_at_once_is_found(cache_dir: Path):
+async def test_a_reward_that_asks_for_many_conditions_at_once_is_found():
     """A lock opens when five dials are right, and nothing is earned before. Random actions return -24."""
-    async with engine_of_text(lock(5), cache_dir) as engine:
+    async with engine_of_text(lock(5)) as engine:
         search = Search(simulations=2000, seed=1)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
     assert run.actions[-1] == "pull"
     assert run.discounted_return > 5
 
 
-async def test_a_robot_leaves_where_promises_are_not_kept(cache_dir: Path):
+async def test_a_robot_leaves_where_promises_are_not_kept():
     """Twelve sites are hardly worth a probe. Without the rule the robot probes and drives for ever."""
-    async with engine_of_text(survey(12), cache_dir) as engine:
+    async with engine_of_text(survey(12)) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
         run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
     assert run.actions[-1] == "leave"
     assert run.discounted_return > -9
 
 
-async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads(cache_dir: Path):
+async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads():
     """A robot without detours reads what it knows, up to the last step, since nothing else costs less."""
-    async with engine_of_text(gauges(8), cache_dir) as engine:
+    async with engine_of_text(gauges(8)) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
         run = await simulate_mission(engine, Search(simulations=10_000, seed=302), limits)
     assert "wipe" in run.actions
@@ -120,24 +117,24 @@ async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads(cache_dir:
     assert len(run.actions) < 60
 
 
-async def test_questions_are_asked_of_which_none_pays_alone(cache_dir: Path):
+async def test_questions_are_asked_of_which_none_pays_alone():
     """A robot that leaves at once returns 0, a rule by hand 6.4."""
-    async with engine_of_text(questions(18), cache_dir) as engine:
+    async with engine_of_text(questions(18)) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=30)
         searches = (Search(simulations=1000, seed=seed) for seed in range(1, 13))
         runs = [await simulate_mission(engine, search, limits) for search in searches]
     assert fmean(run.discounted_return for run in runs) > 2
 
 
-async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip(cache_dir: Path):
+async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip():
     """A rule by hand returns 69, and whoever waits for 60 steps -18."""
-    async with engine_of_text(towers(8), cache_dir) as engine:
+    async with engine_of_text(towers(8)) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=60)
         run = await simulate_mission(engine, Search(simulations=2000, seed=1), limits)
     assert run.discounted_return > 50
 
 
-async def test_a_robot_whose_battery_ends_is_not_led_by_what_intruders_pay(cache_dir: Path):
+async def test_a_robot_whose_battery_ends_is_not_led_by_what_intruders_pay():
     """Intruders come by themselves, and cost more than they pay. No way leads through the dock."""
     patrol = BundleWriter(
         "patrol",
@@ -172,7 +169,7 @@ for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
     patrol.skill("expel", ["done"], expel + "state__.intruder[state.at] = false;\n__moduleResponse = done;")
     charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n"
     patrol.skill("charge", ["charged"], charge + "__moduleResponse = charged;")
-    async with engine_of_text(patrol.files, cache_dir) as engine:
+    async with engine_of_text(patrol.files) as engine:
         limits = MissionLimits(goal_probability=1, step_limit=30)
         run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
         plan = await engine.plan(simulations=100, seed=1, planner="auto")

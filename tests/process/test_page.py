@@ -94,10 +94,10 @@ def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
 
 
 @pytest.fixture(scope="module")
-def worn(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+def worn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Gateway, str]]:
     """A gateway, and a mission of a system that stays, which has ended with an alarm."""
     folder = tmp_path_factory.mktemp("worn")
-    with worn_system(folder, cache_dir) as run, gateway(folder, cache_dir) as served:
+    with worn_system(folder) as run, gateway(folder) as served:
         yield served, f"{run.name}-1"
 
 
@@ -178,7 +178,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
 
 
 def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_killed_run_is_told(
-    browser: Browser, living: tuple[Gateway, Path], tmp_path: Path, cache_dir: Path
+    browser: Browser, living: tuple[Gateway, Path], tmp_path: Path
 ):
     served, run = living
     page = opened(browser, served)
@@ -188,7 +188,7 @@ def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_k
     served.process.wait(HANG_S)
     expect(page.locator(".connection")).to_contain_text("Connection lost")
     (run.parents[1] / "turns").write_bytes(b".")
-    with gateway(tmp_path, cache_dir, "--port", str(served.port)):
+    with gateway(tmp_path, "--port", str(served.port)):
         expect(page.locator(".connection")).to_have_text("Live")
         expect(page.locator(".stepper-place")).to_have_text("2 of 2")
         expect(page.get_by_role("button", name="Hold", exact=True)).to_be_visible()
@@ -326,7 +326,7 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
 
 
 def test_long_names_are_told_whole_and_widen_no_screen(
-    browser: Browser, past: tuple[Gateway, str], cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    browser: Browser, past: tuple[Gateway, str], monkeypatch: pytest.MonkeyPatch
 ):
     served, _ = past
     long = "where_the_robot_that_carries_the_longest_of_all_names_stands_at_the_moment"

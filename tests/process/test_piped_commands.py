@@ -25,7 +25,7 @@ def test_a_piped_command_says_nothing_beside_its_result(
     command: tuple[str, ...], bundles: Path, cache_dir: Path
 ):
     bundle = bundles / "bench" / "tiger"
-    asyncio.run(built_bundle(bundle, cache_dir))
+    asyncio.run(built_bundle(bundle))
     asyncio.run(build_solver(cache_dir))
     done = subprocess.run(
         [AOS, command[0], str(bundle), *command[1:], "--json"],

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from mappings import mapping_text
 from models import engine_of_text
@@ -168,11 +166,11 @@ __moduleResponse = done;
 """
 
 
-async def test_code_means_what_it_means_in_plain_cpp(cache_dir: Path):
+async def test_code_means_what_it_means_in_plain_cpp():
     files = {"odd.ef": ENVIRONMENT}
     for name, (code, _) in CODE.items():
         files[f"{name}.sd"] = SKILL.format(code=code)
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         values = await engine.exact_values(horizon=1)
     rewards = {value.action.split("(")[0]: value.q for value in values.values}
     assert rewards == {name: pytest.approx(reward) for name, (_, reward) in CODE.items()}
@@ -214,12 +212,12 @@ __moduleResponse = said;
 """
 
 
-async def test_a_name_is_the_enums_value_where_no_response_can_stand(cache_dir: Path):
+async def test_a_name_is_the_enums_value_where_no_response_can_stand():
     pull = mapping_text(
         "open: is_open", "closed: True", project="door", skill="pull", reports={"is_open": "bool"}
     )
     files = {"door.ef": DOOR, "pull.sd": PULL, "pull.am": pull}
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         values = await engine.exact_values()
         update = await engine.update("pull", "open")
     assert values.values[0].q == pytest.approx(0.5 * 100 + 0.5 * 1)

@@ -1,5 +1,4 @@
 import re
-from pathlib import Path
 
 import numpy as np
 from models import engine_of_text
@@ -85,10 +84,10 @@ async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:
     return [run.ending for run in runs]
 
 
-async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path):
+async def test_pomcp_looks_ahead_over_numbers():
     """It listens as long as that is worth it."""
     best = value_of_listening()
-    async with engine_of_text(DOCUMENTS_OF_DOORS, cache_dir) as engine:
+    async with engine_of_text(DOCUMENTS_OF_DOORS) as engine:
         plan = await engine.plan(seed=1, simulations=20_000, planner="pomcp")
         assert (plan.planner, plan.best.action) == ("pomcp", "listen")
         # Cells tell less than numbers, so it is worth no more than the best, but for chance.
@@ -96,10 +95,10 @@ async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path):
         assert (await endings_of_doors(engine, "pomcp")).count(Ending.GOAL) >= 27
 
 
-async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_cells(cache_dir: Path):
+async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_cells():
     """The robot can earn what is earned over cells. Cells lose little here; there is no upper bound."""
     best = value_of_listening()
-    async with engine_of_text(DOCUMENTS_OF_DOORS, cache_dir) as engine:
+    async with engine_of_text(DOCUMENTS_OF_DOORS) as engine:
         plan = await engine.plan(seed=1, simulations=20_000, planner="auto")
         assert (plan.planner, plan.best.action) == ("sarsop", "listen")
         assert plan.best.at_least is not None

@@ -11,10 +11,8 @@ from plug.truth import examined
 
 
 @pytest.mark.parametrize("name", ["doors/5", "machine/16"])
-async def test_a_belief_by_replay_is_the_exact_posterior_and_a_projected_one_keeps_what_both_have(
-    name: str, cache_dir: Path
-):
-    found = await examined(named_problem(name, 40), cache_dir)
+async def test_a_belief_by_replay_is_the_exact_posterior_and_a_projected_one_keeps_what_both_have(name: str):
+    found = await examined(named_problem(name, 40))
     assert found.replay <= 1e-9
     assert found.kept <= 1e-12
     assert abs(found.drawn) <= 3

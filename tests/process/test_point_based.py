@@ -62,8 +62,8 @@ __moduleResponse = done;
 
 
 @pytest.fixture
-async def tag(bundles: Path, cache_dir: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tag", cache_dir)
+async def tag(bundles: Path) -> BuiltModel:
+    return await built_bundle(bundles / "bench" / "tag")
 
 
 async def _decide(engine: Engine, simulations: int = 20_000, seed: int = 1) -> Plan:
@@ -135,8 +135,8 @@ async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag:
     assert warm.known_simulations > plan.simulations
 
 
-async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: Path):
-    async with engine_of_text(TICKET, cache_dir) as engine:
+async def test_without_a_discount_the_horizon_bounds_what_is_earned():
+    async with engine_of_text(TICKET) as engine:
         plan = await _decide(engine, simulations=500)
         exact = await engine.exact_values()
     assert "decisions to go the belief is worth between" in plan.why
@@ -152,10 +152,10 @@ async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: P
     ],
 )
 async def test_auto_goes_by_whether_the_states_can_be_listed(
-    length: int, simulations: int, planner: str, why: str, cache_dir: Path
+    length: int, simulations: int, planner: str, why: str
 ):
     larger = {name: text.replace("150", str(length)) for name, text in FIELD.items()}
-    async with engine_of_text(larger, cache_dir) as engine:
+    async with engine_of_text(larger) as engine:
         plan = await engine.plan(simulations=simulations, seed=1, planner="auto")
     assert plan.planner == planner, plan.why
     assert why in plan.why
@@ -167,9 +167,9 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
     [("bench/tiger", "exact", "2 states"), ("bench/rocksample-7-8", "sarsop", f"{49 * 2**8} states")],
 )
 async def test_auto_chooses_by_states_and_budget_and_says_so(
-    problem: str, planner: str, why: str, bundles: Path, cache_dir: Path
+    problem: str, planner: str, why: str, bundles: Path
 ):
-    async with engine_of_bundle(bundles / problem, cache_dir) as engine:
+    async with engine_of_bundle(bundles / problem) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
     assert why in plan.why
@@ -180,8 +180,8 @@ def _forty(discount: float) -> dict[str, str]:
     return TICKET | {"ticket.ef": text}
 
 
-async def test_few_missions_make_no_value_less_certain_than_what_is_proven(cache_dir: Path):
-    async with engine_of_text(_forty(0.85), cache_dir) as engine:
+async def test_few_missions_make_no_value_less_certain_than_what_is_proven():
+    async with engine_of_text(_forty(0.85)) as engine:
         best = (await _decide(engine, simulations=1)).best
     assert best.at_least is not None
     assert best.at_most is not None
@@ -190,16 +190,14 @@ async def test_few_missions_make_no_value_less_certain_than_what_is_proven(cache
 
 
 @pytest.mark.parametrize(("price", "choice"), [(10, "check"), (30, "sell")])
-async def test_what_ends_a_mission_leaves_nothing_for_after_the_horizon(
-    price: int, choice: str, cache_dir: Path
-):
+async def test_what_ends_a_mission_leaves_nothing_for_after_the_horizon(price: int, choice: str):
     """Else a value may be less than bounds without a horizon, and the record says by how much."""
     files = _forty(0.98)
     files["ticket.ef"] += (
         "\nstate_variable: bool is_sold\n\nreward_code:\nif (state.is_sold) __isGoalState = true;\n"
     )
     files["sell.sd"] = f"project: ticket\n\ndynamic_model:\n__reward = {price};\nstate__.is_sold = true;\n"
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         plan = await _decide(engine, simulations=1)
     assert plan.best.action == choice
     assert ("of it after the 40 decisions that values count" in plan.why) == (choice == "check")

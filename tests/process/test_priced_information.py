@@ -1,4 +1,3 @@
-from pathlib import Path
 from statistics import fmean
 
 from models import engine_of_text
@@ -9,9 +8,9 @@ from aos_solver.mission.rules.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 
-async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo(cache_dir: Path):
+async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo():
     """A drone without a price of information flies to and fro: -0.6 in these worlds, and 25 with it."""
-    async with engine_of_text(photo(8), cache_dir) as engine:
+    async with engine_of_text(photo(8)) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
         assert plan.planner == "pomcp"
         assert "information has a price" in plan.why

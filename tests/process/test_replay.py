@@ -44,24 +44,21 @@ async def kill_at_step_2(engine: Engine, step: int):
     ids=["exact", "three threads", "particles"],
 )
 async def test_decisions_repeat_in_values_counts_and_beliefs(
-    bundles: Path, cache_dir: Path, bundle: str, budget: dict[str, object]
+    bundles: Path, bundle: str, budget: dict[str, object]
 ):
-    played = await play(files_of(bundles / bundle), cache_dir, steps=4, **budget)
+    played = await play(files_of(bundles / bundle), steps=4, **budget)
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
     assert all(row.has_values for row in found if row.decides)
     assert all(row.has_belief for row in found)
 
 
-async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happened(
-    bundles: Path, cache_dir: Path
-):
+async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happened(bundles: Path):
     files = files_of(bundles / "armadillo-finer")
     other = files | {"pick.sd": files["pick.sd"].replace(b"__reward = -2", b"__reward = -3")}
     assert other != files
     played = await play(
         files,
-        cache_dir,
         steps=6,
         then=(3, other),
         beside=Beside(disturbance=kill_at_step_2),
@@ -76,7 +73,7 @@ async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happe
 
 
 async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_need(
-    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    bundles: Path, monkeypatch: pytest.MonkeyPatch
 ):
     """The hold comes when the third search has begun; without a grace it is given up."""
     monkeypatch.setattr(abandoning, "GRACE_S", 0.0)
@@ -89,11 +86,7 @@ async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_nee
             mission.steer(Steer("resume", by="ana", request="2"))
 
     played = await play(
-        files_of(bundles / "bench/laser-normal"),
-        cache_dir,
-        steps=4,
-        beside=Beside(steering=steer),
-        simulations=2000,
+        files_of(bundles / "bench/laser-normal"), steps=4, beside=Beside(steering=steer), simulations=2000
     )
     decisions = played.mission.decisions
     assert [each.engine_starts for each in decisions] == [1, 1, 2, 2]
@@ -103,8 +96,8 @@ async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_nee
     assert all(row.has_values for row in found if row.decides)
 
 
-async def test_the_first_difference_is_named_with_its_cause(bundles: Path, cache_dir: Path):
-    played = await play(files_of(bundles / "armadillo-finer"), cache_dir, steps=3)
+async def test_the_first_difference_is_named_with_its_cause(bundles: Path):
+    played = await play(files_of(bundles / "armadillo-finer"), steps=3)
     place, row = next((n, r) for n, r in enumerate(played.rows) if r.kind == "decision")
     record = msgspec.json.decode(row.payload, type=DecisionRecord)
     first, *others = record.actions
@@ -118,18 +111,16 @@ async def test_the_first_difference_is_named_with_its_cause(bundles: Path, cache
     assert differing.cause == "belief, budget and seed are the same"
 
 
-async def test_a_budget_in_time_is_compared_by_its_beliefs(bundles: Path, cache_dir: Path):
-    played = await play(
-        files_of(bundles / "armadillo-finer"), cache_dir, steps=3, planner="pomcp", time_s=0.02
-    )
+async def test_a_budget_in_time_is_compared_by_its_beliefs(bundles: Path):
+    played = await play(files_of(bundles / "armadillo-finer"), steps=3, planner="pomcp", time_s=0.02)
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
     assert all(row.has_belief and not row.has_values for row in found)
     assert all("0.02 s" in row.without for row in found if row.decides)
 
 
-async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path, cache_dir: Path):
-    played = await play(files_of(bundles / "armadillo-finer"), cache_dir, steps=2)
+async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path):
+    played = await play(files_of(bundles / "armadillo-finer"), steps=2)
     rows = list(played.mission.of_kind(BeliefRow))
     assert [row.step for row in rows] == [0, 1, 2]
     replay = played.replay()
@@ -142,8 +133,8 @@ async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path,
     assert [b.particles for b in believed.beliefs] == [b.particles for b in rows[1].beliefs]
 
 
-async def test_a_prediction_changes_no_particle(bundles: Path, cache_dir: Path):
-    played = await play(files_of(bundles / "bench" / "laser-normal"), cache_dir, steps=2, simulations=100)
+async def test_a_prediction_changes_no_particle(bundles: Path):
+    played = await play(files_of(bundles / "bench" / "laser-normal"), steps=2, simulations=100)
     replay = played.replay()
     try:
         await replay.go_to(2)

@@ -68,10 +68,9 @@ def terms(epoch: int) -> Terms:
     return Terms(name="run", epoch=epoch, limits=limits, search=Search(simulations=100, seed=1))
 
 
-async def whole(cache_dir: Path) -> Rows:
+async def whole() -> Rows:
     engines = {
-        number: await Engine.start(await built_text(files, cache_dir), seed=1)
-        for number, files in REVISIONS.items()
+        number: await Engine.start(await built_text(files), seed=1) for number, files in REVISIONS.items()
     }
     try:
         models = {number: RunningModel(number, engine) for number, engine in engines.items()}
@@ -99,7 +98,7 @@ async def taken_up(rows: Rows, revision: int, run: Path, cache_dir: Path) -> Row
     """The journal after another solver has taken the mission up with this newest revision."""
     memory = memory_of(rows)
     around = Surroundings(robot)
-    async with engine_of_text(REVISIONS[revision], cache_dir) as engine:
+    async with engine_of_text(REVISIONS[revision]) as engine:
         running = RunningModel(revision, engine)
         of_before = settings(run, cache_dir)
         earlier = await earlier_models(memory, running, documents, of_before, lambda text: None)
@@ -131,7 +130,7 @@ def write_run(rows: Rows, run: Path, cache_dir: Path):
 async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbed_twin(
     cache_dir: Path, tmp_path: Path
 ):
-    rows = await whole(cache_dir)
+    rows = await whole()
     adopted = [said for _, said in rows if isinstance(said, ModelAdopted)]
     assert [row.by for row in adopted] == ["import", "projection"]
     last = rows.index(("adopted", adopted[-1]))
@@ -148,7 +147,7 @@ async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbe
 async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_ones(
     cache_dir: Path, tmp_path: Path
 ):
-    rows = await whole(cache_dir)
+    rows = await whole()
     first = next(number for number, (_, said) in enumerate(rows) if isinstance(said, ModelAdopted))
     journal = await taken_up(rows[:first], 2, tmp_path, cache_dir)
     assert digests(journal)[:5] == digests(rows)[:5], "they take over at once, as after the same step before"
@@ -159,8 +158,8 @@ async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(cache_dir
     async def gone(_: int) -> Project:
         raise StorageError("the catalogue has no revision 1", code="AOS702")
 
-    rows = await whole(cache_dir)
-    async with engine_of_text(REVISIONS[3], cache_dir) as engine:
+    rows = await whole()
+    async with engine_of_text(REVISIONS[3]) as engine:
         running, of_before = RunningModel(3, engine), settings(tmp_path, cache_dir)
         assert await earlier_models(memory_of(rows), running, gone, of_before, lambda text: None) == ()
 

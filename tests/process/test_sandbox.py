@@ -43,10 +43,8 @@ def reaching() -> dict[str, str]:
 
 @needs_sandbox
 @pytest.mark.parametrize("skill", REACHING)
-async def test_a_model_that_reaches_out_ends_and_its_line_is_told(
-    skill: str, reaching: dict[str, str], cache_dir: Path
-):
-    built = await built_text(reaching, cache_dir)
+async def test_a_model_that_reaches_out_ends_and_its_line_is_told(skill: str, reaching: dict[str, str]):
+    built = await built_text(reaching)
     async with engine_of(built) as engine:
         actions = [action.name for action in engine.description.actions]
         await engine.reset_world(1)
@@ -57,11 +55,11 @@ async def test_a_model_that_reaches_out_ends_and_its_line_is_told(
 
 
 @needs_sandbox
-async def test_a_secret_does_not_come_into_a_program(cache_dir: Path, tmp_path: Path):
+async def test_a_secret_does_not_come_into_a_program(tmp_path: Path):
     secret = tmp_path / "secret"
     secret.write_text("canary")
     with pytest.raises(ModelError) as caught:
-        await built_text(lamp(f'asm(".incbin \\"{secret}\\"");'), cache_dir)
+        await built_text(lamp(f'asm(".incbin \\"{secret}\\"");'))
     place = caught.value.diagnostics[0].span
     assert (place.file, place.line) == ("press.sd", 5)
 

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 from models import built_text, engine_of, engine_of_text
 from wide.cleaning import cleaning
 from wide.greenhouse import greenhouse
@@ -13,9 +11,9 @@ from aos_solver.mission.simulation import simulate_mission
 _SIMULATIONS = 500
 
 
-async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missions_return(cache_dir: Path):
+async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missions_return():
     """Over 60 steps rests return -82 on average, and a round trip by hand -17."""
-    built = await built_text(greenhouse(5), cache_dir)
+    built = await built_text(greenhouse(5))
     async with engine_of(built) as engine, engine_of(built) as other, engine_of(built) as third:
         plan = await engine.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
         assert plan.planner == "savings"
@@ -34,8 +32,8 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
     assert abs(told.q - run.discounted_return) < 3 * told.stderr
 
 
-async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once(cache_dir: Path):
-    async with engine_of_text(cleaning(7), cache_dir) as engine:
+async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once():
+    async with engine_of_text(cleaning(7)) as engine:
         search = Search(simulations=_SIMULATIONS, seed=1)
         run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=15))
     assert sum(action == "clean" for action in run.actions) >= 4
@@ -90,11 +88,9 @@ __moduleResponse = seems_clogged ? clogged : clear;"""
     return writer.files
 
 
-async def test_an_order_counts_by_what_comes_of_it_later_and_rollouts_decide_where_they_tell_more(
-    cache_dir: Path,
-):
+async def test_an_order_counts_by_what_comes_of_it_later_and_rollouts_decide_where_they_tell_more():
     """Over 50 steps rests return -65 on average; without rests after a way this mission returns -69.6."""
-    built = await built_text(_pumps(), cache_dir)
+    built = await built_text(_pumps())
     async with engine_of(built) as engine, engine_of(built) as other:
         limits = MissionLimits(goal_probability=1, step_limit=50)
         run = await simulate_mission(engine, Search(simulations=_SIMULATIONS, seed=2), limits)

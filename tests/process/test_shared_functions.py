@@ -1,5 +1,3 @@
-from pathlib import Path
-
 from models import engine_of_text
 
 WRITTEN_OUT = {
@@ -56,10 +54,10 @@ __reward = -1;
 }
 
 
-async def test_values_are_exact_and_the_same(cache_dir: Path):
+async def test_values_are_exact_and_the_same():
     values = []
     for files in (WRITTEN_OUT, SHARED):
-        async with engine_of_text(files, cache_dir) as engine:
+        async with engine_of_text(files) as engine:
             exact = await engine.exact_values()
             summary = await engine.summary()
             values.append({action.action: action.q for action in exact.actions})

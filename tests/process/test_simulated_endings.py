@@ -43,8 +43,8 @@ __reward = -1;
 LIMITS = MissionLimits(goal_probability=0.9, step_limit=3)
 
 
-async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: Path):
-    async with engine_of_text(TABLE, cache_dir) as engine:
+async def test_a_failure_that_the_belief_takes_for_the_goal_is_told():
+    async with engine_of_text(TABLE) as engine:
         runs = [
             await simulate_mission(engine, Search(simulations=200, seed=seed), LIMITS)
             for seed in range(1, 121)
@@ -57,8 +57,8 @@ async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: P
     assert 1 <= len(spilt) <= 20
 
 
-async def test_a_belief_tells_each_ending_apart(cache_dir: Path):
-    async with engine_of_text(TABLE, cache_dir) as engine:
+async def test_a_belief_tells_each_ending_apart():
+    async with engine_of_text(TABLE) as engine:
         served = (await engine.update("serve", "done")).summary
         await engine.reset_belief()
         kept = (await engine.update("keep", "DefaultObservation")).summary
@@ -68,9 +68,9 @@ async def test_a_belief_tells_each_ending_apart(cache_dir: Path):
     assert (kept.goal_probability, kept.failure_probability, kept.over_probability) == (0, 0, 1)
 
 
-async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path):
+async def test_a_mission_can_be_over_without_a_goal_or_a_failure():
     keep = {name: text for name, text in TABLE.items() if not name.startswith("serve")}
-    async with engine_of_text(keep, cache_dir) as engine:
+    async with engine_of_text(keep) as engine:
         run = await simulate_mission(engine, Search(simulations=100, seed=1), LIMITS)
     assert (run.ending, run.world_ending, run.believed_ending) == (Ending.OVER,) * 3
     assert run.total == -1

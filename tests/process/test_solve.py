@@ -3,6 +3,7 @@ import re
 import subprocess
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
 from processes import COMMAND_S
 
+from aos_deploy.places import cache_dir
 from aos_lab.formats.graph_writers import c_header, graphviz
 from aos_lab.formats.policy_graph import OVER, PolicyGraph, policy_graph
 from aos_lab.formats.problem_files import read_problem
@@ -35,8 +37,12 @@ def published(root: Path) -> Path:
     return folder
 
 
-async def enumerated(bundle: Path, cache_dir: Path) -> Enumeration:
-    async with engine_of_bundle(bundle, cache_dir) as engine:
+async def solved(model: ExplicitModel, limits: SolvingLimits = QUICK, **options: Any) -> Solution:
+    return await solve(model, limits, cache_dir=cache_dir(), **options)
+
+
+async def enumerated(bundle: Path) -> Enumeration:
+    async with engine_of_bundle(bundle) as engine:
         return await enumerate_model(engine)
 
 
@@ -53,10 +59,10 @@ def saved(found: Enumeration, digest: str, solution: Solution) -> Policy:
     return Policy(header, solution.vectors)
 
 
-async def test_bounds_only_come_nearer(problems: Path, cache_dir: Path):
+async def test_bounds_only_come_nearer(problems: Path):
     bounds: list[Bounds] = []
     model = read_problem(problems / "rover.pomdpx")
-    solution = await solve(model, QUICK, cache_dir=cache_dir, on_progress=bounds.append)
+    solution = await solved(model, on_progress=bounds.append)
     assert tuple(bounds) == solution.history
     assert all(a.lower <= b.lower and a.upper >= b.upper for a, b in pairwise(bounds))
 
@@ -105,10 +111,10 @@ def value_on_a_grid(model: ExplicitModel) -> float:
 
 
 @pytest.mark.parametrize("seed", range(5))
-async def test_random_models_have_the_value_that_value_iteration_finds(seed: int, cache_dir: Path):
+async def test_random_models_have_the_value_that_value_iteration_finds(seed: int):
     """Observations here depend on the state that is left, too. A grid over-estimates a little."""
     model = random_model(seed)
-    bounds = (await solve(model, QUICK, cache_dir=cache_dir)).bounds
+    bounds = (await solved(model)).bounds
     value = value_on_a_grid(model)
     assert bounds.gap < 0.05
     assert bounds.lower - 1e-3 <= value <= bounds.upper + 1e-3
@@ -119,7 +125,7 @@ async def test_random_models_have_the_value_that_value_iteration_finds(seed: int
     [("Tiger", 0.2, 19.371), ("TagAvoid", 2.0, -6.106), ("RockSample_7_8", 6.0, 20.2)],
 )
 async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
-    published: Path, cache_dir: Path, name: str, cpu_s: float, lower: float
+    published: Path, name: str, cpu_s: float, lower: float
 ):
     """The time of computing is four times as long, since machines differ. What is reached ends it."""
     model = read_problem(published / f"{name}.pomdpx")
@@ -130,31 +136,31 @@ async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
             stop.set()
 
     limits = SolvingLimits(cpu_s=cpu_s)
-    solution = await solve(model, limits, cache_dir=cache_dir, on_progress=look, stop=stop)
+    solution = await solved(model, limits, on_progress=look, stop=stop)
     assert solution.bounds.lower >= lower
 
 
-async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path, cache_dir: Path):
+async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path):
     """The graph is evaluated exactly and by other code, so the bound is true."""
     model = read_problem(published / "TagAvoid.pomdpx")
-    solution = await solve(model, SolvingLimits(cpu_s=0.5), cache_dir=cache_dir)
+    solution = await solved(model, SolvingLimits(cpu_s=0.5))
     graph = policy_graph(model, solution.vectors, max_nodes=300)
     assert solution.bounds.lower - 0.05 <= graph.value <= solution.bounds.upper
 
 
-async def test_variables_that_change_nothing_are_left_out(root: Path, cache_dir: Path, tmp_path: Path):
+async def test_variables_that_change_nothing_are_left_out(root: Path, tmp_path: Path):
     folder = root / "tests" / "data" / "bundles" / "tiger"
     files = {path.name: path.read_text() for path in folder.iterdir()}
     files["tiger.ef"] += "\nstate_variable: int listened\n\nstate_variable: bool heard []\n"
     files["tiger.ef"] += "code:\nstate.heard = {false, false};\n"
     files["listen.sd"] += "state__.listened += 1;\nstate__.heard[0] = __moduleResponse == hears_left;\n"
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         found = await enumerate_model(engine, max_states=50)
         assert found.left_out == ("listened", "heard[0]", "heard[1]")
         assert found.model.size.states == 3
         assert found.state_texts == tuple(dict.fromkeys(found.state_texts))
         assert (found.model.rewards[2] == 0).all()
-        solution = await solve(found.model, QUICK, cache_dir=cache_dir)
+        solution = await solved(found.model)
         assert solution.bounds.ending == "precision"
         assert solution.bounds.lower == pytest.approx(19.3714, abs=1e-3)
         saved(found, engine.model_digest, solution).save(tmp_path / "tiger.policy")
@@ -167,13 +173,11 @@ async def test_variables_that_change_nothing_are_left_out(root: Path, cache_dir:
     assert decided[0].q == pytest.approx(solution.bounds.lower, abs=1e-3)
 
 
-async def test_a_policy_decides_online_and_returns_what_it_promises(
-    bundles: Path, cache_dir: Path, tmp_path: Path
-):
-    built = await built_bundle(bundles / "armadillo-finer", cache_dir)
+async def test_a_policy_decides_online_and_returns_what_it_promises(bundles: Path, tmp_path: Path):
+    built = await built_bundle(bundles / "armadillo-finer")
     async with engine_of(built) as engine:
         found = await enumerate_model(engine)
-        solution = await solve(found.model, QUICK, cache_dir=cache_dir)
+        solution = await solved(found.model)
         saved(found, engine.model_digest, solution).save(tmp_path / "a.policy")
         policy = Policy.load(tmp_path / "a.policy")
         limits = MissionLimits(goal_probability=1.0, step_limit=60, stop_below_value=None)
@@ -189,14 +193,12 @@ async def test_a_policy_decides_online_and_returns_what_it_promises(
     assert sum(response.probability for response in first.predicted) == pytest.approx(1)
 
 
-async def test_a_policy_for_other_documents_is_refused(
-    root: Path, bundles: Path, cache_dir: Path, tmp_path: Path
-):
+async def test_a_policy_for_other_documents_is_refused(root: Path, bundles: Path, tmp_path: Path):
     folder = root / "tests" / "data" / "bundles" / "tiger"
-    found = await enumerated(folder, cache_dir)
-    solution = await solve(found.model, QUICK, cache_dir=cache_dir)
+    found = await enumerated(folder)
+    solution = await solved(found.model)
     policy = saved(found, "of yesterday", solution)
-    async with engine_of_bundle(folder, cache_dir) as engine:
+    async with engine_of_bundle(folder) as engine:
         search = PolicySearch(policy=policy, simulations=100, seed=1)
         with pytest.raises(PlanningError, match="solved for other documents of tiger") as caught:
             await search.run(engine, 1)
@@ -228,19 +230,19 @@ def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path):
             Policy.load(path)
 
 
-async def test_what_is_a_goal_at_the_start_is_part_of_the_start_belief(cache_dir: Path):
+async def test_what_is_a_goal_at_the_start_is_part_of_the_start_belief():
     files = {
         "gauge.ef": "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: bool high\n"
         "initial_belief:\nstate.high = AOS.Bernoulli(0.25);\n"
         "reward_code:\nif (state.high) { __reward = 1; __isGoalState = true; }\n",
         "push.sd": "project: gauge\n\ndynamic_model:\nstate__.high = AOS.Bernoulli(0.5);\n",
     }
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         model = (await enumerate_model(engine)).model
     assert list(model.start_distribution()) == [0.75, 0.25]
 
 
-async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path):
+async def test_continuous_draws_and_endless_counters_cannot_be_solved_before():
     skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = state__.level;\n__moduleResponse = high;\n"
     environment = "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: {kind} level\n"
     for kind, step, reason in (
@@ -248,57 +250,57 @@ async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cac
         ("int", "state__.level += 1;", "too many states to list"),
     ):
         files = {"gauge.ef": environment.format(kind=kind), "read.sd": skill.format(step=step)}
-        async with engine_of_text(files, cache_dir) as engine:
+        async with engine_of_text(files) as engine:
             with pytest.raises(ModelError, match=reason) as caught:
                 await enumerate_model(engine, max_states=50)
         assert caught.value.code == "AOS220"
 
 
-async def test_a_discount_of_one_is_refused(problems: Path, cache_dir: Path):
+async def test_a_discount_of_one_is_refused(problems: Path):
     model = msgspec.structs.replace(read_problem(problems / "tiger.pomdp"), discount=1.0)
     with pytest.raises(PlanningError, match=r"--discount 0\.99") as caught:
-        await solve(model, QUICK, cache_dir=cache_dir)
+        await solved(model)
     assert caught.value.code == "AOS320"
 
 
-async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path, cache_dir: Path):
+async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path):
     model = read_problem(problems / "tiger.pomdp")
     large = msgspec.structs.replace(model, rewards=model.rewards * 1e306)
     with pytest.raises(PlanningError, match="too large"):
-        await solve(large, QUICK, cache_dir=cache_dir)
+        await solved(large)
 
 
-async def test_without_a_precision_small_rewards_have_near_bounds(problems: Path, cache_dir: Path):
+async def test_without_a_precision_small_rewards_have_near_bounds(problems: Path):
     model = read_problem(problems / "tiger.pomdp")
     small = msgspec.structs.replace(model, rewards=model.rewards * 1e-6)
-    bounds = (await solve(small, SolvingLimits(cpu_s=1), cache_dir=cache_dir)).bounds
+    bounds = (await solved(small, SolvingLimits(cpu_s=1))).bounds
     assert bounds.lower == pytest.approx(19.3714e-6, abs=1e-7)
 
 
 @pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
 async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
-    problems: Path, cache_dir: Path, value: float, actions: set[int]
+    problems: Path, value: float, actions: set[int]
 ):
     model = with_stopping(read_problem(problems / "tiger.pomdp"), value)
-    solution = await solve(model, QUICK, cache_dir=cache_dir)
+    solution = await solved(model)
     graph = policy_graph(model, solution.vectors)
     assert {node.action for node in graph.nodes} == actions
     assert graph.value == pytest.approx(max(value, 19.3714), abs=1e-3)
 
 
-async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path, cache_dir: Path):
+async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path):
     stop = asyncio.Event()
     endless = SolvingLimits(precision=0, cpu_s=1000)
     model = random_model(3)
-    solution = await solve(model, endless, cache_dir=cache_dir, stop=stop, on_progress=lambda _: stop.set())
+    solution = await solved(model, endless, stop=stop, on_progress=lambda _: stop.set())
     assert solution.bounds.ending == "stopped"
     assert solution.vectors.count > 0
 
 
 @pytest.fixture
-def tiger_graph(problems: Path, cache_dir: Path) -> PolicyGraph:
+def tiger_graph(problems: Path) -> PolicyGraph:
     model = read_problem(problems / "tiger.pomdp")
-    return policy_graph(model, asyncio.run(solve(model, QUICK, cache_dir=cache_dir)).vectors)
+    return policy_graph(model, asyncio.run(solved(model)).vectors)
 
 
 def test_the_graph_of_tiger_is_the_well_known_one(tiger_graph: PolicyGraph):
@@ -354,7 +356,7 @@ def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(tiger_graph:
     assert [int(line) for line in walked.stdout.split()] == expected
 
 
-async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result(cache_dir: Path):
+async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result():
     always = Ragged(np.array([0, 1], np.int64), np.zeros(1, np.int64), np.ones(1))
     no_number = ExplicitModel(
         name="no number", discount=0.9, states=("here",), actions=("wait",), observations=("none",),
@@ -362,4 +364,4 @@ async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result
         starts=(StartBelief(1.0, np.zeros(1, np.int64), np.ones(1)),),
     )  # fmt: skip
     with pytest.raises(ModelError, match="AOS216"):
-        await solve(no_number, SolvingLimits(cpu_s=0.1), cache_dir=cache_dir)
+        await solved(no_number, SolvingLimits(cpu_s=0.1))

@@ -8,16 +8,14 @@ from processes import COMMAND_S
 from aos_deploy.export.kept_missions import kept_missions
 
 
-def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_its_end(
-    tmp_path: Path, cache_dir: Path
-):
+def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_its_end(tmp_path: Path):
     text = (ROOT / "deploy/errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/")
     with collector() as got:
         (tmp_path / "errand.yaml").write_text(f"{text}\nspans: {{otlp: '{got.address}'}}\n")
         up = subprocess.run(
             [BIN / "aos-up", "errand.yaml", "--model", "--plain", "--runs", "runs"],
             cwd=tmp_path,
-            env=environment(tmp_path, cache_dir) | {"OTEL_EXPORTER_OTLP_HEADERS": "authorization=secret"},
+            env=environment(tmp_path) | {"OTEL_EXPORTER_OTLP_HEADERS": "authorization=secret"},
             capture_output=True,
             timeout=COMMAND_S,
             check=False,

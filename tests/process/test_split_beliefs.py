@@ -1,5 +1,4 @@
 import random
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -68,9 +67,9 @@ async def told(engine: Engine) -> NDArray[np.float64]:
     return np.array([[each.values.get(str(level), 0.0) for level in range(LEVELS)] for each in marginals])
 
 
-async def test_marginals_of_many_machines_stay_close_to_the_exact_ones(cache_dir: Path):
+async def test_marginals_of_many_machines_stay_close_to_the_exact_ones():
     distances = []
-    async with engine_of_text(FILES, cache_dir) as engine:
+    async with engine_of_text(FILES) as engine:
         workshop = Workshop(1)
         for _ in range(12):
             update = await engine.update(*workshop.inspection())
@@ -81,9 +80,9 @@ async def test_marginals_of_many_machines_stay_close_to_the_exact_ones(cache_dir
     assert np.mean(distances) < 0.014
 
 
-async def test_such_a_belief_is_the_same_after_a_kill(cache_dir: Path):
+async def test_such_a_belief_is_the_same_after_a_kill():
     digests = []
-    built = await built_text(FILES, cache_dir)
+    built = await built_text(FILES)
     for is_killed in (False, True):
         workshop = Workshop(2)
         async with engine_of(built) as engine:
@@ -97,7 +96,7 @@ async def test_such_a_belief_is_the_same_after_a_kill(cache_dir: Path):
     assert digests[0] == digests[1] != ""
 
 
-async def test_a_hand_that_is_dealt_in_a_step_outlasts_its_states(cache_dir: Path):
+async def test_a_hand_that_is_dealt_in_a_step_outlasts_its_states():
     cards = 30
     environment = f"""project: cards
 horizon: 5
@@ -126,7 +125,7 @@ __moduleResponse = state__.cards[number] ? yes : no;
     dice = random.Random(4)
     hand = [dice.random() < 0.5 for _ in range(cards)]
     files = {"cards.ef": environment, "turn.sd": turn}
-    async with engine_of_text(files, cache_dir) as engine:
+    async with engine_of_text(files) as engine:
         for card, is_on in enumerate(hand):
             update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
             assert not update.is_impossible, card

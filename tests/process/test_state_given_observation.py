@@ -118,8 +118,8 @@ SEEN = {
 
 
 @pytest.fixture
-async def rover(cache_dir: Path) -> BuiltModel:
-    return await built_text(ROVER, cache_dir)
+async def rover() -> BuiltModel:
+    return await built_text(ROVER)
 
 
 @pytest.fixture
@@ -250,8 +250,8 @@ async def test_a_simulated_state_is_shown_by_the_documents_print_function(engine
     assert run.states[0] in ("Base at 1\n", "Base at 1, mapped\n")
 
 
-async def test_without_a_print_function_a_state_is_shown_by_its_variables(bundles: Path, cache_dir: Path):
-    async with engine_of_bundle(bundles / "armadillo-finer", cache_dir) as engine:
+async def test_without_a_print_function_a_state_is_shown_by_its_variables(bundles: Path):
+    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
         await engine.reset_world(1)
         text = await engine.world_state()
     assert ", robot_at=HardTable, holding_can=false, " in text

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from hostile.counters import counting
-from models import built_text, engine_of
+from models import built_project, built_text, engine_of
 from scripted_missions import Surroundings, hears_left, jammed, observed
 from test_taking_up import rows_of
 
@@ -17,7 +17,6 @@ from aos_protocol.errors import SteeringError
 from aos_protocol.messages import ActionRefused, Activate, MissionBegun, MissionState, Outcome, Steer
 from aos_protocol.mission_rows import BEGUN
 from aos_solver.building.build import BuiltModel
-from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.questions.missions import Restriction
 from aos_solver.child.search import Search
@@ -213,12 +212,12 @@ async def test_a_mission_without_anything_left_holds_until_something_is_taken_ba
     assert violations(around) == []
 
 
-async def test_constraints_hold_for_what_an_operator_wants(bundles: Path, cache_dir: Path):
+async def test_constraints_hold_for_what_an_operator_wants(bundles: Path):
     project = load_bundle(bundles / "bench" / "tiger").project
     assert project is not None
     never = "open && state.tiger_behind == Left"
     constraint = constraint_of_option(f"0.1: {never}")
-    built = await build_project(constrained(project, [constraint]), cache_dir)
+    built = await built_project(constrained(project, [constraint]))
     around = Steered()
     said: list[SteeringError] = []
 
@@ -309,10 +308,8 @@ async def test_a_mission_cut_off_at_any_row_is_steered_as_before(tiger: BuiltMod
         assert [step.decision.chosen_by for step in twin.steps] == [by for _, by in whole.chosen], cut
 
 
-async def test_a_mission_that_could_not_reach_its_goal_without_a_skill_holds_and_does_not_give_up(
-    cache_dir: Path,
-):
-    built = await built_text(counting("lamp", "press", steps="1", reward=-1), cache_dir)
+async def test_a_mission_that_could_not_reach_its_goal_without_a_skill_holds_and_does_not_give_up():
+    built = await built_text(counting("lamp", "press", steps="1", reward=-1))
     around = Steered(lambda request: observed(request, "done"))
     around.on_act = lambda request: around.steer("leave_out", name="press") if request.id.step == 1 else None
     around.on_hold = in_turn(lambda: around.steer("take_back", name="press"))

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import engine_of_text
 
@@ -49,19 +47,19 @@ __moduleResponse = AOS.Bernoulli(0.9) == (state__.face < 2) ? low : high;
     }
 
 
-async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path):
+async def test_walks_by_the_table_earn_what_the_odds_say():
     first = sum(odds * worth for odds, worth in zip(FIRST_ODDS, WORTH, strict=True))
     thrown = sum(odds * worth for odds, worth in zip(ODDS, WORTH, strict=True))
     # The die has been thrown after half of the steps: what is left of the first face halves each time.
     means = [thrown + (first - thrown) * 0.5**step for step in range(HORIZON)]
-    async with engine_of_text(documents(""), cache_dir) as engine:
+    async with engine_of_text(documents("")) as engine:
         walked = await engine.rate(0.2, seed=1, stepping="table")
         assert walked.samples > 100_000
         assert walked.mean_reward == pytest.approx(sum(means) / HORIZON, rel=0.01)
 
 
-async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path):
-    async with engine_of_text(documents(""), cache_dir) as engine:
+async def test_a_search_by_the_table_finds_the_exact_value():
+    async with engine_of_text(documents("")) as engine:
         best = max((await engine.exact_values(HORIZON)).actions, key=lambda value: value.q)
         plan = await engine.plan(simulations=100_000, seed=1, planner="pomcp")
     assert (plan.best.action, plan.best.q) == (best.action, pytest.approx(best.q, rel=0.01))
@@ -76,7 +74,7 @@ async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path):
     ],
     ids=["a draw without end", "states without end", "a fault that hardly ever happens"],
 )
-async def test_there_is_no_table_of(move: str, cache_dir: Path):
-    async with engine_of_text(documents(move), cache_dir) as engine:
+async def test_there_is_no_table_of(move: str):
+    async with engine_of_text(documents(move)) as engine:
         assert (await engine.rate(0.05, seed=1, stepping="table")).samples == 0
         assert (await engine.rate(0.05, seed=1)).samples > 0

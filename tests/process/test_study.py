@@ -6,6 +6,7 @@ import pytest
 from models import engine_of_bundle
 from study.played import Played, play
 
+from aos_deploy.places import cache_dir
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
 from aos_protocol.messages import Fault, PredictedObservation, TreeQuery, WhatIfQuery, WhyQuery
@@ -16,12 +17,12 @@ BUNDLE = "armadillo-rough"
 
 
 @pytest.fixture
-async def played(bundles: Path, cache_dir: Path) -> Played:
-    return await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=2)
+async def played(bundles: Path) -> Played:
+    return await play(read_bundle_files(bundles / BUNDLE)[0], steps=2)
 
 
-async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played, cache_dir: Path):
-    study = Study(played, cache_dir, flips_s=math.inf)
+async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played):
+    study = Study(played, cache_dir(), flips_s=math.inf)
     try:
         why = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
         again = await study.why(WhyQuery(2, instead="navigate(destination=easy_table)"))
@@ -53,9 +54,9 @@ async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Play
 
 
 async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them(
-    played: Played, bundles: Path, cache_dir: Path
+    played: Played, bundles: Path
 ):
-    study = Study(played, cache_dir)
+    study = Study(played, cache_dir())
     try:
         chosen = played.mission.decision(1).action
         forbidden = await study.what_if(WhatIfQuery(1, forbid=(chosen,)))
@@ -69,7 +70,7 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         assert all(not value.action.startswith("pick") for value in without.actions)
         tree = await study.tree(TreeQuery(1, depth=2, branches=2))
         assert tree.root.actions[0].action == chosen
-        async with engine_of_bundle(bundles / BUNDLE, cache_dir) as engine:
+        async with engine_of_bundle(bundles / BUNDLE) as engine:
             index = [action.name for action in engine.description.actions].index(chosen)
             predicted = {each.response: each.probability for each in (await engine.predict(index)).predicted}
         assert {response: p for response, p, _ in tree.root.actions[0].after} == predicted
@@ -77,8 +78,8 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         await study.close()
 
 
-async def test_what_cannot_be_supposed_is_told(played: Played, cache_dir: Path):
-    study = Study(played, cache_dir)
+async def test_what_cannot_be_supposed_is_told(played: Played):
+    study = Study(played, cache_dir())
     try:
         for query, code, said in (
             (WhatIfQuery(1), "AOS530", "nothing is supposed"),
@@ -97,10 +98,8 @@ async def test_what_cannot_be_supposed_is_told(played: Played, cache_dir: Path):
         await study.close()
 
 
-async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
-    bundles: Path, cache_dir: Path
-):
-    played = await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=1)
+async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(bundles: Path):
+    played = await play(read_bundle_files(bundles / BUNDLE)[0], steps=1)
     chosen = played.mission.decision(1)
     asked = msgspec.structs.replace(
         chosen,
@@ -115,7 +114,7 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
     rows = [row for row in played.rows if row.kind == "begun"]
     text = msgspec.json.encode(asked).decode()
     played.rows = [*rows, JournalRow(len(rows) + 1, 0, "decision", text)]
-    study = Study(played, cache_dir, flips_s=0.0)
+    study = Study(played, cache_dir(), flips_s=0.0)
     try:
         why = await study.why(WhyQuery(1))
         assert (why.action, why.chosen_by, why.other) == ("observe_holding", "operator", chosen.action)
@@ -128,7 +127,7 @@ async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(
         await study.close()
 
 
-async def test_a_decision_whose_activation_brought_nothing_says_so(played: Played, cache_dir: Path):
+async def test_a_decision_whose_activation_brought_nothing_says_so(played: Played):
     record = played.mission.outcome(1)
     assert record is not None
     assert record.outcome is not None
@@ -142,7 +141,7 @@ async def test_a_decision_whose_activation_brought_nothing_says_so(played: Playe
         if row.kind == "decision" and '"outcome":{' in row.payload
     )
     played.rows[place] = played.rows[place]._replace(payload=text)
-    study = Study(played, cache_dir, flips_s=0.0)
+    study = Study(played, cache_dir(), flips_s=0.0)
     try:
         why = await study.why(WhyQuery(1))
     finally:
@@ -151,13 +150,9 @@ async def test_a_decision_whose_activation_brought_nothing_says_so(played: Playe
     assert "nothing was observed, its activation ended as unknown: the adapter was lost" in why.remark
 
 
-async def test_an_action_of_a_script_is_explained_where_values_are_searched(bundles: Path, cache_dir: Path):
+async def test_an_action_of_a_script_is_explained_where_values_are_searched(bundles: Path):
     played = await play(
-        read_bundle_files(bundles / "bench" / "tiger")[0],
-        cache_dir,
-        steps=1,
-        planner="pomcp",
-        simulations=4000,
+        read_bundle_files(bundles / "bench" / "tiger")[0], steps=1, planner="pomcp", simulations=4000
     )
     opened = "open(door=left_door)"
     asked = msgspec.structs.replace(
@@ -173,7 +168,7 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched(bund
     rows = [row for row in played.rows if row.kind == "begun"]
     text = msgspec.json.encode(asked).decode()
     played.rows = [*rows, JournalRow(len(rows) + 1, 0, "decision", text)]
-    study = Study(played, cache_dir)
+    study = Study(played, cache_dir())
     try:
         why = await study.why(WhyQuery(1))
         assert (why.action, why.chosen_by, why.other, why.planner) == (opened, "script", "listen", "pomcp")
@@ -186,14 +181,12 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched(bund
         await study.close()
 
 
-async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps(
-    bundles: Path, cache_dir: Path
-):
+async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps(bundles: Path):
     files = read_bundle_files(bundles / "bench" / "tiger")[0]
     tolls = "for (int i = 0; i < 16; i++) __reward -= AOS.Bernoulli(0.25) ? 1 : 0;"
     files["listen.sd"] = files["listen.sd"].replace(b"__reward = -1;", f"__reward = -1;\n{tolls}".encode())
-    played = await play(files, cache_dir, steps=1, planner="pomcp", simulations=500)
-    study = Study(played, cache_dir)
+    played = await play(files, steps=1, planner="pomcp", simulations=500)
+    study = Study(played, cache_dir())
     try:
         why = await study.why(WhyQuery(1))
         assert "rewards of lines are means of 10,000 steps that were drawn" in why.remark

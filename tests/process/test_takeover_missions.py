@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import msgspec
 import pytest
 from hall import HALL, marginal, with_peek
@@ -37,19 +35,17 @@ class Plugged(Surroundings):
         return None if successor is None else await successor.take_over(running, past)
 
 
-async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold(cache_dir: Path):
+async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold():
     around = Plugged(hears_below)
     around.unavailable = {"look": "the camera is away"}
-    async with engine_of_text(with_peek(HALL), cache_dir) as engine:
+    async with engine_of_text(with_peek(HALL)) as engine:
 
         def push():
             around.successor = Successor(RunningModel(2, engine), SystemClock())
 
         around.on_hold = push
         limits = MissionLimits(step_limit=1)
-        state, _ = await run_mission(
-            await built_text(HALL, cache_dir), hears_below, limits=limits, around=around
-        )
+        state, _ = await run_mission(await built_text(HALL), hears_below, limits=limits, around=around)
     (decision,) = around.decisions
     assert (state.ending, decision.skill, decision.revision) == ("step_limit", "peek", 2)
     assert decision.adopted is not None
@@ -73,20 +69,20 @@ class Prepared(Search, frozen=True, kw_only=True):
         return Search(simulations=100, seed=1)
 
 
-async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_more(cache_dir: Path):
+async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_more():
     around = Plugged(hears_below)
     terms = Terms(name="m", search=Prepared(simulations=1, seed=1), limits=MissionLimits(step_limit=1))
-    async with engine_of_text(HALL, cache_dir) as before, engine_of_text(with_peek(HALL), cache_dir) as after:
+    async with engine_of_text(HALL) as before, engine_of_text(with_peek(HALL)) as after:
         around.successor = Successor(RunningModel(2, after), SystemClock())
         state = await Mission(terms, RunningModel(1, before), around).run()
     assert (state.ending, state.remark) == ("step_limit", "the step limit of 1 is reached")
     assert [record.skill for record in around.decisions] == ["peek"]
 
 
-async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_decided(cache_dir: Path):
+async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_decided():
     around = Surroundings(hears_below)
     limits = MissionLimits(step_limit=2)
-    await run_mission(await built_text(HALL, cache_dir), hears_below, limits=limits, around=around)
+    await run_mission(await built_text(HALL), hears_below, limits=limits, around=around)
     kinds = [kind for kind, _ in around.journalled]
     second = [number for number, kind in enumerate(kinds) if kind == "decision"][2]
     memory = folded(
@@ -96,7 +92,7 @@ async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_dec
     assert memory.pending is not None
     rest = Surroundings(hears_below)
     terms = Terms(name="m", search=Search(simulations=100, seed=1), limits=limits)
-    async with engine_of_text(with_peek(HALL), cache_dir) as engine:
+    async with engine_of_text(with_peek(HALL)) as engine:
         state = await Mission(terms, RunningModel(2, engine), rest, memory).run()
     assert (state.ending, state.step) == ("step_limit", 2)
     assert [record.skill for record in rest.decisions] == ["peek"]

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 from models import built_text, engine_of, engine_of_text
 
 BOXES = """project: boxes
@@ -106,23 +104,23 @@ __moduleResponseStr = "alarm " + std::to_string(AOSUtils::SampleDiscrete(odds));
 """Machines in a ring fail beside one that is down. Each step has an alarm, as a rule of one that is down."""
 
 
-async def first_actions(files: dict[str, str], cache_dir: Path, simulations: int) -> list[str]:
-    async with engine_of_text(files, cache_dir) as engine:
+async def first_actions(files: dict[str, str], simulations: int) -> list[str]:
+    async with engine_of_text(files) as engine:
         plans = [await engine.plan(simulations=simulations, seed=seed, planner="auto") for seed in (1, 2, 3)]
     return [plan.best.action for plan in plans]
 
 
-async def test_a_rare_loss_counts_in_full_though_no_simulation_may_meet_it(cache_dir: Path):
-    for action in await first_actions(RARE_LOSS, cache_dir, 2000):
+async def test_a_rare_loss_counts_in_full_though_no_simulation_may_meet_it():
+    for action in await first_actions(RARE_LOSS, 2000):
         assert "carefully=true" in action
 
 
-async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it(cache_dir: Path):
-    assert await first_actions(BOMBS, cache_dir, 20_000) == ["leave"] * 3
+async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it():
+    assert await first_actions(BOMBS, 20_000) == ["leave"] * 3
 
 
-async def test_one_draw_of_many_outcomes_leaves_many_effective_states(cache_dir: Path):
-    built = await built_text(ALARMS, cache_dir)
+async def test_one_draw_of_many_outcomes_leaves_many_effective_states():
+    built = await built_text(ALARMS)
     async with engine_of(built) as engine:
         await engine.reset_world(1)
         effective = []

@@ -1,5 +1,4 @@
 import math
-from pathlib import Path
 
 import pytest
 from models import built_text, engine_of, engine_of_text
@@ -39,8 +38,8 @@ def fully_observable_value(cell: int) -> float:
     return value
 
 
-async def test_states_are_listed_without_what_is_observed_and_values_follow_from_them(cache_dir: Path):
-    built = await built_text(CORRIDOR, cache_dir)
+async def test_states_are_listed_without_what_is_observed_and_values_follow_from_them():
+    built = await built_text(CORRIDOR)
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=300, seed=1, planner="auto")
     assert plan.planner == "belief-tree"
@@ -100,9 +99,9 @@ def _chance(reading: int, mean: float) -> float:
 
 
 @pytest.mark.parametrize("readings", [(7, -4, 7), (4, 6, 0), (-12, -3, 10), (10, 10, -10), (-1, 0, 1)])
-async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(readings: tuple[int, ...], cache_dir: Path):
+async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(readings: tuple[int, ...]):
     left, right = (math.prod(_chance(reading, mean) for reading in readings) for mean in (-1, 1))
-    async with engine_of_text(DOORS, cache_dir) as engine:
+    async with engine_of_text(DOORS) as engine:
         update = await engine.update("listen", "".join(f"{reading};" for reading in readings))
     marginal = next(
         marginal for marginal in update.summary.marginals if marginal.variable.endswith("is_left")
@@ -111,9 +110,9 @@ async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(readings: tuple
     assert (update.summary.effective_states or 0) > 1000
 
 
-async def test_readings_that_are_written_as_numbers_are_paid_for(cache_dir: Path):
+async def test_readings_that_are_written_as_numbers_are_paid_for():
     """Were all seen after one action, waiting would be better than listening."""
-    async with engine_of_text(DOORS, cache_dir) as engine:
+    async with engine_of_text(DOORS) as engine:
         plan = await engine.plan(simulations=4_000, seed=1, planner="auto")
         assert (plan.planner, plan.best.action) == ("belief-tree", "listen")
         again, other = [await engine.plan(simulations=4_000, seed=seed, planner="auto") for seed in (1, 2)]
@@ -121,7 +120,7 @@ async def test_readings_that_are_written_as_numbers_are_paid_for(cache_dir: Path
     assert other.actions != plan.actions
 
 
-async def test_responses_that_hardly_come_twice_leave_the_search_to_pomcp(cache_dir: Path):
+async def test_responses_that_hardly_come_twice_leave_the_search_to_pomcp():
     words = """project: doors
 dynamic_model:
 __reward = -1;
@@ -132,29 +131,29 @@ for (int i = 0; i < 8; i++) {
     __moduleResponseStr += char('a' + int(heard));
 }
 """
-    async with engine_of_text({**DOORS, "listen.sd": words}, cache_dir) as engine:
+    async with engine_of_text({**DOORS, "listen.sd": words}) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
     assert plan.planner == "pomcp"
     assert "; their probabilities cannot be estimated: hardly a response comes twice" in plan.why
 
 
-async def test_pomcp_that_was_asked_for_stays_pomcp(cache_dir: Path):
-    async with engine_of_text(DOORS, cache_dir) as engine:
+async def test_pomcp_that_was_asked_for_stays_pomcp():
+    async with engine_of_text(DOORS) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="pomcp")
     assert plan.planner == "pomcp"
 
 
-async def test_sarsop_is_told_why_it_cannot_be_used(cache_dir: Path):
-    built = await built_text(CORRIDOR, cache_dir)
+async def test_sarsop_is_told_why_it_cannot_be_used():
+    built = await built_text(CORRIDOR)
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=50, seed=1, planner="sarsop")
     assert plan.planner == "pomcp"
     assert plan.why == "SARSOP cannot be used: a draw is continuous"
 
 
-async def test_a_state_that_is_the_only_one_is_told_as_that(cache_dir: Path):
+async def test_a_state_that_is_the_only_one_is_told_as_that():
     wait = "project: still\ndynamic_model:\n__moduleResponse = waited;\n"
-    built = await built_text({"still.ef": "project: still\nhorizon: 2\n", "wait.sd": wait}, cache_dir)
+    built = await built_text({"still.ef": "project: still\nhorizon: 2\n", "wait.sd": wait})
     async with engine_of(built) as engine:
         plan = await engine.plan(simulations=10, seed=1, planner="auto")
     assert plan.why.startswith("the only state can be listed")

@@ -31,17 +31,17 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
     ],
 )
 async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
-    names: tuple[str, ...], first: str, bundles: Path, cache_dir: Path
+    names: tuple[str, ...], first: str, bundles: Path
 ):
-    async with engine_of(await built_bundles([bundles / name for name in names], cache_dir)) as engine:
+    async with engine_of(await built_bundles([bundles / name for name in names])) as engine:
         values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 
 
-async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path, cache_dir: Path):
+async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path):
     both = [bundles / name for name in ("armadillo-finer-blind", "armadillo-rough-blind")]
-    async with engine_of(await built_bundles(both, cache_dir)) as engine:
+    async with engine_of(await built_bundles(both)) as engine:
         await engine.reset_belief()
         for action, response in (
             ("pick", "pick_succeeded"),
@@ -55,11 +55,11 @@ async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path,
             await engine.update(action, response)
 
 
-async def test_the_turtlebot_takes_the_shortest_of_all_tours(root: Path, bundles: Path, cache_dir: Path):
+async def test_the_turtlebot_takes_the_shortest_of_all_tours(root: Path, bundles: Path):
     room = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
     at = {name: (place.x, place.y) for name, place in room.places.items()}
     decided = []
-    async with engine_of_bundle(bundles / "turtlebot", cache_dir) as engine:
+    async with engine_of_bundle(bundles / "turtlebot") as engine:
         await engine.reset_belief()
         for step in range(len(at)):
             plan = await engine.plan(simulations=100_000, seed=step, planner="auto")
@@ -79,18 +79,18 @@ def shortest_tour(start: Point, places: frozenset[Point]) -> float:
     )
 
 
-async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_dir: Path):
+async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path):
     chance = random.Random(1)
-    async with engine_of_bundle(bundles / "tictactoe", cache_dir) as engine:
+    async with engine_of_bundle(bundles / "tictactoe") as engine:
         for seed in range(3):
             ending, moves = await game(engine, "perfect", chance, seed, dry_centre=0.0)
             assert ending != "X", moves
 
 
-async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path, cache_dir: Path):
+async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path):
     both = [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")]
     chance = random.Random(1)
-    async with engine_of(await built_bundles(both, cache_dir)) as engine:
+    async with engine_of(await built_bundles(both)) as engine:
         indices = {action.name: index for index, action in enumerate(engine.description.actions)}
         for seed in range(1, 21):
             await engine.reset_world(seed)
@@ -107,13 +107,9 @@ async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path,
                 board = response
 
 
-async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world(
-    bundles: Path, cache_dir: Path
-):
-    own = await built_bundle(bundles / "tictactoe", cache_dir)
-    other = await built_bundles(
-        [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")], cache_dir
-    )
+async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world(bundles: Path):
+    own = await built_bundle(bundles / "tictactoe")
+    other = await built_bundles([bundles / name for name in ("tictactoe", "tictactoe-perfect-person")])
     limits = MissionLimits(goal_probability=0.9, step_limit=30)
     async with engine_of(own) as engine, engine_of(other) as world:
         search = Search(simulations=1000, seed=1)

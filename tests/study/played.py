@@ -1,11 +1,12 @@
 """Missions of the loop with a simulated world, whose rows are kept as a journal keeps them."""
 
 from collections.abc import Awaitable, Callable, Mapping
-from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
+from models import built_project
 
+from aos_deploy.places import cache_dir
 from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
@@ -13,7 +14,6 @@ from aos_protocol.messages import Activate, Message, MissionBegun, MissionState,
 from aos_protocol.mission_rows import BEGUN
 from aos_runtime.clock import SystemClock
 from aos_runtime.disk.journal import JournalRow
-from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.loop import Mission
@@ -134,7 +134,6 @@ class _World(QuietPorts):
 
 async def play(
     files: Files,
-    cache_dir: Path,
     *,
     seed: int = 1,
     steps: int = 8,
@@ -152,13 +151,13 @@ async def play(
         endpoint="",
         run_dir="",
         project="p",
-        cache_dir=str(cache_dir),
+        cache_dir=str(cache_dir()),
         seed=seed,
         step_limit=steps,
         **budget,
     )
     project = _project(files)
-    built = await build_project(project, cache_dir)
+    built = await built_project(project)
     engine = await Engine.start(built, seed=seed)
     world = await Engine.start(built, seed=seed + 1000)
     around = _World(world, beside)
@@ -169,7 +168,7 @@ async def play(
         parameters = engine.description.mission_parameters
         around.journal(BEGUN, MissionBegun("m", 1, seed, 1, running.digest, parameters))
         if then is not None:
-            other = await build_project(_project(then[1]), cache_dir)
+            other = await built_project(_project(then[1]))
             model = RunningModel(2, await Engine.start(other, seed=seed))
             around.next = (then[0], Successor(model, around.clock))
         search = msgspec.structs.replace(msgspec.convert(settings, Search, from_attributes=True), seed=seed)

@@ -1,5 +1,4 @@
 import json
-from pathlib import Path
 
 import pytest
 from dialects import project_of, say_the_same
@@ -70,8 +69,8 @@ def files(**changed: str) -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="module")
-def model(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(FILES), cache_dir)
+def model() -> ScriptedModel:
+    return scripted(text_project(FILES))
 
 
 def errors(environment: str) -> list[Diagnostic]:

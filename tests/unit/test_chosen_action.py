@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from mappings import mapping_text
 from scripted_models import ScriptedModel, scripted, text_project
@@ -40,8 +38,8 @@ __reward = fly != NULL ? -1 : 0;
 
 
 @pytest.fixture(scope="module")
-def bird(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(BIRD), cache_dir)
+def bird() -> ScriptedModel:
+    return scripted(text_project(BIRD))
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,7 @@ def test_sdl_with_our_words_says_what_the_json_examples_say(root: Path):
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
-def test_the_examples_are_models_that_run(root: Path, cache_dir: Path, dialect):
+def test_the_examples_are_models_that_run(root: Path, dialect):
     project = load_files(examples(root, dialect)).project
     assert project is not None
-    assert scripted(project, cache_dir).walk(1000)["steps"] == 1000
+    assert scripted(project).walk(1000)["steps"] == 1000

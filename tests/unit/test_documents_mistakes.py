@@ -25,6 +25,6 @@ def test_nearly_every_mistake_is_told_in_the_right_column(verdicts: list[Verdict
 
 
 @pytest.mark.parametrize("bundle", ["doors", "fancy", "fetch", "lamp", "tiger"])
-def test_the_bundles_emit_compile_and_run(root: Path, cache_dir: Path, bundle):
-    model = scripted(bundle_project(root / "tests/data/bundles" / bundle), cache_dir)
+def test_the_bundles_emit_compile_and_run(root: Path, bundle):
+    model = scripted(bundle_project(root / "tests/data/bundles" / bundle))
     assert model.walk(1000)["steps"] == 1000

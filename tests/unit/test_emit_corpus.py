@@ -20,15 +20,15 @@ pytestmark = pytest.mark.corpus
 
 
 @pytest.mark.parametrize("bundle", sorted(ACTIONS))
-def test_every_bundle_emits_compiles_and_runs(corpus: Path, cache_dir: Path, bundle):
-    model = model_of(corpus / bundle, cache_dir)
+def test_every_bundle_emits_compiles_and_runs(corpus: Path, bundle):
+    model = model_of(corpus / bundle)
     assert len(model.describe()) == ACTIONS[bundle]
     assert model.walk(1000)["steps"] == 1000
 
 
-def test_our_armadillo_moves_as_the_original_does(corpus: Path, bundles: Path, cache_dir: Path):
-    ours = model_of(bundles / "armadillo-finer", cache_dir)
-    original = model_of(corpus / "armadillo-finer", cache_dir)
+def test_our_armadillo_moves_as_the_original_does(corpus: Path, bundles: Path):
+    ours = model_of(bundles / "armadillo-finer")
+    original = model_of(corpus / "armadillo-finer")
     mine = ours.play("pick|3", "navigate(destination=easy_table)|1", "pick|1", "serve|1")
     theirs = original.play(
         "basic_pick|3",
@@ -40,8 +40,8 @@ def test_our_armadillo_moves_as_the_original_does(corpus: Path, bundles: Path, c
     assert [step["ending"] for step in mine.steps] == [step["ending"] for step in theirs.steps]
 
 
-def test_a_full_board_ends_the_game_without_a_fault(corpus: Path, cache_dir: Path):
-    game = model_of(corpus / "tic-tac-toe-sdl", cache_dir)
+def test_a_full_board_ends_the_game_without_a_fault(corpus: Path):
+    game = model_of(corpus / "tic-tac-toe-sdl")
     # The human marks cells by the script's draws; after nine marks no cell is left to draw from.
     moves = ["draw(oCellP=0)", "detect|1", "draw(oCellP=2)", "detect|4", "draw(oCellP=7)", "detect|5"]
     played = game.play(*moves, "draw(oCellP=3)", "detect|6", "draw(oCellP=8)", "detect", "detect")
@@ -49,15 +49,15 @@ def test_a_full_board_ends_the_game_without_a_fault(corpus: Path, cache_dir: Pat
     assert [step["ending"] for step in played.steps[-3:]] == [3, 3, 3], "a draw is neither"
 
 
-def test_the_wild_fire_sees_the_chosen_action(corpus: Path, cache_dir: Path):
-    fire = model_of(corpus / "wildfire", cache_dir)
+def test_the_wild_fire_sees_the_chosen_action(corpus: Path):
+    fire = model_of(corpus / "wildfire")
     extinguished = fire.play("put_out(x=l1, y=l3)|0 0 0")
     assert extinguished.values("burningTable[6]") == ["true", "false"]
     assert fire.play("put_out(x=l2, y=l2)|0 0 0").values("burningTable[6]") == ["true", "true"]
 
 
-def test_the_true_previous_state_gives_the_turtlebot_its_distance(corpus: Path, cache_dir: Path):
-    robot = model_of(corpus / "turtlebot-visit", cache_dir)
+def test_the_true_previous_state_gives_the_turtlebot_its_distance(corpus: Path):
+    robot = model_of(corpus / "turtlebot-visit")
     reward = robot.play("navigate(oDesiredLocation=l1)").rewards[0]
     distance = (
         (-2.01710748672 + 1.5516752004623413) ** 2 + (0.570648550987 - 1.4216153621673584) ** 2
@@ -65,5 +65,5 @@ def test_the_true_previous_state_gives_the_turtlebot_its_distance(corpus: Path, 
     assert reward == pytest.approx(100 - 10 * distance, abs=1e-4)
 
 
-def model_of(bundle: Path, cache_dir: Path) -> ScriptedModel:
-    return scripted(bundle_project(bundle), cache_dir)
+def model_of(bundle: Path) -> ScriptedModel:
+    return scripted(bundle_project(bundle))

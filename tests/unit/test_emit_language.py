@@ -1,4 +1,3 @@
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -187,11 +186,11 @@ if (which == 2) __moduleResponse = 9;""",
 
 
 @pytest.fixture(scope="module")
-def model(cache_dir: Path) -> ScriptedModel:
+def model() -> ScriptedModel:
     files = {"environment.json": ENVIRONMENT, "glue.json": LOW_LEVEL}
     for name, (text, responses) in SKILLS.items():
         files |= {f"{name}.json": text, f"{name}.am": mapping_text(*responses)}
-    return scripted(text_project(files), cache_dir)
+    return scripted(text_project(files))
 
 
 def test_values_have_their_declared_defaults(model: ScriptedModel):

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from mappings import mapping_text
 from scripted_models import ScriptedModel, json_text, scripted, text_project
@@ -63,8 +61,8 @@ __moduleResponse = AOS.Bernoulli(0.9) ? raised : stuck;
 
 
 @pytest.fixture(scope="module")
-def switch(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(SWITCH), cache_dir)
+def switch() -> ScriptedModel:
+    return scripted(text_project(SWITCH))
 
 
 def test_actions_are_grounded_by_the_skills_own_code(switch: ScriptedModel):
@@ -177,8 +175,8 @@ ENDED_AT_THE_START = {
 
 
 @pytest.fixture(scope="module")
-def one_state(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(ENDED_AT_THE_START), cache_dir)
+def one_state() -> ScriptedModel:
+    return scripted(text_project(ENDED_AT_THE_START))
 
 
 def test_a_one_time_reward_that_holds_at_the_start_is_used_up(one_state: ScriptedModel):

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import msgspec
 import pytest
 from dialects import say_the_same
@@ -70,8 +68,8 @@ BUNDLE = {"room.ef": ROOM, "go.sd": GO, "go.am": mapping_text()}
 
 
 @pytest.fixture(scope="module")
-def room(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(BUNDLE), cache_dir)
+def room() -> ScriptedModel:
+    return scripted(text_project(BUNDLE))
 
 
 def ending_at(room: ScriptedModel, place: int) -> int:

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from mappings import mapping_text
 from scripted_models import ScriptedModel, scripted, text_project
@@ -213,8 +211,8 @@ if (__moduleResponseStr.size() > 6) __moduleResponseStr[0] = toupper(__moduleRes
 
 
 @pytest.fixture(scope="module")
-def bench(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(BENCH), cache_dir)
+def bench() -> ScriptedModel:
+    return scripted(text_project(BENCH))
 
 
 def test_code_of_many_kinds_does_what_it_says(bench: ScriptedModel):

@@ -92,8 +92,8 @@ def program(*changes: str) -> Program:
 
 
 @pytest.fixture(scope="module")
-def model(cache_dir: Path) -> ScriptedModel:
-    return scripted(text_project(FILES), cache_dir)
+def model() -> ScriptedModel:
+    return scripted(text_project(FILES))
 
 
 def test_all_code_sees_the_constants_and_calls_the_functions(model: ScriptedModel):
