@@ -110,7 +110,10 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
         ),
         "violate_penalty": ("Added to the reward where the precondition is not met.", {}),
         "rollout_policy": ("The skill's weight in random play-outs: sets `__heuristicValue`.", _BLOCK_PARTS),
-        "execution_time": ("How long the skill takes: sets `__moduleExecutionTime`.", _BLOCK_PARTS),
+        "execution_time": (
+            "How long the skill takes, a whole number: sets `__moduleExecutionTime`.",
+            _BLOCK_PARTS,
+        ),
         "dynamic_model": (
             "What the skill does: writes `state__`, `__reward` and `__moduleResponse`.",
             _BLOCK_PARTS,

@@ -267,6 +267,29 @@ async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(
     assert str(only.span).startswith("act.sd:9:")
 
 
+@pytest.mark.parametrize(
+    ("code", "by_gcc", "by_clang"),
+    [
+        ("class P { int a; }; P p; p.a = 3;", "`P::a` is private", "`a` is private"),
+        ("class P { void f() {} }; P p; p.f();", "`P::f` is private", "`f` is private"),
+        (
+            "vector<int> v{2, 1}; std::sort(v);",
+            *["`sort` takes a beginning and an end, and no container"] * 2,
+        ),
+        (
+            "auto f = [](std::optional<Spot> p) {\nreturn p ? 1 : 0; };\nf(std::nullopt);",
+            "`Spot` was not declared",
+            "use of undeclared identifier `Spot`",
+        ),
+    ],
+)
+async def test_what_is_said_of_classes_and_the_library_is_told_in_words(
+    code: str, by_gcc: str, by_clang: str, cache_dir: Path
+):
+    error = await build_error(emitted_skill(code), cache_dir)
+    assert [one.message for one in error.diagnostics] == [await said(by_gcc, by_clang)]
+
+
 async def said(by_gcc: str, by_clang: str) -> str:
     """Returns what the compiler that is found is expected to say."""
     return by_gcc if (await find_compiler()).family == "gcc" else by_clang

@@ -260,3 +260,82 @@ def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
         (13, "warning", "Write `std::abs(state.second.width - 0.3) < 1e-6`"),
         (43, "remark", "Write `std::abs(state.first.far - 0.3) < 1e-6`"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("steps;", "9 AOS149 this statement does nothing. To set a variable, write `NAME = steps;`"),
+        (
+            "__reward - (1);",
+            "9 AOS149 this statement does nothing. To set a variable, write `NAME = __reward - (1);`",
+        ),
+        ("(void)steps; if (steps > 1) state__.first.x++;", ""),
+        ("state__.first.x += 0.2;", "9 AOS149 `state__.first.x` is a whole number, and `0.2` is none. "),
+        ("int far = -1.5; state__.first.x = far;", "9 AOS149 `far` is a whole number, and `-1.5` is none. "),
+        ("int n = 2.0; state__.first.x = n * 1.5; state__.first.x *= 0.5;", ""),
+        (
+            "vector<int> n = [1, 2]; __reward = n[0];",
+            "9 AOS108 a list stands in braces in C++. Write `{1, 2}`",
+        ),
+        ("auto f = [steps] { return steps; }; __reward = f();", ""),
+    ],
+)
+def test_code_that_does_nothing_or_loses_a_fraction_is_told(code, told):
+    texts = finding_texts(skill=skill_after(code))
+    assert [text[: len(told)] for text in texts] == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
+    ("time", "is_told"),
+    [("1.33", True), ("AOS.SampleNormal(3, 1)", True), ("std::round(1.5 * steps)", False), ("steps", False)],
+)
+def test_an_execution_time_with_a_fraction_is_told(time, is_told):
+    section = f"execution_time:\n__moduleExecutionTime = {time};\n\ndynamic_model:"
+    texts = finding_texts(skill=SKILL.replace("dynamic_model:", section))
+    message = f"9 AOS149 `__moduleExecutionTime` is a whole number, and `{time}` is none"
+    assert [text.partition(". ")[0] for text in texts] == [message] * is_told
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("near", "17 AOS149 this code for the default of near sets nothing. Write `state.near = near;`"),
+        ("{1, 2}", "17 AOS149 this code for the default of near sets nothing. Write `state.near = {1, 2};`"),
+        ("state.near = 1.5;", "17 AOS149 `state.near` is a whole number, and `1.5` is none. "),
+        ("AOS.SetNull(state.near);", ""),
+    ],
+)
+def test_a_default_that_sets_nothing_or_loses_a_fraction_is_told(code, told):
+    texts = finding_texts(environment=ENVIRONMENT.replace("state.near = 1;", code))
+    assert [text[: len(told)] for text in texts] == [told] * bool(told)
+
+
+def test_a_constant_of_a_message_class_is_told():
+    imported = MAPPING.replace("path:", "imports: from: actionlib_msgs.msg import: GoalStatus\npath:")
+    mapping = imported.replace("response_rule: True", "response_rule: steps == GoalStatus.SUCCEEDED or True")
+    message = (
+        "GoalStatus.SUCCEEDED is not known where GoalStatus cannot be imported. Write the constant's number"
+    )
+    assert finding_texts(mapping=mapping) == [f"3 AOS121 {message}"]
+
+
+@pytest.mark.parametrize(
+    ("rule", "column", "told"),
+    [
+        (
+            "steps then",
+            22,
+            "`then` cannot stand here. Between two values stands an operator, such as `and` or `==`",
+        ),
+        ("if steps", 16, "`if` cannot stand here. This is one expression: leave `if` out"),
+        ("steps;", 21, "`;` cannot stand here. This is one expression: leave `;` out"),
+        ("steps AND 3", 22, "`AND` cannot stand here. Python writes `and`, `or`, `not`"),
+        ("steps =< 3", 22, "`=` cannot stand here. Python writes `<=`"),
+        ("steps ? 1 : 0", 22, "`?` cannot stand here. Python writes `a if condition else b`"),
+        ("steps >", 23, "something is missing here. "),
+    ],
+)
+def test_a_word_that_python_cannot_read_is_told_with_what_to_write(rule, column, told):
+    (only,) = found(mapping=MAPPING.replace("response_rule: True", f"response_rule: {rule}"))
+    assert (f"{only.message}. {only.hint}", only.span.column) == (f"this is not Python: {told}", column)

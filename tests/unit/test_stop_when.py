@@ -49,7 +49,7 @@ def findings(stop_when: str, rule: str = "near or __skill_status == 'stopped' or
         ("near and found", 
          "error AOS110 4:21 `found` comes from the result, which is not there while the skill runs"),
         ("near or __skill_status", "error AOS110 4:20 no local variable gives `__skill_status`"),
-        ("near &", "error AOS121 4:18 this is not Python: invalid syntax"),
+        ("near &", "error AOS121 4:18 this is not Python: something is missing here"),
         ("3", "error AOS106 4:12 `stop_when` is neither True nor False: `3`"),
         ("near + 1", "error AOS106 4:12 `stop_when` is neither True nor False: `near + 1`"),
         ("-near", "error AOS106 4:12 `stop_when` is neither True nor False: `-near`"),

@@ -5,12 +5,13 @@ a mission may set, `model_code` at the C++ of environment and skills, `responses
 what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings, `enum_texts`
 at what it takes enums for, `stop_when` at what stops a skill and `python_names` at the names in it,
 `monitors` at mappings without a skill, `endings` at what ends a mission, `preconditions` at those that
-nothing keeps, `real_equality` at decimals that rounding misses, `observed_numbers` at numbers beside
-responses, `shared_code` at what all model code shares and `shared_mapping_code` at what all mappings share,
-`unused` at what nothing mentions.
+nothing keeps, `decimals` at those that rounding misses or a whole number loses, `observed_numbers` at numbers
+beside responses, `shared_code` at what all model code shares, `shared_mapping_code` at what all mappings
+share, `unused` at what nothing mentions.
 """
 
 from aos_language.assembly import Assembly
+from aos_language.check.decimals import check_decimals
 from aos_language.check.declarations import check_environment_names, check_skill_declarations
 from aos_language.check.defaults import check_defaults
 from aos_language.check.endings import check_endings, check_goals
@@ -29,7 +30,6 @@ from aos_language.check.observed_numbers import (
     check_reports,
 )
 from aos_language.check.preconditions import check_precondition
-from aos_language.check.real_equality import check_real_equality
 from aos_language.check.responses import check_responses
 from aos_language.check.scope import Scope
 from aos_language.check.shared_code import check_shared_code, check_shared_names_are_used
@@ -83,7 +83,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_shared_mapping_code(scope.shared_mapping_code, mappings, scope, findings)
     if is_whole and assembly.environment is not None:
         check_goals(assembly.environment, assembly.models.values(), findings)
-        check_real_equality(assembly.environment, scope, findings)
+        check_decimals(assembly.environment, scope, findings)
         check_shared_names_are_used(assembly.environment, assembly.models.values(), findings)
         check_unused_variables(assembly.environment, assembly.models.values(), findings)
 

@@ -26,7 +26,8 @@ class Block(msgspec.Struct, frozen=True):
     """One snippet in its role: statements, an expression, or declarations.
 
     `names` are the typed names around it: `constants`, items, temporaries. `constants` are the skill's
-    parameters, which no code may write. `sets` is the variable whose default it is.
+    parameters, which no code may write. `sets` is the variable or field whose default it is, and `type` what
+    an expression for it gives.
     """
 
     role: Role
@@ -36,6 +37,7 @@ class Block(msgspec.Struct, frozen=True):
     names: Mapping[str, str] = {}
     constants: Mapping[str, str] = {}
     sets: str = ""
+    type: str = ""
 
 
 def read_block(block: Block) -> Cpp:
@@ -99,10 +101,10 @@ def environment_blocks(environment: Environment) -> Iterator[Block]:
     for compound in environment.compounds:
         for field in compound.fields:
             if field.default is not None:
-                yield Block(DEFAULT, field.default, is_expression=True)
+                yield Block(DEFAULT, field.default, True, sets=field.name, type=field.type)
     for variable in environment.variables:
         if variable.default_value is not None:
-            yield Block(DEFAULT, variable.default_value, is_expression=True, sets=variable.name)
+            yield Block(DEFAULT, variable.default_value, True, sets=variable.name, type=variable.type)
         if variable.default_code is not None:
             yield Block(DEFAULT, variable.default_code, sets=variable.name)
     yield from assignment_blocks(INITIAL, environment.initial_belief)

@@ -135,7 +135,9 @@ class _BlockCheck:
             return
         if self._block.is_declarations and self._cpp.faults:
             return
-        self._check_semicolons()
+        is_idle = self._is_idle_default()
+        if not is_idle:
+            self._check_semicolons()
         for mention in self._cpp.mentions:
             self._mentions.check(mention)
         self._check_calls()
@@ -144,12 +146,22 @@ class _BlockCheck:
         if self._block.is_declarations:
             for body in self._scope.shared.bodies():
                 self._check_unset(read_cpp(body))
-        else:
-            self._check_idle_operators()
+        elif not is_idle:
+            self._check_idle()
             if not self._block.is_expression:
                 self._check_unset(self._cpp)
 
-    def _check_idle_operators(self) -> None:
+    def _is_idle_default(self) -> bool:
+        """Warns of code for a variable's default that sets nothing."""
+        cpp, name = self._cpp, self._block.sets
+        if not name or self._block.is_expression or cpp.is_empty or cpp.calls or any(cpp.writes()):
+            return False
+        hint = f"Write `state.{name} = {cpp.code.strip().rstrip(';')};`"
+        span = self._block.snippet.span
+        self._findings.warning("AOS149", f"this code for the default of {name} sets nothing", span, hint)
+        return True
+
+    def _check_idle(self) -> None:
         for operator in self._cpp.idle_operators:
             span = self._span(operator)
             if self._cpp.code[operator.start] == ",":
@@ -159,6 +171,9 @@ class _BlockCheck:
                 hint = "To set what stands before it, write `=`"
                 message, mend = "this comparison does nothing", Mend(span, 2, "=")
             self._findings.warning("AOS149", message, span, hint, mend)
+        for value in self._cpp.idle_values:
+            hint = f"To set a variable, write `NAME = {self._cpp.code[value.start : value.end]};`"
+            self._findings.warning("AOS149", "this statement does nothing", self._span(value), hint)
 
     def _check_conditions(self) -> None:
         """A condition that sets something; where it may not write that, this has been told already."""
@@ -180,7 +195,8 @@ class _BlockCheck:
             report("AOS143", f"`{read.name}` {which} here", self._span(read.extent), hint)
 
     def _check_semicolons(self) -> None:
-        for offset in self._cpp.missing_semicolons:
+        idle = {value.end for value in self._cpp.idle_values}
+        for offset in [each for each in self._cpp.missing_semicolons if each not in idle]:
             span = self._block.snippet.locate(*line_and_column(self._cpp.code, offset))
             mend = Mend(span, 0, ";")
             self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in", mend)

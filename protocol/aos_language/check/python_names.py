@@ -167,6 +167,10 @@ def check_names(
                 span = place_in(snippet, node)
                 message = f"{name} is given fields by position, which fails where it cannot be imported"
                 findings.warning("AOS121", message, span, f"Give them by name: `{name}(field=...)`")
+            case ast.Attribute(value=ast.Name(id=name), attr=constant) if name in names.messages:
+                span = place_in(snippet, node)
+                message = f"{name}.{constant} is not known where {name} cannot be imported"
+                findings.warning("AOS121", message, span, "Write the constant's number")
             case ast.Attribute(value=ast.Name(id="input") as name) if "input" not in own:
                 span = place_in(snippet, name)
                 mend = Mend(span, len("input"), _INPUT)

@@ -1,6 +1,7 @@
 """The Python of documents as trees, and what parses although it was meant otherwise."""
 
 import ast
+import keyword
 import re
 import warnings
 
@@ -10,7 +11,8 @@ from aos_protocol.diagnostics import Mend
 from aos_protocol.documents import Snippet
 from aos_protocol.spelling import column_of
 
-_CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
+_OTHER_OPERATOR = re.compile(r"&&|\|\||!(?!=)|\b(?:AND|OR|NOT)\b")
+_TURNED = re.compile(r"=([<>])(?!=)")
 _LINE = re.compile(r"(?<=(?:on|at) line )\d+")
 _TEXT = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"|#.*")
 
@@ -30,12 +32,11 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         # Python gives no column where the code ends too early.
         end = len(code) - (code.rfind("\n") + 1) + 1
         span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
-        hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(_TEXT.sub("", code)) else ""
-        if mode == "eval" and (error.text or "")[(error.offset or end) - 1 :].startswith("= "):
-            hint = hint or "To compare, write `==`"
-        if "=>" in _TEXT.sub("", code):
-            hint = "Python writes `>=`"
         message = _LINE.sub(lambda n: str(snippet.locate(int(n[0]) - is_long, 1).line), error.msg)
+        wrong = (error.text or "")[(error.offset or end) - 1 : error.end_offset and error.end_offset - 1]
+        if error.msg == "invalid syntax":
+            message = f"`{wrong}` cannot stand here" if wrong.strip() else "something is missing here"
+        hint = _instead(_TEXT.sub("", code), wrong, mode)
         findings.error("AOS121", f"this is not Python: {message}", span, hint)
     except (ValueError, RecursionError, MemoryError) as error:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
@@ -44,6 +45,24 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         _check_bit_operators(snippet, tree, findings)
         return tree
     return None
+
+
+def _instead(code: str, wrong: str, mode: str) -> str:
+    """Advice on what Python cannot read; empty where there is none."""
+    if (turned := _TURNED.search(code)) is not None:
+        return f"Python writes `{turned[1]}=`"
+    if _OTHER_OPERATOR.search(code):
+        return "Python writes `and`, `or`, `not`"
+    if mode != "eval":
+        return ""
+    if wrong == "=":
+        return "To compare, write `==`"
+    if wrong == "?":
+        return "Python writes `a if condition else b`"
+    if wrong in (";", ":") or (keyword.iskeyword(wrong) and code.lstrip().startswith(wrong)):
+        return f"This is one expression: leave `{wrong}` out"
+    is_value = wrong[:1].isalnum() and not keyword.iskeyword(wrong)
+    return "Between two values stands an operator, such as `and` or `==`" if is_value else ""
 
 
 def _check_lone_commas(snippet: Snippet, tree: ast.AST, findings: Findings) -> None:

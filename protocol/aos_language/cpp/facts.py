@@ -100,7 +100,8 @@ class Cpp(msgspec.Struct, frozen=True):
     """A snippet as read; everything in text order.
 
     `idle_operators` are the `==` of statements that only compare, and the comma before a number that does
-    nothing, as in `x = 1,5;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`.
+    nothing, as in `x = 1,5;`. `idle_values` are other statements that only have a value: `x - 1;`.
+    `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`.
     """
 
     code: str
@@ -114,6 +115,7 @@ class Cpp(msgspec.Struct, frozen=True):
     faults: tuple[Fault, ...] = ()
     is_empty: bool = False
     idle_operators: tuple[Extent, ...] = ()
+    idle_values: tuple[Extent, ...] = ()
     set_in_conditions: tuple[tuple[Extent, Extent], ...] = ()
 
     @property

@@ -25,6 +25,11 @@ from aos_protocol.spelling import nearest
 _CHANGING_FUNCTIONS = frozenset({"Initialize", "SetNull", "Uninitialize", "exchange", "iota", "swap", "tie"})
 _PLAIN = frozenset({"field_expression", "identifier", "number_literal", "string_literal", "true", "false"})
 """Expressions that do nothing but have a value."""
+_PARTS_OF_VALUES = _PLAIN | {
+    "binary_expression", "field_identifier", "parenthesized_expression", "subscript_argument_list",
+    "subscript_expression", "unary_expression",
+}  # fmt: skip
+"""The named parts of an expression that changes nothing."""
 
 
 class TreeReader:
@@ -48,6 +53,7 @@ class TreeReader:
         self.types: list[tuple[str, Extent]] = []
         self.faults: list[Fault] = []
         self.idle_operators: list[Extent] = []
+        self.idle_values: list[Extent] = []
         self.set_in_conditions: list[tuple[Extent, Extent]] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
@@ -65,6 +71,7 @@ class TreeReader:
             missing_semicolons=self._tokens.missing_semicolons,
             faults=tuple(sorted(self.faults, key=_by_start)),
             idle_operators=tuple(sorted(self.idle_operators, key=lambda extent: extent.start)),
+            idle_values=tuple(sorted(self.idle_values, key=lambda extent: extent.start)),
             set_in_conditions=tuple(sorted(self.set_in_conditions, key=lambda pair: pair[0].start)),
         )
 
@@ -99,7 +106,10 @@ class TreeReader:
             condition, *branches = whole.named_children
             whole = condition if all(branch.type in _PLAIN for branch in branches) else None
         parts = whole.children if whole is not None else []
-        self.idle_operators += [self.extent(part) for part in parts if part.type == "=="]
+        compared = [self.extent(part) for part in parts if part.type == "=="]
+        self.idle_operators += compared
+        if whole is not None and not compared and _only_has_a_value(whole):
+            self.idle_values.append(self.extent(whole))
         self._push(node.children)
 
     def _label(self, node: tree_sitter.Node, access: Access) -> None:
@@ -403,6 +413,14 @@ def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
     if method in HANDLE_METHODS:
         return Access.BIND
     return outer
+
+
+def _only_has_a_value(node: tree_sitter.Node) -> bool:
+    """Returns whether a statement changes nothing; what `<<` and `>>` do is up to their operands."""
+    return not node.has_error and all(
+        part.type in _PARTS_OF_VALUES if part.is_named else part.type not in ("<<", ">>")
+        for part in below(node)
+    )
 
 
 def _is_type(node: tree_sitter.Node | None) -> bool:

@@ -29,6 +29,7 @@ _TOKEN = re.compile(
     | (?P<directive>(?<![^\n])[ \t\f\v]*(?:\#|%:)[^\n]*)
     | (?P<hash>\#[^\n]*)
     | (?P<scope><::(?![:>]))
+    | (?P<list>(?<==)[ \t]*\[[^\[\](){}=&;]*\](?=[ \t]*;))
     | (?P<bracket>[()\[\]{}]|<%|%>|<:|:>)
     | (?P<quote>["'])
     | (?P<arrow>(?<![<=>!])=>)
@@ -181,6 +182,8 @@ def cut(code: str) -> Tokens:
             faults.append(_no_comment(extent))
         elif kind == "arrow":
             faults.append(Fault(FaultKind.CHARACTER, "`=>` is no operator of C++", extent, "Write `>=`"))
+        elif kind == "list":
+            faults.append(_list_of_python(lines.extent(code.index("[", match.start()), match.end()), code))
         elif kind == "other":
             faults.append(_from_a_page(match.group(), extent))
         elif kind == "continuation":
@@ -287,6 +290,11 @@ def _directive(text: str, extent: Extent) -> Fault:
 def _no_comment(extent: Extent) -> Fault:
     message = "`#` does not begin a comment in C++"
     return Fault(FaultKind.PREPROCESSOR, message, extent, "Write `//` instead", "//")
+
+
+def _list_of_python(extent: Extent, code: str) -> Fault:
+    hint = f"Write `{{{code[extent.start + 1 : extent.end - 1]}}}`"
+    return Fault(FaultKind.CHARACTER, "a list stands in braces in C++", extent, hint)
 
 
 def _from_a_page(character: str, extent: Extent) -> Fault:

@@ -28,16 +28,27 @@ _A_TEXT = re.compile(
     r"`const char ?(?:\*|\[\d+\])`.*`(?!const char)|`(?!const char)\w+`.*`const char ?(?:\*|\[\d+\])`"
 )
 """A text meets another type: a number, an enum's value, a response."""
-_WITHIN = re.compile(r"(?:\b\w+::)?\b\w+<aos::[^>]*>\((?:[^()]|\([^()]*\))*\)(?: const)?::")
-"""The function of ours in which a struct or a lambda of a document's code stands."""
+_WITHIN = re.compile(
+    r"(?:\b\w+::)?\b\w+<aos::[^>]*>\((?:[^()]|\([^()]*\))*\)(?: const)?::"
+    r"|(?:\w+ )?\w+\([^()]*\bauto:\d+[^()]*\)::| \[with .*?\](?=')"
+)
+"""The function of ours in which a struct or a lambda of a document's code stands, and the types it is for."""
 _OF_STREAMS = re.compile(r".*`std::(\w+)` from `std::ios_base&.*")
 """A name without an enum is found in C++'s library: `left`, `right`, `fixed`, `internal` and their like."""
 _SUFFIX = re.compile(
     r"unable to find numeric literal operator `operator\"\"\s*(\w+)`.*|invalid suffix [`\"](\w+)[`\"] on .*"
 )
 _BOUND = re.compile(r"binding reference of type `(.+?)&?` to (?:value of type )?`const .*")
-_CONSEQUENCES = ("<expression error>", "cannot be set to a list in braces", "and these are others")
+_OF_STD = re.compile(r"`std::(\w+)` has not been declared")
+"""g++ says this of a parameter, too, where an argument of its type is unknown."""
+_CONSEQUENCES = re.compile(
+    r"<expression error>|cannot be set to a list in braces|and these are others"
+    rf"|template argument \d+ is invalid|no match for call to `\(<lambda|{_OF_STD.pattern}"
+)
 """Said too where a name within was not declared."""
+_PRIVATE = re.compile(
+    r"`.*?(\w+::\w+)(?:\(.*\))?(?: const)?` is private within.*|`(\w+)` is a private member of .*"
+)
 _FAULTS = ("error", "fatal error", "Error")
 _ENDLESS = re.compile(r"expected .*`;`.* before .*")
 """g++ tells a missing semicolon where it reads on, and skips what comes before the next one."""
@@ -83,6 +94,8 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
         text, hint = _plain(message.text)
         unknown = _NOT_DECLARED.fullmatch(text)
         name = unknown[1] or unknown[2] if unknown is not None else ""
+        if (parameter := _OF_STD.fullmatch(text)) is not None:
+            unread.add(parameter[1])
         if name in unread:
             continue  # Its declaration was not taken up.
         if _ENDLESS.fullmatch(text) and message.file.endswith(source_name):
@@ -131,7 +144,7 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
             continue  # Said of the same name.
-        if named and any(word in diagnostic.message for word in _CONSEQUENCES):
+        if named and _CONSEQUENCES.search(diagnostic.message):
             continue  # It follows from another.
         line = (diagnostic.span.file, diagnostic.span.line)
         if diagnostic.message.startswith("no match for call") and line in bound:
@@ -181,6 +194,9 @@ def _plain(text: str) -> tuple[str, str]:
             "this array is indexed by another enum",
             "Use a value of its own enum, or a number: `int(value)`",
         )
+    if (private := _PRIVATE.fullmatch(text)) is not None:
+        hint = "Write `struct` in place of `class`, or `public:` before it"
+        return f"`{private[1] or private[2]}` is private", hint
     text, hint = in_words(text)
     if hint or "cannot be set to" in text:
         return text, hint

@@ -6,12 +6,8 @@ _WORDS = (
     (re.compile(r"(?:const )?(?:class )?aos::Vector<(.+?), \d+>"), r"vector<\1>"),
     (re.compile(r"(?:const )?(?:class )?aos::Named<(\w+), \d+, ([^<>]+)>"), r"array of \2 over \1"),
     (re.compile(r"(?:const )?(?:class )?aos::Text\b"), "string"),
-    (
-        re.compile(
-            r"std::(?:__cxx11::)?basic_string<char(?:, std::char_traits<char>, std::allocator<char> )?>"
-        ),
-        "std::string",
-    ),
+    (re.compile(r"aos::Objects<\w+, (\w+)[^<>]*>"), r"list of \1"),
+    (re.compile(r"std::(?:__cxx11::)?basic_string<char>"), "std::string"),
     (re.compile(r"`<brace-enclosed initializer list>`"), "a list in braces"),
     (re.compile(r"`const char ?(?:\*|\[\d+\])`"), "a text"),
 )
@@ -30,19 +26,33 @@ _NUMBER_FOR_ENUM = re.compile(
     r"|(?:cannot initialize a (?:variable|parameter) of|assigning to) (?:type )?`(\w+)` "
     r"(?:with an? [lr]value of type|from incompatible type) `(?:int|long)`"
 )
+_OF_LIBRARY = re.compile(
+    r",\s*std::(?:allocator|char_traits|equal_to|hash|less)<(?:[^<>]|<(?:[^<>]|<[^<>]*>)*>)*>(?:\s+(?=>))?"
+)
+"""Arguments of containers that no document writes."""
+_RANGE = re.compile(
+    r"no matching function for call to `(accumulate|(?:all|any|none)_of|binary_search|count(?:_if)?|fill"
+    r"|find(?:_if)?|for_each|iota|(?:max|min|nth)_element|lower_bound|remove(?:_if)?|reverse|sort|unique"
+    r"|upper_bound)"
+    r"(?:\((?:const )?(?:(?:array|list) of |(?:std::)?(?:array|deque|list|map|set|string|vector)\b)"
+    r".*\))?`"
+)
 _NOT_ASSIGNED = "no viable overloaded `=`"
 """Clang's words, without the types."""
 
 
 def in_words(text: str) -> tuple[str, str]:
     """Returns a message with our types by their names in documents, and a hint where one is known."""
-    text = STATE_PART.sub(r"\1\2", text)
+    text = _OF_LIBRARY.sub("", STATE_PART.sub(r"\1\2", text))
     is_text = "`const char" in text
     plain = text
     for pattern, word in _WORDS:
         plain = pattern.sub(word, plain)
     if _CALLED.match(plain) is not None:
         return "this is an array, and no function", "An element of it has square brackets: `[i]`"
+    if (called := _RANGE.fullmatch(plain)) is not None:
+        hint = f"Write `std::{called[1]}(values.begin(), values.end(), ...)`"
+        return f"`{called[1]}` takes a beginning and an end, and no container", hint
     if plain == _NOT_ASSIGNED:
         return "this cannot be set to a value of that type", ""
     if (listed := _PARAMETERS.match(plain)) is not None:
