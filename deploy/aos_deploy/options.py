@@ -90,7 +90,7 @@ Robot = Annotated[str, typer.Option("--robot", help="The robot's name, with --co
 Run = Annotated[
     Path | None,
     typer.Option(
-        "--run", metavar="DIR", help="A run directory, or a file of one; else what runs, or the last"
+        "--run", metavar="DIR", help="A run directory, or a file of `aos export`; else what runs, or the last"
     ),
 ]
 ChosenRuns = Annotated[

@@ -51,8 +51,8 @@ def _range(kind: Any) -> str:
 
 
 def _example(param: Any) -> float:
-    """Returns the option's own default, else 1 or the number of the range that is nearest to it."""
+    """Returns the option's own default, else half of a share, or 1, or the least number of its range."""
     if isinstance(param.default, (int, float)):
         return param.default
     least, most = getattr(param.type, "min", None), getattr(param.type, "max", None)
-    return max(least or 1, min(1, 1 if most is None else most))
+    return 0.5 if (least, most) == (0, 1) else max(least or 1, 1)

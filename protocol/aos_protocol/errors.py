@@ -78,7 +78,7 @@ CODES: dict[str, str] = {
     "AOS210": "model code crashed",
     "AOS211": "model code did not finish",
     "AOS213": "the engine ended unexpectedly",
-    "AOS214": "a reward that is not a number",
+    "AOS214": "a reward that is no number, or too large",
     "AOS215": "a model fault: an index, a weight list or a container limit",
     "AOS216": "bounds that contradict each other; please report it",
     "AOS217": "the engine failed outside of the documents' code; please report it",

@@ -215,22 +215,24 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
         assert (await current(bus, keys)).revision == rest[2].revision
 
 
-async def test_of_a_drop_from_before_nothing_is_told_before_the_project_and_an_archive_is_taken_in(
+async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_a_document_alone_is_refused(
     tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, bundles: Path, finer: dict[str, bytes]
 ):
     drops = tmp_path / "run" / "drop"
     drops.mkdir(parents=True)
     drop(drops.parent, "half", {"sing.am": finer["pick.am"]})
+    (drops / "pick.sd").write_bytes(finer["pick.sd"])
     async with (
         asyncio.timeout(HANG_S),
         bus.listen(keys.bundle_report, messages.BundleReport) as reports,
         running_registry(drops.parent, endpoint, bus, keys),
     ):
         shutil.make_archive(str(drops / "whole"), "zip", bundles / "armadillo-finer")
-        told = [(await anext(aiter(reports)))[1] for _ in range(2)]
+        told = [(await anext(aiter(reports)))[1] for _ in range(3)]
     assert [(report.source, report.revision, report.is_waiting) for report in told] == [
-        *(("whole.zip", 1, False), ("half", 1, True))
+        *(("pick.sd", 0, False), ("whole.zip", 1, False), ("half", 1, True))
     ]
+    assert codes(told[0]) == {"AOS101"}
 
 
 async def test_the_catalogue_survives_a_restart(

@@ -13,7 +13,8 @@ WARD = """project: ward
 horizon: 4
 
 define_type: tFault
-enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared, eOwn, eEmpty, eFirst, eMost
+enum_members: eNone, eNull, eRange, eThrow, eReward, eVast, eResponse, eLambda, eShared, eOwn, eEmpty, \
+eFirst, eMost
 
 shared_code:
 int bed_of(const auto& state__, int i) {
@@ -84,6 +85,7 @@ switch (fault) {
 for (int i = 0; i < 3; ++i) {
     __reward += 1;
     if (fault == eReward && i == 2) __reward = 1.0 / (i - 2);  // eReward
+    if (fault == eVast) __reward = 1e101;  // eVast
     __reward -= 1;
 }
 __moduleResponse = ok;
@@ -95,7 +97,8 @@ FAULTS = {
     "eNull": ("AOS210", "signal 11, as for an index out of range or a pointer"),
     "eRange": ("AOS215", "element 7 of a vector of 3"),
     "eThrow": ("AOS215", "no way"),
-    "eReward": ("AOS214", "the reward is"),
+    "eReward": ("AOS214", "the reward is inf"),
+    "eVast": ("AOS214", "the reward is 1e+101, and no number from -1e+100 to 1e+100"),
     "eResponse": ("AOS215", "__moduleResponse is 9"),
     "eLambda": ("AOS215", "element 6 of a vector of 3"),
     "eShared": ("AOS215", "element 6 of a vector of 3"),

@@ -416,6 +416,7 @@ def test_each_ending_has_its_exit_code(ending, code):
     ("code", "before", "after"),
     [
         ("AOS201", 1, 7),
+        ("AOS501", 2, 7),
         ("AOS801", 1, 7),
         ("AOS110", 1, 7),
         ("AOS605", 3, 7),

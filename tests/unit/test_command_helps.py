@@ -96,6 +96,11 @@ def test_a_command_is_found_behind_two_dashes(arguments: list[str]):
         ("simulate x --runs 0", "'--runs': 0 is not a whole number of at least 1, such as 10"),
         ("plan x --threads 33", "'--threads': 33 is not a whole number from 1 to 32, such as 1"),
         ("plan x --time soon", "'--time': 'soon' is not a number of at least 0.001, such as 1"),
+        ("solve x --discount 2", "'--discount': 2.0 is not a number from 0 to 1, such as 0.5"),
+        (
+            "simulate x --goal-probability 2",
+            "'--goal-probability': 2.0 is not a number from 0.001 to 1, such as 0.9",
+        ),
         ("serve --port -1", "'--port': -1 is not a whole number from 0 to 65535, such as 7480"),
         ("runs prune --keep all", "'--keep': 'all' is not a whole number of at least 0, such as 1"),
         ("up x --seed z", f"'--seed': 'z' is not a whole number from 0 to {2**63 - 1}, such as 1"),

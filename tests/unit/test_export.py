@@ -266,7 +266,7 @@ def test_a_link_in_a_file_is_refused_and_so_is_what_is_no_archive(tmp_path):
     with pytest.raises(DeployError, match="is not a plain file within it"):
         opened_bundle(target)
     target.write_text("no archive")
-    with pytest.raises(DeployError, match="cannot be opened"):
+    with pytest.raises(DeployError, match="is not a file of runs"):
         opened_bundle(target)
     with pytest.raises(DeployError, match="is a folder") as refused:
         opened_bundle(tmp_path)

@@ -38,7 +38,7 @@ def test_an_entry_that_is_no_file_of_a_run_is_refused(tmp_path, name):
 
 
 def test_a_file_that_is_also_a_folder_is_refused(tmp_path):
-    with pytest.raises(DeployError, match="cannot be opened"):
+    with pytest.raises(DeployError, match="is not a file of runs"):
         opened(tmp_path, "r", "r/run.json")
 
 

@@ -56,7 +56,8 @@ def test_a_raw_control_character_is_refused_at_its_line(folder: Path):
 @pytest.mark.parametrize("name", ["x" * 10_000, "x/" * 3000, "loop", "loop/x"])
 def test_paths_that_no_file_has_are_no_files(folder: Path, name):
     (folder / "loop").symlink_to("loop")
-    (found,) = findings(folder, HEAD.replace("[bundle]", f"[{name}]"))
+    of_its_skill = "leave_out: [drive]\n"  # Nobody knows which skills a folder has that is not there.
+    (found,) = findings(folder, HEAD.replace("[bundle]", f"[{name}]") + of_its_skill)
     assert "AOS101 there is no bundle folder" in found
     assert len(found) < 400
     assert lines_of(folder, f"world: {name}\nsolver: {{policy: {name}}}\n") == [4, 5]

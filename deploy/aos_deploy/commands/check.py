@@ -21,7 +21,8 @@ from aos_protocol.errors import DeployError
 @command("Example: aos check runs/latest")
 def check(
     run: Annotated[
-        Path | None, typer.Argument(metavar="RUN", help="A run directory, or a file of one; else the last")
+        Path | None,
+        typer.Argument(metavar="RUN", help="A run directory, or a file of `aos export`; else the last"),
     ] = None,
     runs: Runs = None,
     replay: Annotated[

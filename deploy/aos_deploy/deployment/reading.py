@@ -198,7 +198,8 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
                 "AOS101", f"there is no bundle folder {named(bundle)}", where, did_you_mean_path(bundle)
             )
     bundles = tuple(absolute(folder / name) for name in file.bundles)
-    _check_skills(file, [bundle for bundle in bundles if _is_bundle(bundle)], node, findings)
+    if all(map(_is_bundle, bundles)):
+        _check_skills(file, bundles, node, findings)
     return bundles
 
 

@@ -68,7 +68,7 @@ def opened_bundle(path: Path) -> list[Path]:
             _unpack(path, folder)
     except UNREADABLE_ARCHIVE as error:
         why = getattr(error, "strerror", None) or error
-        raise DeployError(f"{path} cannot be opened: {why}") from error
+        raise _no_bundle(path, str(why)) from error
     runs = sorted(record.parent for record in folder.glob("*/run.json"))
     if not runs:
         raise _no_bundle(path, "no run is in it")

@@ -68,6 +68,14 @@ class DrawEstimate(msgspec.Struct, frozen=True):
         return not self.count or all(outcome.is_inside for outcome in self.outcomes)
 
     @property
+    def may_be_chance(self) -> bool:
+        """True if by the document no outcome comes improbably often, or seldom."""
+        return all(
+            outcome.is_inside or (0 < outcome.document < 1 and not _is_improbable(outcome, self.count))
+            for outcome in self.outcomes
+        )
+
+    @property
     def is_contradicted(self) -> bool:
         """True if the records are reason to change a number: one of an outcome that comes now and then."""
         possible = [outcome for outcome in self.outcomes if not outcome.is_excluded]

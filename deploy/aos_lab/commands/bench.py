@@ -88,7 +88,10 @@ def bench(
 
 
 def _bundles_or_known(names: list[str]) -> list[str]:
-    _known([name for name in names if not Path(name).is_dir()], problem_names(), "NAME")
+    for name in names:
+        if name not in problem_names() and not Path(name).is_dir():
+            what = f"{name} is no folder of a bundle, and none of {', '.join(problem_names())}"
+            raise typer.BadParameter(what, param_hint="NAME")
     return names
 
 

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from aos_lab.calibration.estimation import DrawEstimate
 
 SHOWN_REMARKS = 5
-_NUMBERS_WHOLE_FROM = 80
-"""Columns of a terminal in which an interval keeps to its line."""
+_TABLE_FROM = 80
+"""Columns of a terminal in which a row of the table is a line."""
 
 
 @command(
@@ -77,13 +77,15 @@ def calibrate(
 
 
 def print_calibration(result: Calibration) -> None:
-    """The table, whole in a terminal of any width; what was left out, and the patch."""
+    """The table, as lines in a narrow terminal; what was left out, and the patch."""
     typer.echo(f"{count(result.missions, 'mission')}, {count(result.steps, 'step')}")
     out, table = console(is_wide=True), Table(box=box.SIMPLE, pad_edge=False)
-    for name in ("place", "outcome", "count", "records", "document", ""):
+    names = ("place", "outcome", "count", "records", "document", "")
+    if out.width < _TABLE_FROM:
+        out.print(*names)
+    for name in names:
         is_text = name in ("place", "outcome", "")
-        is_whole = not is_text and out.width >= _NUMBERS_WHOLE_FROM
-        table.add_column(name, justify="left" if is_text else "right", overflow="fold", no_wrap=is_whole)
+        table.add_column(name, justify="left" if is_text else "right", overflow="fold", no_wrap=not is_text)
     for estimate in result.estimates:
         rarest = min((each.document for each in estimate.outcomes if each.document), default=1.0)
         digits = Digits.of([0.1 if rarest >= 0.01 else rarest], 2)
@@ -91,7 +93,7 @@ def print_calibration(result: Calibration) -> None:
             span = estimate.draw.span
             place = f"{span.file}:{span.line}" if number == 0 else ""
             interval = outcome.probability
-            table.add_row(
+            row = (
                 place,
                 outcome.outcome,
                 f"{outcome.count:.{0 if estimate.is_counted else 1}f} of {estimate.count:.0f}",
@@ -101,8 +103,12 @@ def print_calibration(result: Calibration) -> None:
                 digits.plain(outcome.document),
                 _verdict(estimate, number, result.missions),
             )
+            table.add_row(*row)
+            if out.width < _TABLE_FROM:
+                out.print(*filter(None, row), highlight=False)
         table.add_section()
-    out.print(table)
+    if out.width >= _TABLE_FROM:
+        out.print(table)
     for skipped in result.skipped:
         typer.echo(f"{skipped.span}: not estimated: {skipped.why}")
     for remark in result.remarks[:SHOWN_REMARKS]:
@@ -118,7 +124,7 @@ def _verdict(estimate: DrawEstimate, number: int, missions: int) -> str:
     if not estimate.count:
         return "no record" if number == 0 else ""
     if not estimate.outcomes[number].is_inside:
-        return "OUTSIDE"
+        return "outside, and may be chance" if estimate.may_be_chance else "OUTSIDE"
     return "inside" if number or not estimate.is_inside else f"inside; {_to_tell(estimate, missions)}"
 
 

@@ -44,7 +44,9 @@ Target = Annotated[
         "with --policy, a .pomdp or .pomdpx file",
     ),
 ]
-GoalProbability = Annotated[float, typer.Option(callback=finite, help="Ends a mission when passed")]
+GoalProbability = Annotated[
+    float, typer.Option(min=0.001, max=1, callback=finite, help="Ends a mission when reached")
+]
 StepLimit = Annotated[
     int | None,
     typer.Option(min=1, help="Ends a mission when reached; else 30, of a problem file all steps that count"),

@@ -286,7 +286,7 @@ def _print_size(target: _Target) -> None:
     model, size = target.model, target.model.size
     spaces = f"{count(size.states, 'state')}, {count(size.actions, 'action')}"
     sensing = count(size.observations, "observation")
-    typer.echo(f"{model.name}: {spaces}, {sensing}, discount {model.discount:g}")
+    typer.echo(f"{model.name}: {spaces}, {sensing}, discount {model.discount:.16g}")
     _print_left_out(target.left_out)
     typer.echo(f"{'seconds':>9} {'at least':>12} {'at most':>12} {'gap':>10} {'vectors':>9}")
 

@@ -176,7 +176,7 @@ class Host:
             except LateAnswerError:
                 continue
             except AosError as error:
-                _log.info("no documents yet: %s", error)
+                _log.info("no documents yet: %s", error.message)
                 return None
 
     async def missions(self) -> Missions:

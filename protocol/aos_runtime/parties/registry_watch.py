@@ -50,7 +50,7 @@ class RegistryWatch:
         try:
             revision = await self._ask(ProjectQuery(self._project))
         except AosError as error:
-            log.info("no documents yet: %s", error)
+            log.info("no documents yet: %s", error.message)
             if isinstance(error, LateAnswerError):
                 raise
             return

@@ -11,7 +11,7 @@ from aos_language.load import read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport
-from aos_registry.watch import watch_for_bundles
+from aos_registry.watch import is_document, watch_for_bundles
 
 LACKING = ("AOS105", "AOS110", "AOS113", "AOS114", "AOS115")
 """Other documents can mend these errors: something is missing, or a name that nothing defines."""
@@ -74,6 +74,8 @@ class DroppedBundles:
 
     async def _report(self, path: Path) -> BundleReport | None:
         """Takes a folder or an archive in and returns what becomes of it; None for an empty folder."""
+        if is_document(path):
+            return _refused(path, "AOS101", "a document alone is not taken", "Put it into a folder here")
         try:
             files, remarks = read_bundle_files(path)
             if has_errors(remarks):

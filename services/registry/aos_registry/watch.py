@@ -8,6 +8,7 @@ from pathlib import Path
 from watchfiles import awatch
 
 from aos_language.archive import is_archive_name
+from aos_language.reading.files import is_document_name
 from aos_protocol.errors import StorageError
 
 _LONGEST_WAIT_S = 30.0
@@ -18,7 +19,7 @@ logging.getLogger("watchfiles").setLevel(logging.WARNING)
 async def watch_for_bundles(
     folder: Path, take: Callable[[Path], Awaitable[None]], changed: asyncio.Queue[Path], *, quiet_s: float
 ) -> None:
-    """Calls `take` with each sub-folder and archive in `folder`, one at a time, until it is cancelled.
+    """Calls `take` with each sub-folder, archive and document in `folder`, one at a time, for ever.
 
     First come those that are there, then each that has changed, and what else is put into `changed`. A bundle
     is taken once nothing changed for `quiet_s`, so that it is not read while it is being copied, and again
@@ -58,11 +59,16 @@ def _unwatched(folder: Path, error: OSError) -> StorageError:
 
 
 def _may_be_bundle(path: Path) -> bool:
-    return path.is_dir() or (path.is_file() and is_archive_name(path.name))
+    return path.is_dir() or is_document(path) or (path.is_file() and is_archive_name(path.name))
+
+
+def is_document(path: Path) -> bool:
+    """Returns whether this is a document alone, which is no bundle."""
+    return is_document_name(path.name) and path.is_file()
 
 
 def _bundle_of(folder: Path, path: Path) -> Path | None:
-    """The sub-folder or archive that a changed path belongs to; None for hidden things and the folder."""
+    """The sub-folder or file that a changed path belongs to; None for hidden things and the folder."""
     parts = path.relative_to(folder).parts
     if not parts or any(part.startswith(".") for part in parts):
         return None

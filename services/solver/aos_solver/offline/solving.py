@@ -109,7 +109,7 @@ def precision_of(model: ExplicitModel, limits: SolvingLimits) -> float:
 def check_discount(name: str, discount: float) -> None:
     """Raises PlanningError AOS320 for a discount with which the model of this name cannot be solved."""
     if not 0 <= discount < 1:
-        message = f"{name} has the discount {discount:g}, and values without an end have no bounds"
+        message = f"{name} has the discount {discount:.16g}, and values without an end have no bounds"
         hint = "Solve it with a discount below 1, for example --discount 0.99"
         raise PlanningError(message, code="AOS320", hint=hint)
 

@@ -167,7 +167,7 @@ ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {
   auto& known = values_[static_cast<std::size_t>(horizon)];
   const BeliefKey key = key_of(belief);
   if (const auto found = known.find(key); found != known.end()) return scaled(found->second, total);
-  if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"more beliefs than the budget can be reached"};
+  if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"there are too many beliefs to evaluate"};
   if (evaluated_ % 64 == 0) progress::tell("evaluating beliefs", evaluated_);
   const ExactValue best = best_of_actions(belief, horizon);
   known.emplace(key, best);

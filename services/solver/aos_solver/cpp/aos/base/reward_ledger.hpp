@@ -1,10 +1,14 @@
 // Which statements of documents gave a reward. A study looks at steps with a ledger; nobody else has one.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 namespace aos {
+
+inline constexpr double largest_reward = 1e100;  // The squares of returns can be added up.
+inline bool is_reward(double number) { return std::abs(number) <= largest_reward; }
 
 struct RewardTerm {
   std::uint32_t place = 0;     // the statement's number, as blame.hpp counts; 0 for a penalty

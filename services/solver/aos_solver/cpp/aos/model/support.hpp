@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -75,7 +76,11 @@ void no_text(std::size_t byte) {
 void no_such_response(int response) {
   throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(response) + ", which is no response"};
 }
-void no_such_reward(double reward) { throw ModelFault{"AOS214", "the reward is " + std::to_string(reward)}; }
+void no_such_reward(double reward) {
+  std::ostringstream text;
+  text << "the reward is " << reward << ", and no number from " << -largest_reward << " to " << largest_reward;
+  throw ModelFault{"AOS214", text.str()};
+}
 
 // Each thread has its own map, without a lock. Threads agree on the numbers, which depend on the texts alone.
 std::unordered_map<Observation, std::string>& observed_texts() {

@@ -1,7 +1,6 @@
 // What tracing adds to document code: see trace.py. A model that plans has none of it.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <initializer_list>
@@ -35,7 +34,7 @@ class Inside {
 };
 
 // Remembers the statement that gave a result. A wrong result shows only when its section is over, and then
-// that statement is blamed. A reward blames the statement that made it infinite or NaN; a response blames the
+// that statement is blamed. A reward blames the statement that made it too large or NaN; a response blames the
 // last one that set it. In a study, each statement has in the ledger by how much it changed the reward.
 template <class Result>
 class Giving {
@@ -50,7 +49,7 @@ class Giving {
   void by(std::uint32_t place) {
     if constexpr (std::is_floating_point_v<Result>) {
       if (reward_ledger != nullptr) reward_ledger->add(place, result_ - std::exchange(before_, result_));
-      if (std::isfinite(result_)) {
+      if (is_reward(result_)) {
         place_ = 0;
       } else if (place_ == 0) {
         place_ = place;

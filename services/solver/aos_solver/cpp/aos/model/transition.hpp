@@ -162,7 +162,7 @@ namespace detail {
 [[noreturn, gnu::cold]] void no_such_reward(double reward);
 // Called after each phase that has a reward, so that this phase is blamed and not the one after it.
 inline void check_reward(double reward) {
-  if (!std::isfinite(reward)) no_such_reward(reward);
+  if (!is_reward(reward)) no_such_reward(reward);
 }
 
 template <class Skill>

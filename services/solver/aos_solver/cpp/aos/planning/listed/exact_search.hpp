@@ -39,7 +39,8 @@ class ExactSearch final : public Planner<Model> {
     observable_.prepare(space_.rows(), space_.numbering(), question.horizon);
     const SearchTime time{choosing};
     const bool fits = evaluate(question.belief, question.budget, question.horizon);
-    if (fits) choosing.why += ", and every observation of " + std::to_string(question.horizon) + " decisions fits the budget";
+    if (fits) choosing.why += ", and every observation of " +
+                              std::to_string(question.horizon) + (question.horizon == 1 ? " decision" : " decisions") + " fits the budget";
     else choosing.simulations += simulations();
     return fits;
   }
