@@ -1,7 +1,7 @@
 """Malformed bundles and the exact text of what is said about them.
 
 The bundle of a case is that of `documents/base` with the changes of `changes.toml`; the files of the case's own
-folder replace or join it. `AOS_PROMOTE=1 pytest tests/golden` takes what is said now as what is expected.
+folder replace or join it. Source lines and carets are stored for `SHOWN` alone: they follow from the place. `AOS_PROMOTE=1 pytest tests/golden` takes what is said now as what is expected.
 """
 
 import os
@@ -16,6 +16,7 @@ from aos_protocol.diagnostics import render
 
 FOLDER = Path(__file__).parent / "documents"
 CHANGES = tomllib.loads((FOLDER / "changes.toml").read_text(encoding="utf-8"))
+SHOWN = ("json-places-inside-strings", "python-syntax")
 FOLDERS = {path.name for path in FOLDER.iterdir() if path.is_dir()} - {"base", "json"}
 
 
@@ -44,7 +45,9 @@ def test_the_bundle_that_the_cases_spoil_is_clean():
 @pytest.mark.parametrize("case", sorted(FOLDERS | CHANGES.keys()))
 def test_a_malformed_bundle_is_explained_as_stored(case):
     loaded = load_files(files_of(case), name="kettle")
-    text = "".join(f"{render(diagnostic)}\n" for diagnostic in loaded.diagnostics)
+    lines = None if case in SHOWN else 1
+    texts = ("\n".join(render(diagnostic).split("\n")[:lines]) for diagnostic in loaded.diagnostics)
+    text = "".join(f"{text}\n" for text in texts)
     expected = FOLDER / f"{case}.txt"
     if os.environ.get("AOS_PROMOTE"):
         expected.write_text(text, encoding="utf-8")
