@@ -170,7 +170,7 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("tiger.pomdp", replaced("0.5\n", "half\n"), "9:14 AOS106 half is not a finite number"),
         ("tiger.pomdp", replaced("discount: 0.95", "discount: 2"), "2:11 AOS106 the discount needs to be"),
         ("tiger.pomdp", replaced("discount: 0.95\n", ""), "1:0 AOS105 there is no `discount:`"),
-        ("tiger.pomdp", replaced("left right", "left left"), "4:9 AOS103 left is there twice"),
+        ("tiger.pomdp", replaced("left right", "left left"), "4:14 AOS103 left is there twice"),
         ("tiger.pomdp", replaced("# A tiger", "A tiger"), "1:1 AOS102 A is no keyword"),
         ("tiger.pomdp", replaced("values: reward", "vaules: reward"), "3:1 AOS102 vaules is no keyword"),
         ("tiger.pomdp", replaced("start:", "start"), "7:1 AOS102 start begins a line without a colon"),
@@ -197,6 +197,25 @@ def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path, name, change, 
     first = caught.value.diagnostics[0]
     text = f"{first.span.line}:{first.span.column} {first.code} {first.message}. {first.hint}"
     assert text.startswith(finding), text
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        ("states:", "state:", "4:1 state is no keyword. Did you mean `states`?"),
+        ("T: *", "T *", "9:1 T begins a line without a colon. Write `T:`"),
+        ("T: listen", "T: listen:", "11:1 a colon before identity. Write `T: listen identity`"),
+        ("left open", "left, open", "5:17 open-left, has a comma. Names stand between blanks"),
+        ("O: *\nuniform\n", "", "1:0 there is no `O: open-left : left`, nor 3 more. "),
+        ("0.85 0.15", "0,85 0.15", "16:1 0,85 is not a finite number. A decimal is written with a point"),
+    ],
+)
+def test_one_mistake_of_a_whole_statement_is_told_once(problems: Path, tmp_path, before, after, told):
+    (tmp_path / "a.pomdp").write_text(replaced(before, after)((problems / "tiger.pomdp").read_text()))
+    with pytest.raises(DocumentError) as caught:
+        read_problem(tmp_path / "a.pomdp")
+    (only,) = caught.value.diagnostics
+    assert f"{only.span.line}:{only.span.column} {only.message}. {only.hint}" == told
 
 
 @pytest.mark.parametrize(

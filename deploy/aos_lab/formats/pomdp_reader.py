@@ -1,12 +1,11 @@
 """Reads `.pomdp`, the text format of A. Cassandra's solvers."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
 from aos_lab.formats.pomdp_rewards import RewardRules
-from aos_lab.formats.pomdp_statements import KEYWORDS, Statement, statements_of
+from aos_lab.formats.pomdp_statements import Statement, statements_of
 from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_model
 from aos_lab.formats.problem_text import ProblemFindings, Word
 from aos_protocol.errors import IntractableError
@@ -17,6 +16,9 @@ _SUM_TOLERANCE = 1e-4
 _MAX_NAMES = 2_000_000
 _MAX_OUTCOMES = 20_000_000
 """A line such as `T: * uniform` has as many as actions times the square of the states."""
+
+_ROWS = ("identity", "reset", "uniform")
+"""Words that stand for probabilities."""
 
 _WHOLE = Word("", 1, 0)
 """The place of what the file lacks."""
@@ -101,26 +103,28 @@ class _Reader:
                 self._error("AOS106", "the discount needs to be from 0 to 1", words[0])
         elif kind == "values":
             if words[0].text not in ("reward", "cost"):
-                self._error("AOS106", f"{words[0].text} is neither reward nor cost", words[0])
+                hint = did_you_mean(words[0].text, ("reward", "cost"))
+                self._error("AOS106", f"{words[0].text} is neither reward nor cost", words[0], hint)
             self._sign = -1.0 if words[0].text == "cost" else 1.0
         else:
             self._read_names(kind, words)
 
     def _read_names(self, kind: str, words: Sequence[Word]) -> None:
-        for before, word in pairwise(words):
-            if word.text in KEYWORDS and word.line > before.line:
-                self._error("AOS102", f"{word.text} begins a line without a colon", word)
+        for word in words:
+            if word.text.endswith(","):
+                self._error("AOS102", f"{word.text} has a comma", word, "Names stand between blanks")
         if len(words) == 1 and (count := words[0].count) is not None:
             if not 0 < count <= _MAX_NAMES:
                 self._error("AOS106", f"{count} is no number of {kind}", words[0])
                 return
             self._names[kind] = tuple(f"{kind[0]}{number}" for number in range(count))
         else:
-            self._names[kind] = tuple(word.text for word in words)
+            first: dict[str, Word] = {}
+            for word in words:
+                if first.setdefault(word.text.rstrip(",") or word.text, word) is not word:
+                    self._error("AOS103", f"{word.text} is there twice", word)
+            self._names[kind] = tuple(first)
         self._numbers[kind] = {name: number for number, name in enumerate(self._names[kind])}
-        if len(self._numbers[kind]) < len(words):
-            twice = next(w for i, w in enumerate(words) if self._numbers[kind][w.text] != i)
-            self._error("AOS103", f"{twice.text} is there twice", twice)
 
     def _read_start(self, statement: Statement) -> None:
         words = statement.words
@@ -160,6 +164,11 @@ class _Reader:
             wanted = " : ".join(kind.rstrip("s") for kind in kinds)
             message = f"`{keyword}:` has {len(fields)} fields"
             self._error("AOS106", message, statement.keyword, f"Write {keyword}: {wanted}, or its beginning")
+            return
+        last = fields[-1].text
+        if not statement.words and last in _ROWS and last not in self._numbers[kinds[len(fields) - 1]]:
+            before = " : ".join(word.text for word in fields[:-1])
+            self._error("AOS106", f"a colon before {last}", fields[-1], f"Write `{keyword}: {before} {last}`")
             return
         chosen = [self._some(kind, word) for kind, word in zip(kinds, fields, strict=False)]
         if keyword == "R":
@@ -242,23 +251,30 @@ class _Reader:
         rows = {id(row): row for row in table.values()}
         totals = {number: sum(row.values()) for number, row in rows.items()}
         scaled: dict[int, Distribution] = {}
+        lacking: list[str] = []
         for action, state in sorted(needed):
             row = table.get((action, state), {})
             total = totals.get(id(row), 0.0)
             if not row and (keyword, action, state) not in self._last_rule:
-                where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
-                self._error("AOS105", f"there is no `{where}`", _WHOLE)
+                lacking.append(
+                    f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
+                )
             elif abs(total - 1) > _SUM_TOLERANCE:
-                where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
-                message = f"the probabilities of `{where}` sum to {total:g}"
+                message = f"the probabilities of `{self._row(keyword, action, state)}` sum to {total:g}"
                 rule = self._last_rule.get((keyword, action, state), _WHOLE)
                 self._error("AOS122", message, rule, "They have to sum to 1")
             elif total != 1:
                 if id(row) not in scaled:
                     scaled[id(row)] = {number: p / total for number, p in row.items()}
                 table[action, state] = scaled[id(row)]
+        if lacking:
+            others = f", nor {len(lacking) - 1} more" if len(lacking) > 1 else ""
+            self._error("AOS105", f"there is no `{lacking[0]}`{others}", _WHOLE)
 
     # --- words ---
+
+    def _row(self, keyword: str, action: int, state: int) -> str:
+        return f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
 
     def _all(self, kind: str) -> Sequence[int]:
         return range(len(self._names[kind]))
@@ -286,7 +302,8 @@ class _Reader:
     def _distribution(self, kind: str, words: Sequence[Word], statement: Statement) -> Distribution:
         width = len(self._names[kind])
         if len(words) != width:
-            self._error("AOS106", f"{len(words)} numbers where {width} are needed", statement.keyword)
+            message = f"{len(words)} numbers where {width} are needed"
+            self._error("AOS106", message, statement.keyword, f"Write one for each of the {kind}")
             return {}
         values = (self._probability(word) for word in words)
         return {number: value for number, value in enumerate(values) if value > 0}
@@ -304,7 +321,8 @@ class _Reader:
         except ValueError:
             value = float("nan")
         if not np.isfinite(value):
-            self._error("AOS106", f"{word.text} is not a finite number", word)
+            hint = "A decimal is written with a point" if "," in word.text else ""
+            self._error("AOS106", f"{word.text} is not a finite number", word, hint)
             return 0.0
         return value
 

@@ -7,8 +7,9 @@ from itertools import pairwise
 import msgspec
 
 from aos_lab.formats.problem_text import ProblemFindings, Word
-from aos_protocol.spelling import did_you_mean
+from aos_protocol.spelling import nearest
 
+_VARIANTS = ("include", "exclude")
 _WORD = re.compile(r"[^\s:]+|:")
 KEYWORDS = frozenset({"discount", "values", "states", "actions", "observations", "start", "T", "O", "R"})
 
@@ -27,20 +28,32 @@ class Statement(msgspec.Struct, frozen=True):
 
 
 def statements_of(text: str, findings: ProblemFindings) -> Iterator[Statement]:
-    """The statements in order; words outside of any, and keywords that there are not, are findings."""
+    """The statements in order; words outside of any, and keywords that there are not, are findings.
+
+    A statement whose keyword is mistyped, or lacks its colon, is read nevertheless: that is one mistake.
+    """
     words = list(_words(text))
-    starts = [place for place in range(len(words)) if _begins(words, place) or _is_no_keyword(words, place)]
+    begin_one = (_begins, _lacks_colon, _is_no_keyword)
+    starts = [place for place in range(len(words)) if any(begins(words, place) for begins in begin_one)]
     if words and starts[:1] != [0]:
         starts.insert(0, 0)
     for begin, end in pairwise([*starts, len(words)]):
+        word, rest = words[begin], words[begin + 1 : end]
         if _begins(words, begin):
-            yield _statement(words[begin:end])
+            yield _statement([word, *rest])
+        elif _lacks_colon(words, begin):
+            is_start = word.text == "start"
+            variant = [each for each in rest[:1] if is_start and each.text in _VARIANTS]
+            said = " ".join(each.text for each in (word, *variant))
+            findings.error("AOS102", f"{word.text} begins a line without a colon", word, f"Write `{said}:`")
+            colon = Word(":", word.line, word.column)
+            yield _statement([word, *variant, colon, *rest[len(variant) :]])
         else:
-            word = words[begin]
-            hint = (
-                did_you_mean(word.text, KEYWORDS) or "Expected discount:, values:, states:, T: and their like"
-            )
+            meant = nearest(word.text, KEYWORDS) if rest[:1] and rest[0].text == ":" else ""
+            hint = f"Did you mean `{meant}`?" if meant else "Expected discount:, states:, T: and their like"
             findings.error("AOS102", f"{word.text} is no keyword", word, hint)
+            if meant:
+                yield _statement([Word(meant, word.line, word.column), *rest])
 
 
 def _words(text: str) -> Iterator[Word]:
@@ -58,6 +71,13 @@ def _begins(words: list[Word], place: int) -> bool:
     if following[:1] == [":"]:
         return True
     return words[place].text == "start" and following[0:1] in (["include"], ["exclude"]) and ":" in following
+
+
+def _lacks_colon(words: list[Word], place: int) -> bool:
+    """Returns whether a line begins here with a keyword that no colon follows."""
+    before = words[place - 1] if place > 0 else None
+    is_first = before is None or (before.line < words[place].line and before.text != ":")
+    return is_first and words[place].text in KEYWORDS and not _begins(words, place)
 
 
 def _is_no_keyword(words: list[Word], place: int) -> bool:
