@@ -70,7 +70,7 @@ def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_p
 def test_an_unknown_benchmark_is_refused_with_the_known_ones(name: str):
     done = run_bench(name)
     assert done.returncode == 2
-    assert f"{name} is none of tiger, tag," in " ".join(done.stderr.split())
+    assert f"{name} is no folder of a bundle, and none of tiger, tag," in " ".join(done.stderr.split())
 
 
 async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path):
