@@ -1,5 +1,5 @@
 from mappings import mapping_of_model
-from scripted_models import text_project
+from projects import text_project
 
 from aos_protocol.documents import Project
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 from kept_cache import kept_cache
+from places import ROOT
 
 from aos_runtime.sandbox.support import sandbox_support, sandbox_text, trust_documents
 
-ROOT = Path(__file__).resolve().parents[1]
 TESTS = ROOT / "tests"
 LONGEST = TESTS / "longest_first.txt"
 """Files of tests, by the processor time that docs/lab/checks.md tells of."""
@@ -29,21 +29,6 @@ def pytest_configure() -> None:
 def pytest_report_header() -> str:
     """Says at the head of a run what the tests' documents run in."""
     return f"sandbox: {sandbox_text()}"
-
-
-@pytest.fixture(scope="session")
-def root() -> Path:
-    return ROOT
-
-
-@pytest.fixture(scope="session")
-def bundles() -> Path:
-    return ROOT / "deploy" / "bundles"
-
-
-@pytest.fixture(scope="session")
-def problems() -> Path:
-    return TESTS / "data" / "problems"
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+from places import DEPLOY
 
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
 from aos_protocol.errors import DeployError
@@ -8,10 +9,10 @@ from aos_protocol.errors import DeployError
 HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
 
 
-def world_without_pictures(root: Path, folder: Path) -> Path:
+def world_without_pictures(folder: Path) -> Path:
     """Writes the Armadillo's world without pictures, which take most of a mission's processor time."""
     path = folder / "world.yaml"
-    path.write_text((root / "deploy/worlds/armadillo.yaml").read_text() + "pictures: false\n")
+    path.write_text((DEPLOY / "worlds/armadillo.yaml").read_text() + "pictures: false\n")
     return path
 
 

@@ -2,17 +2,10 @@
 
 from collections.abc import Mapping
 
+from projects import files_project
 from texts import encoded
 
 from aos_language.convert import Dialect, convert, without_origins
-from aos_language.load import load_files
-from aos_protocol.documents import Project
-
-
-def project_of(files: Mapping[str, bytes]) -> Project:
-    loaded = load_files(files)
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
 
 
 def converted(files: Mapping[str, bytes], dialect: Dialect) -> dict[str, bytes]:
@@ -25,13 +18,13 @@ def converted(files: Mapping[str, bytes], dialect: Dialect) -> dict[str, bytes]:
 
 def say_the_same(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], dict[str, bytes]]:
     """Holds the documents of all dialects against each other; those in JSON and in SDL."""
-    original = without_origins(project_of(files))
+    original = without_origins(files_project(files))
     sdl, json = converted(files, Dialect.SDL), converted(files, Dialect.JSON)
     papers = {
         name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
         for name, data in json.items()
     }
     for other in (sdl, json, papers, converted(json, Dialect.SDL), converted(sdl, Dialect.JSON)):
-        assert without_origins(project_of(other)) == original
+        assert without_origins(files_project(other)) == original
     assert converted(sdl, Dialect.SDL) == sdl == converted(json, Dialect.SDL)
     return json, sdl

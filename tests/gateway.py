@@ -4,7 +4,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from http.client import HTTPConnection, HTTPResponse
@@ -12,10 +11,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mappings import mapping_text
+from places import BIN, BUNDLES, DEPLOY
 from processes import COMMAND_S, HANG_S
 
-BIN = Path(sys.executable).parent
-ROOT = Path(__file__).resolve().parents[1]
 SLOW = """\
 aos: 1
 robot: tiger
@@ -199,7 +197,7 @@ def played(folder: Path, *options: str, said: Path | None = None) -> Path:
     runs = folder / "runs"
     command: list[str | Path] = [
         BIN / "aos-up",
-        ROOT / "deploy/errand.yaml",
+        DEPLOY / "errand.yaml",
         "--model",
         "--plain",
         "--runs",
@@ -227,7 +225,7 @@ def copied_past(shared: Path, folder: Path) -> Path:
 def write_slow_tiger(folder: Path) -> None:
     """Writes the bundle `tiger`, whose skills may take as long as a test wants them to."""
     (folder / "tiger").mkdir(exist_ok=True)
-    for path in (ROOT / "deploy/bundles/bench/tiger").iterdir():
+    for path in (BUNDLES / "bench/tiger").iterdir():
         text = path.read_text().replace("max_duration: 10\n", "max_duration: 900\n")
         (folder / "tiger" / path.name).write_text(text)
 

@@ -1,12 +1,10 @@
-from pathlib import Path
 from textwrap import dedent
 
 from aos_language.findings import Findings
-from aos_language.load import load_bundle
 from aos_language.reading.files import read_documents
 from aos_middleware.emission.emit import EmittedMapping, emit_mapping
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Project, Skill, SkillModel
+from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, SkillModel
 
 
 def mapping_of(text: str, file: str = "look.am") -> AbstractionMapping:
@@ -26,9 +24,3 @@ def skill_of(text: str, file: str = "look.am") -> Skill:
 
 def emitted(text: str, low_level: LowLevelDocument | None = None) -> EmittedMapping:
     return emit_mapping(skill_of(text), low_level)
-
-
-def project_in(folder: Path) -> Project:
-    bundle = load_bundle(folder)
-    assert bundle.project is not None, bundle.diagnostics
-    return bundle.project

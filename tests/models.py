@@ -2,10 +2,9 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
-from texts import encoded
+from projects import bundle_project, text_project
 
 from aos_deploy.places import cache_dir
-from aos_language.load import load_bundle, load_files
 from aos_protocol.documents import Project
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
@@ -18,9 +17,7 @@ async def built_project(project: Project) -> BuiltModel:
 
 
 async def built_bundle(bundle: Path) -> BuiltModel:
-    loaded = load_bundle(bundle)
-    assert loaded.project is not None, loaded.diagnostics
-    return await built_project(loaded.project)
+    return await built_project(bundle_project(bundle))
 
 
 async def built_bundles(bundles: Sequence[Path]) -> BuiltModel:
@@ -30,9 +27,7 @@ async def built_bundles(bundles: Sequence[Path]) -> BuiltModel:
 
 
 async def built_text(files: Mapping[str, str]) -> BuiltModel:
-    loaded = load_files(encoded(files))
-    assert loaded.project is not None, loaded.diagnostics
-    return await built_project(loaded.project)
+    return await built_project(text_project(files))
 
 
 @asynccontextmanager

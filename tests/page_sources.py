@@ -5,15 +5,16 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from places import ROOT
 from processes import COMMAND_S
 
 
-def installed_sources(root: Path, cache: Path) -> Path:
+def installed_sources(cache: Path) -> Path:
     """A copy of the page's sources with `node_modules`, kept for later; skips where that cannot be."""
     npm = shutil.which("npm")
     if npm is None or shutil.which("node") is None:
         pytest.skip("needs node and npm")
-    sources = root / "services/gateway/page"
+    sources = ROOT / "services/gateway/page"
     lock = hashlib.sha256((sources / "package-lock.json").read_bytes()).hexdigest()[:16]
     target = cache / f"page-{lock}"
     if not target.exists():

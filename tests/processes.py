@@ -16,6 +16,11 @@ COMMAND_S = 600.0
 """Tests wait this long for a whole command, which may compile, plan and simulate."""
 
 
+def finished(*command: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
+    """A whole command and what it printed; `options` are those of `subprocess.run`."""
+    return subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, **options)
+
+
 def is_running(pid: int) -> bool:
     """Returns whether a process does anything still; a zombie does not."""
     try:

@@ -11,10 +11,8 @@ from typing import Any
 import msgspec
 from exam.programs import PATIENCE_S, run, what_decides
 from processes import COMMAND_S
-from texts import encoded
 
 from aos_deploy.places import cache_dir
-from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_solver.building.build_cache import BuildCache, digest_of
@@ -83,19 +81,6 @@ class ScriptedModel(msgspec.Struct, frozen=True):
             check=True,
         )
         return json.loads(done.stdout)
-
-
-def text_project(files: Mapping[str, str]) -> Project:
-    """The project of documents given as text, which must have no mistakes that the registry finds."""
-    loaded = load_files(encoded(files))
-    assert loaded.project is not None, [d for d in loaded.diagnostics if d.is_error]
-    return loaded.project
-
-
-def bundle_project(bundle: Path) -> Project:
-    loaded = load_bundle(bundle)
-    assert loaded.project is not None, [d for d in loaded.diagnostics if d.is_error]
-    return loaded.project
 
 
 def json_text(document: Mapping[str, Any], kind: str, name: str, project: str = "test") -> str:

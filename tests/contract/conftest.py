@@ -10,6 +10,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 from middleware_system import System, running_system
+from places import BUNDLES
 from processes import HANG_S, has_listener
 from ros1_core import roscore, skip_without_ros1
 
@@ -64,27 +65,25 @@ async def other(endpoint: str) -> AsyncIterator[Bus]:
 
 
 @pytest_asyncio.fixture
-async def system(
-    bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path, bundles: Path
-) -> AsyncIterator[System]:
+async def system(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[System]:
     """A middleware that has our armadillo, and a skill that listens; `other` surrounds it."""
-    async with running_system(bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer") as running:
+    async with running_system(bus, other, keys, tmp_path, endpoint, BUNDLES / "armadillo-finer") as running:
         yield running
 
 
 @pytest_asyncio.fixture
 async def process_system(
-    bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path, bundles: Path
+    bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path
 ) -> AsyncIterator[System]:
     """The same with a middleware that is a process, which a test may freeze, end and start again."""
-    bundle = bundles / "armadillo-finer"
+    bundle = BUNDLES / "armadillo-finer"
     async with running_system(bus, other, keys, tmp_path, endpoint, bundle, is_process=True) as running:
         yield running
 
 
 @pytest.fixture
-def finer(bundles: Path) -> dict[str, bytes]:
-    return read_bundle_files(bundles / "armadillo-finer")[0]
+def finer() -> dict[str, bytes]:
+    return read_bundle_files(BUNDLES / "armadillo-finer")[0]
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-from mapping_documents import project_in, skill_of
+from mapping_documents import skill_of
 from processes import HANG_S
+from projects import bundle_project
 from starting import until_present
 
 from aos_middleware.service import serve
@@ -275,7 +276,7 @@ async def running_system(
     **settings: Any,
 ) -> AsyncIterator[System]:
     """A middleware that has taken over the bundle's project and `SENSE`, and ends with the block."""
-    project = project_in(bundle)
+    project = bundle_project(bundle)
     sense = skill_of(SENSE, "sense.am")
     project = msgspec.structs.replace(project, skills=(*project.skills, sense))
     registry = Registry(other, keys, project)

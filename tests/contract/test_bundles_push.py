@@ -9,6 +9,7 @@ import msgspec
 import pytest_asyncio
 from commands import aos as called
 from mappings import mapping_text
+from places import BUNDLES
 from starting import until_present
 from typer.testing import Result
 
@@ -39,13 +40,13 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
     await child.stop(5.0)
 
 
-async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos, bundles: Path):
+async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos):
     assert (await aos("bundle", "list")).output == "The registry holds no projects.\n"
-    pushed = await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    pushed = await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     assert pushed.exit_code == 0, pushed.output
     skills = "navigate, observe_arm_outstretched, observe_holding, pick, serve"
     assert pushed.output.endswith(f"project armadillo, revision 1, added {skills}\n")
-    again = await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    again = await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     assert again.output.endswith("project armadillo, revision 1, nothing new\n")
     listed = json.loads((await aos("bundle", "list", "--json")).output)
     assert [(e["project"], e["revision"], len(e["skills"])) for e in listed["entries"]] == [
@@ -56,11 +57,9 @@ async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos, bundles: Path):
     assert "skill pick()" in shown
 
 
-async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(
-    aos: Aos, bundles: Path, tmp_path: Path
-):
-    await aos("bundle", "push", str(bundles / "armadillo-finer"))
-    folder = shutil.copytree(bundles / "armadillo-rough", tmp_path / "rough")
+async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(aos: Aos, tmp_path: Path):
+    await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
+    folder = shutil.copytree(BUNDLES / "armadillo-rough", tmp_path / "rough")
     (folder / "pick.am").write_text("project: armadillo\nresponse: pick_succeeded\nresponse_rule: True +\n")
     refused = await aos("bundle", "push", str(folder))
     assert refused.exit_code == 1
@@ -68,8 +67,8 @@ async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(
     assert refused.output.endswith("refused; the project stays at revision 1\n")
 
 
-async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos: Aos, bundles: Path):
-    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos: Aos):
+    await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     removed = await aos("bundle", "rm", "armadillo", "observe_holding")
     assert (
         removed.output
@@ -83,14 +82,12 @@ async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos:
     assert [entry["revision"] for entry in history] == [1, 2, 3]
     assert history[1]["removed"] == ["observe_holding.am", "observe_holding.sd"]
     assert history[2]["skills"] == []
-    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     assert "revision 4" in (await aos("bundle", "list")).output
 
 
-async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
-    aos: Aos, bundles: Path, tmp_path: Path
-):
-    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(aos: Aos, tmp_path: Path):
+    await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     skill = tmp_path / "ask"
     skill.mkdir()
     (skill / "ask.sd").write_text("project: armadillo\ndynamic_model:\n__moduleResponse = told;\n")
@@ -103,19 +100,19 @@ async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
     assert "removed ask" in (await aos("bundle", "rm", "armadillo", "ask")).output
 
 
-async def test_a_pushed_skill_that_nobody_serves_is_told(aos: Aos, bus: Bus, keys: Keys, bundles: Path):
+async def test_a_pushed_skill_that_nobody_serves_is_told(aos: Aos, bus: Bus, keys: Keys):
     async def state(_: MappingQuery, __: str) -> MappingState:
         return MappingState(1, ("pick",), unavailable={"pick": "no adapter answers calls of /pick"})
 
     await bus.answer(keys.mapping_state, MappingQuery, state)
     await bus.announce(keys.live("middleware"))
-    pushed = await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    pushed = await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     assert pushed.exit_code == 0
     assert "pick: warning[AOS505]: nobody can run it now: no adapter answers calls of /pick" in pushed.output
 
 
-async def test_what_is_not_there_is_told_with_the_nearest(aos: Aos, bundles: Path):
-    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+async def test_what_is_not_there_is_told_with_the_nearest(aos: Aos):
+    await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     for arguments, told in (
         (("show", "armadilo"), "Did you mean `armadillo`?"),
         (("rm", "armadillo", "pik"), "Did you mean `pick`?"),

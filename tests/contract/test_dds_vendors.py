@@ -7,7 +7,8 @@ from ctypes.util import find_library
 from pathlib import Path
 
 import pytest
-from processes import COMMAND_S
+from places import ROOT
+from processes import COMMAND_S, finished
 
 pytest.importorskip("rosbags", reason="needs the extra `dds`")
 pytest.importorskip("cyclonedds", reason="needs the extra `dds`")
@@ -19,7 +20,6 @@ from aos_solver.building.build_cache import BuildCache, digest_of
 
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).resolve().parents[2]
 HEADER = Path("/usr/include/fastdds/dds/domain/DomainParticipant.hpp")
 
 
@@ -46,7 +46,7 @@ def test_fast_dds_understands_us_and_we_it(fast_dds_program: Path):
     with subprocess.Popen([fast_dds_program, domain]) as peer:
         try:
             partner = [sys.executable, str(ROOT / "tests" / "fast_dds_partner.py"), domain]
-            talk = subprocess.run(partner, capture_output=True, text=True, timeout=COMMAND_S)
+            talk = finished(*partner)
         finally:
             peer.kill()
     assert talk.returncode == 0, talk.stderr

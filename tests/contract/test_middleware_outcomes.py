@@ -1,12 +1,12 @@
 import asyncio
 import math
-from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
 from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang, succeed
+from places import BUNDLES
 
 from aos_language.derived_mapping import derived_mapping
 from aos_language.findings import Findings
@@ -195,13 +195,13 @@ async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(system: S
     assert outcome.fault.diagnostics[0].span.file == "sense.am"
 
 
-async def test_mapping_code_that_raises_is_unknown_at_the_documents_line(system: System, bundles: Path):
+async def test_mapping_code_that_raises_is_unknown_at_the_documents_line(system: System):
     await system.adapter.serve("/pick", answering({"sucess": True}))
     outcome = await system.activate("pick")
     assert outcome.status == "unknown"
     assert outcome.fault is not None
     assert outcome.fault.code == "AOS401"
-    source = (bundles / "armadillo-finer" / "pick.am").read_text().splitlines()
+    source = (BUNDLES / "armadillo-finer" / "pick.am").read_text().splitlines()
     line = source.index("success = __input.success") + 1
     assert f"pick.am:{line}:11" in outcome.fault.message
     assert "did you mean 'sucess'" in outcome.fault.message

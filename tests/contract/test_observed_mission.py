@@ -9,7 +9,7 @@ import pytest
 import pytest_asyncio
 from models import built_text, engine_of
 from processes import HANG_S
-from scripted_models import text_project
+from projects import text_project
 from starting import until_present
 
 from aos_middleware.service import serve

@@ -7,6 +7,7 @@ import msgspec
 import pytest
 from mapping_documents import skill_of
 from middleware_system import System, answering, running_system
+from places import BUNDLES
 
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Outcome, SkillResult
@@ -43,8 +44,8 @@ StartSystem = Callable[..., AbstractAsyncContextManager[System]]
 
 
 @pytest.fixture
-def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str, bundles: Path) -> StartSystem:
-    return partial(running_system, bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer")
+def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str) -> StartSystem:
+    return partial(running_system, bus, other, keys, tmp_path, endpoint, BUNDLES / "armadillo-finer")
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import pytest_asyncio
 from adapter_process import AdapterProcess
+from places import ROOT
 from processes import HANG_S
 
 from aos_protocol.errors import AosError
@@ -261,8 +262,8 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
     assert "/skill did not stop within 2 s" in log
 
 
-async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robot, root: Path):
-    page = (root / "docs/adapters/command.md").read_text(encoding="utf-8")
+async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robot):
+    page = (ROOT / "docs/adapters/command.md").read_text(encoding="utf-8")
     function = page.partition("```python\nimport asyncio")[2].partition("```")[0]
     script = robot.folder / "take.sh"
     (robot.folder / "take.py").write_text(f"import asyncio{function.replace('./take.sh', str(script))}")

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import pytest_asyncio
+from places import BUNDLES
 from processes import HANG_S
 from starting import until_present
 
@@ -98,13 +99,13 @@ async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
 
 
 async def test_a_skill_can_be_pushed_on_its_own_and_a_better_document_replaces_the_old_one(
-    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes], bundles: Path
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):
     observe = {name: finer.pop(name) for name in list(finer) if name.startswith("observe_holding")}
     await push(bus, keys, finer)
     report = await push(bus, keys, observe)
     assert (report.is_accepted, report.revision, report.added) == (True, 2, ("observe_holding",))
-    rough_pick = (bundles / "armadillo-rough" / "pick.sd").read_bytes()
+    rough_pick = (BUNDLES / "armadillo-rough" / "pick.sd").read_bytes()
     report = await push(bus, keys, {"pick.sd": rough_pick})
     assert (report.revision, report.added, report.changed) == (3, (), ("pick",))
     assert len((await current(bus, keys)).project.skills) == 5
@@ -165,7 +166,7 @@ async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_un
 
 
 async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, bundles: Path
+    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys
 ):
     registry = tmp_path / "run"
     async with (
@@ -174,7 +175,7 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
         running_registry(registry, endpoint, bus, keys, quiet_s=0.5),
         bus.listen(keys.bundle_report, messages.BundleReport) as reports,
     ):
-        shutil.copytree(bundles / "armadillo-finer", registry / "drop" / "armadillo")
+        shutil.copytree(BUNDLES / "armadillo-finer", registry / "drop" / "armadillo")
         async for _, report in reports:
             if report.is_waiting:
                 continue  # It has paused for longer.
@@ -216,7 +217,7 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
 
 
 async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_a_document_alone_is_refused(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, bundles: Path, finer: dict[str, bytes]
+    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):
     drops = tmp_path / "run" / "drop"
     drops.mkdir(parents=True)
@@ -227,7 +228,7 @@ async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_a_
         bus.listen(keys.bundle_report, messages.BundleReport) as reports,
         running_registry(drops.parent, endpoint, bus, keys),
     ):
-        shutil.make_archive(str(drops / "whole"), "zip", bundles / "armadillo-finer")
+        shutil.make_archive(str(drops / "whole"), "zip", BUNDLES / "armadillo-finer")
         told = [(await anext(aiter(reports)))[1] for _ in range(3)]
     assert [(report.source, report.revision, report.is_waiting) for report in told] == [
         *(("pick.sd", 0, False), ("whole.zip", 1, False), ("half", 1, True))

@@ -1,7 +1,7 @@
 import asyncio
-from pathlib import Path
 
 import pytest
+from places import BUNDLES
 from processes import HANG_S
 
 from aos_language.load import load_bundle
@@ -32,10 +32,10 @@ class Registry:
 
 
 async def test_documents_come_although_the_first_answers_are_late(
-    bus: Bus, other: Bus, keys: Keys, bundles: Path, monkeypatch: pytest.MonkeyPatch
+    bus: Bus, other: Bus, keys: Keys, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr(registry_watch, "ASK_TIMEOUT_S", 0.1)
-    registry = Registry(2, load_bundle(bundles / "errand").project)
+    registry = Registry(2, load_bundle(BUNDLES / "errand").project)
     await other.answer(keys.project, ProjectQuery, registry.answer)
     given: asyncio.Queue[ProjectRevision] = asyncio.Queue()
     following = asyncio.create_task(RegistryWatch(bus, keys, "errand", given.put).follow())

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import pytest_asyncio
+from places import DATA, ROOT
 from processes import HANG_S
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
@@ -20,8 +21,7 @@ from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.node import Node
 from aos_skills.ros2.wire import Kind
 
-ROOT = Path(__file__).resolve().parents[2]
-INTERFACES = ROOT / "tests" / "data" / "interfaces"
+INTERFACES = DATA / "interfaces"
 ADD = "example_interfaces/srv/AddTwoInts"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 STRING = "std_msgs/msg/String"

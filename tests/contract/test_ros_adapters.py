@@ -15,13 +15,13 @@ from typing import Any
 import pytest
 import pytest_asyncio
 from adapter_process import AdapterProcess
+from places import DATA
 from processes import HANG_S
+from projects import text_project
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
-from texts import encoded
 
-from aos_language.load import load_files
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
@@ -42,7 +42,7 @@ from aos_skills.ros.types import RosTypes
 
 pytestmark = pytest.mark.slow
 
-INTERFACES = Path(__file__).resolve().parents[1] / "data" / "interfaces"
+INTERFACES = DATA / "interfaces"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 
 DOCUMENTS = {
@@ -265,9 +265,7 @@ async def test_a_goal_that_does_not_end_when_it_is_cancelled_counts_as_moving_un
 
 
 async def test_documents_name_the_paths_and_topics(lab: Lab):
-    project = load_files(encoded(DOCUMENTS)).project
-    assert project is not None
-    revision = ProjectRevision(1, "digest", project)
+    revision = ProjectRevision(1, "digest", text_project(DOCUMENTS))
 
     async def documents(_: ProjectQuery, __: str) -> ProjectRevision:
         return revision

@@ -7,6 +7,7 @@ import pytest
 import pytest_asyncio
 from adapter_process import AdapterProcess
 from deploy_files import world_without_pictures
+from places import DEPLOY
 from processes import HANG_S
 from starting import until_present
 
@@ -74,20 +75,18 @@ class Robot(AdapterProcess):
 
 
 @pytest_asyncio.fixture
-async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path) -> AsyncIterator[Robot]:
+async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
     """A robot that is not started yet; whatever a test starts is stopped."""
     (tmp_path / "pictures").mkdir()
-    robot = Robot(bus, keys, endpoint, tmp_path, world_without_pictures(root, tmp_path))
+    robot = Robot(bus, keys, endpoint, tmp_path, world_without_pictures(tmp_path))
     try:
         yield robot
     finally:
         await robot.stop()
 
 
-async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(
-    robot: Robot, root: Path
-):
-    robot.world = root / "deploy/worlds/armadillo.yaml"
+async def test_a_call_is_answered_refused_with_a_hint_or_stopped_when_it_takes_too_long(robot: Robot):
+    robot.world = DEPLOY / "worlds/armadillo.yaml"
     await robot.start()
     async with robot.bus.listen(robot.keys.topic("/gripper"), TopicMessage) as gripper:
         result = await robot.call("/sense")

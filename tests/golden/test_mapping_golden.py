@@ -3,11 +3,12 @@
 `AOS_PROMOTE=1 pytest tests/golden` takes what is generated now as what is expected.
 """
 
+from places import BUNDLES, ROOT
 import os
 from pathlib import Path
 
 import pytest
-from mapping_documents import project_in
+from projects import bundle_project
 
 from aos_middleware.mappings.revisions import emit_project
 
@@ -15,7 +16,7 @@ EXPECTED = Path(__file__).parent / "python"
 
 
 def compare(folder: Path, expected: Path):
-    generated = {mapping.file_name: mapping.python for mapping in emit_project(project_in(folder))}
+    generated = {mapping.file_name: mapping.python for mapping in emit_project(bundle_project(folder))}
     if os.environ.get("AOS_PROMOTE"):
         expected.mkdir(parents=True, exist_ok=True)
         for name, text in generated.items():
@@ -24,28 +25,28 @@ def compare(folder: Path, expected: Path):
     assert generated == stored
 
 
-def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path):
-    rough, finer = (project_in(bundles / f"armadillo-{name}") for name in ("rough", "finer"))
+def test_the_two_armadillo_bundles_share_their_mappings():
+    rough, finer = (bundle_project(BUNDLES / f"armadillo-{name}") for name in ("rough", "finer"))
     assert [mapping.python for mapping in emit_project(rough)] == [mapping.python for mapping in emit_project(finer)]
 
 
-def test_a_json_mapping_with_every_construct_is_generated_as_stored(root: Path):
-    compare(root / "docs" / "examples" / "kettle-json", EXPECTED / "kettle")
+def test_a_json_mapping_with_every_construct_is_generated_as_stored():
+    compare(ROOT / "docs" / "examples" / "kettle-json", EXPECTED / "kettle")
 
 
 def test_the_mapping_of_a_monitor_is_generated_as_stored():
     compare(EXPECTED.parents[1] / "data" / "bundles" / "battery", EXPECTED / "battery")
 
 
-def test_generating_twice_gives_the_same_bytes(bundles: Path):
-    first, second = (emit_project(project_in(bundles / "armadillo-finer")) for _ in range(2))
+def test_generating_twice_gives_the_same_bytes():
+    first, second = (emit_project(bundle_project(BUNDLES / "armadillo-finer")) for _ in range(2))
     assert first == second
 
 
 @pytest.mark.corpus
 def test_every_mapping_of_the_original_bundles_is_generated(corpus: Path):
     folders = [path for path in sorted(corpus.iterdir()) if path.is_dir() and path.name != "bad"]
-    counts = {folder.name: len(emit_project(project_in(folder))) for folder in folders}
+    counts = {folder.name: len(emit_project(bundle_project(folder))) for folder in folders}
     assert counts == {
         "armadillo-finer": 5,
         "armadillo-rough": 5,

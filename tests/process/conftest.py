@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from gateway import Gateway, copied_past, gateway, slow_system
 from models import built_bundle
+from places import BUNDLES
 from supervised_system import TESTS, System
 
 from aos_solver.building.build import BuiltModel
@@ -34,5 +35,5 @@ def living(tmp_path: Path) -> Iterator[tuple[Gateway, Path]]:
 
 
 @pytest.fixture
-async def tiger(bundles: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tiger")
+async def tiger() -> BuiltModel:
+    return await built_bundle(BUNDLES / "bench" / "tiger")

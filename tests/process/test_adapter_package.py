@@ -10,16 +10,16 @@ from pathlib import Path
 import pytest
 from commands import aos
 from installed import built_wheel, install
-from processes import COMMAND_S
+from places import BIN, ROOT
+from processes import COMMAND_S, finished
 
-BIN = Path(sys.executable).parent
 NEEDED = ("zenoh", "eclipse_zenoh", "msgspec")
 NOT_NEEDED = ("zenoh_ros2_sdk",)
 
 
 @pytest.fixture(scope="module")
-def wheel(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return built_wheel(root, tmp_path_factory.mktemp("wheel"), "protocol")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return built_wheel(ROOT, tmp_path_factory.mktemp("wheel"), "protocol")
 
 
 @pytest.fixture(scope="module")
@@ -52,9 +52,7 @@ def _runs(python: str) -> bool:
 
 
 def said_by(python: Path, program: str, *words: str) -> str:
-    done = subprocess.run(
-        [python, "-c", program, *words], capture_output=True, text=True, timeout=COMMAND_S, cwd=python.parent
-    )
+    done = finished(python, "-c", program, *words, cwd=python.parent)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
 
@@ -91,7 +89,7 @@ def test_an_adapter_of_it_runs_a_mission(
     assert "{class: 'fetch_robot:Robot'}" in text
     deploy.write_text(text.replace("{class: 'fetch_robot:Robot'}", f"{{command: {command}}}"))
     up = [BIN / "aos-up", deploy, "--plain", "--listen", "tcp/127.0.0.1:0"]
-    done = subprocess.run(up, capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(*up)
     assert "mission ended: the goal is reached" in done.stdout, done.stdout + done.stderr
     assert "robot ready" in done.stdout
     log = Path("runs/latest/logs/robot.log").read_text()
@@ -110,7 +108,7 @@ def test_a_command_that_is_wrong_is_told(
     python: Path, words: list[str], environment: dict[str, str], said: str
 ):
     command = [python, "-m", "aos_runtime.adapters", *words]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=COMMAND_S)
+    done = finished(*command, env=environment)
     assert done.returncode == 2
     assert done.stderr.startswith(said)
 

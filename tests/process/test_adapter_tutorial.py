@@ -12,9 +12,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from processes import COMMAND_S
-
-BIN = Path(sys.executable).parent
+from places import BIN, ROOT
+from processes import finished
 
 
 @pytest.fixture(autouse=True)
@@ -27,15 +26,13 @@ def run(command: str) -> str:
     name, *arguments = shlex.split(command)
     if name == "aos-up":
         arguments += ["--listen", "tcp/127.0.0.1:0"]
-    done = subprocess.run(
-        [BIN / name, *arguments], capture_output=True, text=True, check=False, timeout=COMMAND_S
-    )
+    done = finished(BIN / name, *arguments)
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
     return done.stdout
 
 
-def test_the_tutorial_can_be_followed(root: Path):
-    text = (root / "docs/adapters/tutorial.md").read_text(encoding="utf-8")
+def test_the_tutorial_can_be_followed():
+    text = (ROOT / "docs/adapters/tutorial.md").read_text(encoding="utf-8")
     files = {"python": "fetch_robot.py", "yaml": "fetch.yaml"}
     commands = 0
     for language, block in re.findall(r"^```(\w+)\n(.*?)^```", text, re.MULTILINE | re.DOTALL):

@@ -14,24 +14,24 @@ from typing import Any, NamedTuple
 import pytest
 from deploy_files import world_without_pictures
 from gateway import slow_deploy_file
-from processes import HANG_S, descendants, is_running, until_ended
+from places import BIN, BUNDLES, DEPLOY, ROOT
+from processes import HANG_S, descendants, finished, is_running, until_ended
 
 from aos_deploy.history_check.files import check_run
 from aos_deploy.runs.end import account_of
 from aos_runtime.disk.journal import Journal
 
-BIN = Path(sys.executable).parent
 ENDINGS = {"goal": 0, "failure": 4, "nothing_worthwhile": 5, "step_limit": 6}
 
 
 @pytest.fixture(scope="module")
-def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def deploy_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The shipped deploy file on a free port, with a small planning budget and runs of its own."""
     folder = tmp_path_factory.mktemp("deploy")
-    text = (root / "deploy" / "armadillo.yaml").read_text()
+    text = (DEPLOY / "armadillo.yaml").read_text()
     replaced = {
-        "- bundles/": f"- {root}/deploy/bundles/",
-        "world: worlds/armadillo.yaml": f"world: {world_without_pictures(root, folder)}",
+        "- bundles/": f"- {ROOT}/deploy/bundles/",
+        "world: worlds/armadillo.yaml": f"world: {world_without_pictures(folder)}",
         "simulations: 100_000": "simulations: 5_000",
         "runs: ../runs": "runs: runs",
     }
@@ -137,13 +137,13 @@ class Mission(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def mission(root: Path, deploy_file: Path) -> Mission:
+def mission(deploy_file: Path) -> Mission:
     """One whole mission, followed by two programs that join after its first decision."""
     with up(deploy_file) as running:
         running.until("decision")
         run = latest(deploy_file)
         follow = [BIN / "aos", "decisions", "--json", "--runs", run.parent]
-        example = [sys.executable, root / "docs/examples/follow_decisions.py", run]
+        example = [sys.executable, ROOT / "docs/examples/follow_decisions.py", run]
         with (
             subprocess.Popen(follow, stdout=subprocess.PIPE, text=True) as follower,
             subprocess.Popen(example, stdout=subprocess.PIPE, text=True) as script,
@@ -182,7 +182,7 @@ def test_the_run_directory_keeps_the_mission(mission: Mission):
 
 
 def test_the_history_of_a_mission_breaks_no_rule(mission: Mission):
-    checked = subprocess.run([BIN / "aos", "check", mission.run, "--json"], capture_output=True, text=True)
+    checked = finished(BIN / "aos", "check", mission.run, "--json")
     assert json.loads(checked.stdout)["violations"] == []
     assert checked.returncode == 0
 
@@ -316,17 +316,17 @@ def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path
     ids=["of the compiler", "of the registry"],
 )
 def test_mistakes_in_documents_are_shown_at_their_places(
-    root: Path, deploy_file: Path, tmp_path: Path, mistakes: list[tuple[str, str, str, str]]
+    deploy_file: Path, tmp_path: Path, mistakes: list[tuple[str, str, str, str]]
 ):
     bundle = tmp_path / "bundle"
     bundle.mkdir()
-    for document in (root / "deploy/bundles/armadillo-finer").iterdir():
+    for document in (BUNDLES / "armadillo-finer").iterdir():
         (bundle / document.name).write_bytes(document.read_bytes())
     for file, old, new, _ in mistakes:
         text = (bundle / file).read_text()
         assert old in text
         (bundle / file).write_text(text.replace(old, new, 1))
-    changed = deploy_file.read_text().replace(str(root / "deploy/bundles/armadillo-finer"), str(bundle))
+    changed = deploy_file.read_text().replace(str(BUNDLES / "armadillo-finer"), str(bundle))
     result = refused(deploy_file, changed)
     assert result.status == 1
     for *_, place in mistakes:

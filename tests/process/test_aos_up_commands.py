@@ -1,23 +1,19 @@
 import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from processes import COMMAND_S
+from places import BIN, DEPLOY, ROOT
+from processes import finished
 
 from aos_deploy.commands.machine import examine_machine
 from aos_protocol import __version__
 
-BIN = Path(sys.executable).parent
-
 
 def run(*command: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
     name, *arguments = command
-    return subprocess.run(
-        [BIN / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=COMMAND_S
-    )
+    return finished(BIN / name, *arguments, cwd=folder)
 
 
 def test_help_has_an_example_and_every_exit_code():
@@ -53,17 +49,13 @@ def test_a_command_that_other_tools_have_is_answered_with_the_one_that_does_it(c
     ],
 )
 def test_what_no_mission_can_run_with_is_told_before_anything_starts(
-    limit: str, folder: bytes, told: str, root: Path, tmp_path: Path
+    limit: str, folder: bytes, told: str, tmp_path: Path
 ):
     deploy = tmp_path / os.fsdecode(folder) / "errand.yaml"
     deploy.parent.mkdir()
-    deploy.write_text(
-        (root / "deploy/errand.yaml").read_text().replace("bundles/", f"{root}/deploy/bundles/")
-    )
+    deploy.write_text((DEPLOY / "errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/"))
     command = f"ulimit {limit} && exec {BIN / 'aos-up'} errand.yaml"
-    done = subprocess.run(
-        ["sh", "-c", command], cwd=deploy.parent, capture_output=True, text=True, timeout=COMMAND_S
-    )
+    done = finished("sh", "-c", command, cwd=deploy.parent)
     assert done.returncode == 3
     assert told in done.stderr
     assert not (tmp_path / "runs").exists()
@@ -90,10 +82,10 @@ def test_the_doctor_says_what_is_there():
     assert "C++ compiler" in findings
 
 
-def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path, root: Path):
+def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path):
     deploy = tmp_path / "room.yaml"
     deploy.write_text(
-        f"aos: 1\nrobot: armadillo\nbundles: [{root / 'deploy/bundles/armadillo-finer'}]\n"
+        f"aos: 1\nrobot: armadillo\nbundles: [{ROOT / 'deploy/bundles/armadillo-finer'}]\n"
         "programs: {nav: {command: [./nav]}, ls: {command: [ls]}}\nbind: {'*': model}\n"
     )
     done = run("aos", "doctor", str(deploy), "--json")

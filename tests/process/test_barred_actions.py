@@ -1,14 +1,13 @@
-from pathlib import Path
-
 import pytest
 from models import engine_of_bundle
+from places import BUNDLES
 
 from aos_solver.child.engine import Planner, Restriction
 
 
 @pytest.mark.parametrize("planner", ["pomcp", "despot", "sarsop", "auto"])
-async def test_a_barred_action_is_never_the_decision(bundles: Path, planner: Planner):
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+async def test_a_barred_action_is_never_the_decision(planner: Planner):
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         barred: list[int] = []
         while len(barred) < 4:
             plan = await engine.plan(

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
-from scripted_models import text_project
+from projects import text_project
 
 from aos_deploy.places import cache_dir
 from aos_protocol.documents import Project

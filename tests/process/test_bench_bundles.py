@@ -1,10 +1,10 @@
 import itertools
 import math
 import random
-from pathlib import Path
 
 import pytest
 from models import engine_of_bundle
+from places import BUNDLES
 from reference_problems import MODELS, expected_reward, initial_belief, observed
 
 from aos_lab.bench.problems import problems_named
@@ -18,10 +18,10 @@ NORMAL = ("laser-normal", "lightdark-normal")
 
 
 @pytest.mark.parametrize("problem", MODELS)
-async def test_rewards_observations_and_beliefs_are_the_literatures(problem: str, bundles: Path):
+async def test_rewards_observations_and_beliefs_are_the_literatures(problem: str):
     model = MODELS[problem]
     draws = random.Random(f"walks of {problem}")
-    async with engine_of_bundle(bundles / "bench" / problem) as engine:
+    async with engine_of_bundle(BUNDLES / "bench" / problem) as engine:
         assert [action.name for action in engine.description.actions] == sorted(model.actions)
         for walk in range(WALKS):
             belief = initial_belief(model)
@@ -45,7 +45,7 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(problem: str
             assert (ending == "goal") == (not belief)
 
 
-async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path):
+async def test_light_and_dark_weigh_places_by_their_noise():
     """The robot starts in one of nine cells; after a step north it measures its place."""
     east_m, north_m = 2.9, 1.4
     weights = {}
@@ -54,7 +54,7 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path):
         squares = ((east_m - x) / deviation) ** 2 + ((north_m - y) / deviation) ** 2
         weights[x, y] = math.exp(-squares / 2) / (2 * math.pi * deviation**2) / 9
     density = sum(weights.values())
-    async with engine_of_bundle(bundles / "bench" / "lightdark-normal") as engine:
+    async with engine_of_bundle(BUNDLES / "bench" / "lightdark-normal") as engine:
         numbers = {"east_m": east_m, "north_m": north_m}
         update = await engine.update("move(direction=north)", "moved", numbers=numbers)
     assert update.probability == pytest.approx(density, rel=1e-9)
@@ -64,8 +64,8 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path):
         assert rows[str(y)] == pytest.approx(weight / density, abs=1e-9)
 
 
-def test_the_kept_rocksample_is_as_its_layout_says(bundles: Path):
-    kept = bundles / "bench" / "rocksample-7-8"
+def test_the_kept_rocksample_is_as_its_layout_says():
+    kept = BUNDLES / "bench" / "rocksample-7-8"
     assert bundle("rocksample-7-8") == {path.name: path.read_text() for path in kept.iterdir()}
 
 

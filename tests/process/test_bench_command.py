@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 from models import engine_of_bundle
-from processes import COMMAND_S
+from places import BUNDLES
+from processes import finished
 
 from aos_lab.bench.baseline import PROBLEMS, Baselines
 from aos_lab.bench.rows import figure, with_ratios
@@ -17,7 +18,7 @@ AOS = Path(sys.executable).parent / "aos"
 
 
 def run_bench(*arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([AOS, "bench", *arguments], capture_output=True, text=True, timeout=COMMAND_S)
+    return finished(AOS, "bench", *arguments)
 
 
 @pytest.fixture(scope="module")
@@ -50,10 +51,8 @@ def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_p
     assert f"not measured: {tmp_path.name}: AOS104" in done.stdout
 
 
-def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(
-    bundles: Path, tmp_path: Path
-):
-    folder = shutil.copytree(bundles / "bench" / "tiger", tmp_path / "tiger")
+def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(tmp_path: Path):
+    folder = shutil.copytree(BUNDLES / "bench" / "tiger", tmp_path / "tiger")
     listen = folder / "listen.sd"
     policy = "rollout_policy:\n__heuristicValue = 2;\n"
     listen.write_text(listen.read_text().replace("dynamic_model:", f"{policy}\ndynamic_model:"))
@@ -73,12 +72,12 @@ def test_an_unknown_benchmark_is_refused_with_the_known_ones(name: str):
     assert f"{name} is no folder of a bundle, and none of tiger, tag," in " ".join(done.stderr.split())
 
 
-async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path):
+async def test_the_baselines_earn_the_rewards_of_the_documents(cache_dir: Path):
     """The baselines take random actions, in millions of steps each."""
     baselines = await Baselines.built(await find_compiler(), cache_dir)
     for problem in PROBLEMS:
         steps = (await baselines.measure(problem, 0.05, seed=1))[0]
-        async with engine_of_bundle(bundles / "bench" / problem) as engine:
+        async with engine_of_bundle(BUNDLES / "bench" / problem) as engine:
             walked = await engine.rate(0.5, seed=2)
         assert walked.mean_reward == pytest.approx(steps.check, rel=0.02), problem
 

@@ -1,15 +1,14 @@
 import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
 from bounds_truth import truth_program
-from processes import COMMAND_S
+from processes import finished
 
 
 def checked(cache_dir: Path, first_seed: int, models: int, work: int) -> tuple[list[Any], Any]:
     command = [truth_program(cache_dir), str(first_seed), str(models), str(work)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, check=False)
+    done = finished(*command)
     *false, counted = map(json.loads, done.stdout.splitlines())
     return false, counted
 

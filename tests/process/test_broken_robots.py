@@ -2,18 +2,16 @@
 
 import contextlib
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from commands import aos
+from places import BIN
 from processes import COMMAND_S
 from walk import steps_of
 
 from aos_deploy.runs.directory import RunDirectory
 from aos_deploy.runs.summary import Summary
-
-BIN = Path(sys.executable).parent
 
 ROBOT = """
 import os

@@ -9,20 +9,20 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from processes import COMMAND_S
+from places import DEPLOY
+from processes import finished
+from projects import files_project
 
 from aos_lab.calibration.calibrate import Calibration, calibrate
 from aos_lab.calibration.draws import draws_of
 from aos_lab.calibration.records import RecordedMission, read_missions
 from aos_lab.trials.campaign import play_campaign
 from aos_lab.trials.setting import Setting
-from aos_language.load import load_files
 from aos_protocol.messages import MissionBegun, StartMission
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import make_mission_folder, mission_folder
 
 AOS = Path(sys.executable).parent / "aos"
-DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 FINER, RETRACT = DEPLOY / "bundles" / "armadillo-finer", DEPLOY / "bundles" / "armadillo-retract"
 
 ENVIRONMENT = b"""project: lamp
@@ -125,12 +125,15 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Pa
     (tmp_path / "beside").mkdir()
 
     def run(*options: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [AOS, "calibrate", missions_of_finer, "../bundle", "--also", RETRACT, *options],
+        return finished(
+            AOS,
+            "calibrate",
+            missions_of_finer,
+            "../bundle",
+            "--also",
+            RETRACT,
+            *options,
             cwd=tmp_path / "beside",
-            capture_output=True,
-            text=True,
-            timeout=COMMAND_S,
             env={**os.environ, "COLUMNS": "120"},
         )
 
@@ -148,9 +151,7 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Pa
 
 
 def test_a_folder_without_missions_is_refused(tmp_path: Path):
-    run = subprocess.run(
-        [AOS, "calibrate", tmp_path, FINER], capture_output=True, text=True, timeout=COMMAND_S, check=False
-    )
+    run = finished(AOS, "calibrate", tmp_path, FINER)
     assert run.returncode == 1
     assert "AOS801" in run.stderr
     assert "holds no recorded missions" in run.stderr
@@ -169,9 +170,7 @@ def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initi
 
 def test_the_draws_of_documents_are_found_with_their_numbers():
     files = {"lamp.ef": ENVIRONMENT, "press.sd": PRESS, "press.am": MAPPING}
-    project = load_files(files, name="lamp").project
-    assert project is not None
-    draws = draws_of(project)
+    draws = draws_of(files_project(files))
     assert [(draw.kind, draw.texts, draw.outcomes) for draw in draws.draws] == [
         ("Bernoulli", ("0.8",), ("false", "true")),
         ("SampleDiscrete", ("0.25", "0.75"), ("Red", "Green")),

@@ -13,7 +13,9 @@ from shutil import which
 import msgspec
 import pytest
 from exam.programs import run, what_decides
-from scripted_models import bundle_project, lowered
+from places import BUNDLES
+from projects import bundle_project
+from scripted_models import lowered
 
 from aos_deploy.deployment.constraints import constrained, constraint_of_option
 from aos_protocol.documents import Project
@@ -40,13 +42,13 @@ def clang(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Compiler:
 
 
 @pytest.mark.parametrize("bundle", ["armadillo-finer", "tictactoe", "bench/lightdark-normal"])
-def test_clang_compiles_a_model(bundle: str, bundles: Path, clang: Compiler, cache_dir: Path):
-    compile_model(bundle_project(bundles / bundle), clang, cache_dir)
+def test_clang_compiles_a_model(bundle: str, clang: Compiler, cache_dir: Path):
+    compile_model(bundle_project(BUNDLES / bundle), clang, cache_dir)
 
 
-def test_clang_compiles_a_model_with_a_costly_constraint(bundles: Path, clang: Compiler, cache_dir: Path):
+def test_clang_compiles_a_model_with_a_costly_constraint(clang: Compiler, cache_dir: Path):
     never = constraint_of_option("0.01: serve && state.arm_outstretched")
-    project = constrained(bundle_project(bundles / "armadillo-finer"), [never])
+    project = constrained(bundle_project(BUNDLES / "armadillo-finer"), [never])
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
     compile_model(msgspec.structs.replace(project, constraints=(costly,)), clang, cache_dir)
 

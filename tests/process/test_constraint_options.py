@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 from commands import aos
+from places import DATA
 
 from aos_protocol.errors import PlanningError
 
@@ -10,8 +11,8 @@ NEVER = "open_left && state.is_left"
 
 
 @pytest.fixture
-def bundle(root: Path) -> Path:
-    return root / "tests" / "data" / "bundles" / "tiger"
+def bundle() -> Path:
+    return DATA / "bundles" / "tiger"
 
 
 def test_a_plan_says_what_it_risks_and_what_is_too_risky(bundle: Path):

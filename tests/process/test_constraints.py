@@ -4,12 +4,12 @@ The probabilities of the small models here are known by hand.
 """
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import msgspec
 import pytest
 from models import built_project, engine_of
-from scripted_models import bundle_project, text_project
+from places import BUNDLES
+from projects import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
 
 from aos_deploy.deployment.constraints import constrained, constraint_of_option
@@ -217,8 +217,8 @@ async def test_a_cost_is_what_searches_count_for_a_violation():
     assert values[1]["touch"] == pytest.approx(10 - 0.3 * 100)
 
 
-def test_constraints_without_a_cost_leave_the_model_what_it_is(bundles: Path):
-    project = bundle_project(bundles / "armadillo-finer")
+def test_constraints_without_a_cost_leave_the_model_what_it_is():
+    project = bundle_project(BUNDLES / "armadillo-finer")
     bounded = with_constraints(project, "0.01: serve && state.arm_outstretched")
     assert emitted_model(bounded).digest == emitted_model(project).digest
     assert emitted_model(bounded).cpp != emitted_model(project).cpp

@@ -1,6 +1,5 @@
-from pathlib import Path
-
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from places import BUNDLES
 
 from aos_solver.child.engine import Restriction
 from aos_solver.child.search import Search
@@ -64,8 +63,8 @@ __moduleResponse = done;
 """Two hundred actions, all of which cost."""
 
 
-async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Path):
-    built = await built_bundle(bundles / "bench" / "tag")
+async def test_the_same_seed_and_simulations_give_the_same_decision():
+    built = await built_bundle(BUNDLES / "bench" / "tag")
     plans = []
     for _ in range(2):
         async with engine_of(built) as engine:
@@ -74,8 +73,8 @@ async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Pat
     assert plans[0].planner == "despot"
 
 
-async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path):
-    async with engine_of_bundle(bundles / "bench" / "tiger") as engine:
+async def test_the_tiger_is_listened_for_and_not_flattered():
+    async with engine_of_bundle(BUNDLES / "bench" / "tiger") as engine:
         first = await engine.plan(simulations=5_000, seed=1, planner="despot")
         for _ in range(3):
             await engine.update("listen", "tiger_left")
@@ -85,8 +84,8 @@ async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path):
     assert later.best.action == "open(door=right_door)"
 
 
-async def test_an_opponent_that_flees_is_tagged(bundles: Path):
-    async with engine_of_bundle(bundles / "bench" / "tag") as engine:
+async def test_an_opponent_that_flees_is_tagged():
+    async with engine_of_bundle(BUNDLES / "bench" / "tag") as engine:
         search = Search(simulations=500, seed=1, planner="despot")
         limits = MissionLimits(goal_probability=0.999, step_limit=90)
         run = await simulate_mission(engine, search, limits)
@@ -103,8 +102,8 @@ async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts():
     assert all("states of the belief differ" in chosen.why for chosen in other)
 
 
-async def test_a_belief_that_has_ended_needs_no_decision(bundles: Path):
-    async with engine_of_bundle(bundles / "bench" / "rocksample-7-8") as engine:
+async def test_a_belief_that_has_ended_needs_no_decision():
+    async with engine_of_bundle(BUNDLES / "bench" / "rocksample-7-8") as engine:
         for _ in range(7):
             summary = (await engine.update("move(direction=east)", "moved")).summary
         assert summary.goal_probability == 1

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from commands import aos
 from models import built_bundle
+from places import BUNDLES
 
 from aos_deploy.bundles.pictures import picture_findings
 from aos_language.load import load_bundle, load_files, read_bundle_files
@@ -89,8 +90,8 @@ async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(body
         ("\ndef draw(state): pass\n", "2:1", "does not take a state, a belief and a step"),
     ],
 )
-def test_a_picture_that_is_no_python_is_a_warning_of_lint(bundles: Path, text: str, place: str, said: str):
-    files = {**read_bundle_files(bundles / "errand")[0], "picture.py": text.encode()}
+def test_a_picture_that_is_no_python_is_a_warning_of_lint(text: str, place: str, said: str):
+    files = {**read_bundle_files(BUNDLES / "errand")[0], "picture.py": text.encode()}
     loaded = load_files(files)
     assert loaded.project is not None
     (found,) = loaded.diagnostics
@@ -98,27 +99,27 @@ def test_a_picture_that_is_no_python_is_a_warning_of_lint(bundles: Path, text: s
     assert said in found.message
 
 
-def test_lint_tells_once_what_is_wrong_with_a_picture(bundles: Path, tmp_path: Path):
-    shutil.copytree(bundles / "errand", tmp_path / "errand")
+def test_lint_tells_once_what_is_wrong_with_a_picture(tmp_path: Path):
+    shutil.copytree(BUNDLES / "errand", tmp_path / "errand")
     (tmp_path / "errand" / "picture.py").write_text("def draw(state, belief, step):\n    return (\n")
     told = aos("lint", tmp_path / "errand", "--format", "json")
     found = [each["code"] for each in json.loads(told.stdout)["diagnostics"]]
     assert found.count("AOS148") == 1
 
 
-async def test_lint_draws_the_beginning_of_a_mission(bundles: Path):
-    files = read_bundle_files(bundles / "errand")[0]
-    built = await built_bundle(bundles / "errand")
+async def test_lint_draws_the_beginning_of_a_mission():
+    files = read_bundle_files(BUNDLES / "errand")[0]
+    built = await built_bundle(BUNDLES / "errand")
     assert await picture_findings(files, built) == ()
     wrong = {**files, "picture.py": f"{HEAD}    return state['lion']\n".encode()}
     (found,) = await picture_findings(wrong, built)
     assert (str(found.span), found.message) == ("picture.py:2:12", "KeyError: 'lion'")
 
 
-def test_another_picture_is_another_revision_and_the_same_model(bundles: Path):
-    files = read_bundle_files(bundles / "errand")[0]
+def test_another_picture_is_another_revision_and_the_same_model():
+    files = read_bundle_files(BUNDLES / "errand")[0]
     before, after = (
-        load_bundle(bundles / "errand"),
+        load_bundle(BUNDLES / "errand"),
         load_files({**files, "picture.py": HEAD.encode() + b" pass"}),
     )
     assert "picture.py" in before.files

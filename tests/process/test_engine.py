@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from places import BUNDLES, DATA
 from processes import descendants, kill_engine, until_ended
 
 from aos_protocol.errors import ModelError
@@ -46,9 +47,9 @@ async def _exact(folder: Path, kind: str) -> dict[str, float]:
         return {value.action: value.q for value in (await engine.exact_values(8)).actions}
 
 
-async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(bundles: Path):
+async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same():
     texts: list[str] = []
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         engine.on_progress = lambda progress: texts.append(progress.text)
         await engine.tell_progress(0)
         heard = (await engine.exact_values(4)).actions
@@ -58,23 +59,21 @@ async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(bun
 
 
 @pytest.mark.parametrize("kind", ["rough", "finer"])
-async def test_exact_values_of_our_armadillo_are_the_published_ones(kind: str, bundles: Path):
-    values = await _exact(bundles, kind)
+async def test_exact_values_of_our_armadillo_are_the_published_ones(kind: str):
+    values = await _exact(BUNDLES, kind)
     assert EXACT_AT_8[kind] == pytest.approx({name: values[name] for name in EXACT_AT_8[kind]}, abs=5e-4)
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("kind", ["rough", "finer"])
-async def test_each_action_of_the_original_armadillo_is_worth_what_ours_is(
-    kind: str, bundles: Path, corpus: Path
-):
-    ours, theirs = [await _exact(folder, kind) for folder in (bundles, corpus)]
+async def test_each_action_of_the_original_armadillo_is_worth_what_ours_is(kind: str, corpus: Path):
+    ours, theirs = [await _exact(folder, kind) for folder in (BUNDLES, corpus)]
     renamed = {CORPUS_NAMES[name]: value for name, value in ours.items()}
     assert theirs == pytest.approx(renamed, abs=1e-9)
 
 
-async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(bundles: Path):
-    built = await built_bundle(bundles / "armadillo-finer")
+async def test_an_impossible_observation_is_an_event_and_leaves_a_belief():
+    built = await built_bundle(BUNDLES / "armadillo-finer")
     async with engine_of(built, impossible_observation="hold") as engine:
         update = await engine.update("observe_holding", "holding")
     assert update.is_impossible
@@ -82,11 +81,9 @@ async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(bundles
     assert update.summary.states == 1
 
 
-async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
-    bundles: Path, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(engine_child, "FROZEN_S", 0.1)
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
         children = descendants(engine.pid)
@@ -97,9 +94,9 @@ async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(
 
 
 async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_well(
-    bundles: Path, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ):
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         start, killed = EngineChild.start, []
 
@@ -118,9 +115,7 @@ async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_w
         assert len(killed) == 3
 
 
-async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(
-    bundles: Path, monkeypatch: pytest.MonkeyPatch
-):
+async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(monkeypatch: pytest.MonkeyPatch):
     launch, killed = EngineChild.launch, []
 
     async def launch_and_kill(built: BuiltModel, beginning: EngineStart) -> EngineChild:
@@ -130,15 +125,15 @@ async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(
             os.kill(child.pid, signal.SIGKILL)
         return child
 
-    built = await built_bundle(bundles / "armadillo-finer")
+    built = await built_bundle(BUNDLES / "armadillo-finer")
     monkeypatch.setattr(EngineChild, "launch", launch_and_kill)
     async with engine_of(built) as engine:
         assert (await engine.summary()).states > 0
     assert len(killed) == 3
 
 
-async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it(bundles: Path):
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it():
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         assert engine.pid is not None
         (child,) = descendants(engine.pid)
         os.kill(child, signal.SIGSEGV)
@@ -148,8 +143,8 @@ async def test_an_engine_that_crashes_between_documents_says_what_may_have_harme
     assert "through a pointer" in caught.value.hint
 
 
-async def test_model_code_that_crashes_is_named_by_its_document_line(root: Path):
-    tiger = root / "tests/data/bundles/tiger"
+async def test_model_code_that_crashes_is_named_by_its_document_line():
+    tiger = DATA / "bundles/tiger"
     crashing = {path.name: path.read_text() for path in tiger.iterdir()}
     crashing["listen.sd"] = (
         "project: tiger\n\ndynamic_model:\nint* nothing = nullptr;\n*nothing = 1;\n"
@@ -167,8 +162,8 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(root: Path)
         assert (await engine.summary()).states == 2
 
 
-async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve(bundles: Path):
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve():
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         limits = MissionLimits(stop_below_value=0.0)
         served = 0
         for seed in range(1, 6):

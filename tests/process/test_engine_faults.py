@@ -8,7 +8,7 @@ from hostile.counters import counting
 from lamp import LAMP
 from models import built_text, engine_of, engine_of_text
 from processes import HANG_S
-from scripted_models import text_project
+from projects import text_project
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import EngineDefectError, ModelError

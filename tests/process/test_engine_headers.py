@@ -2,12 +2,11 @@
 
 import json
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 from engine_checks import UNITS, engine_checks
-from processes import COMMAND_S
+from processes import finished
 
 SENTENCES = re.compile(r'^TEST\("(.+)"\)', re.MULTILINE)
 
@@ -19,7 +18,7 @@ sentences = [
 @pytest.fixture(scope="module")
 def results(cache_dir: Path) -> dict[str, list[str]]:
     """The expectations of each test that were in vain."""
-    done = subprocess.run([engine_checks(cache_dir)], capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(engine_checks(cache_dir))
     entries = [json.loads(line) for line in done.stdout.splitlines()]
     return {entry["test"]: entry["failures"] for entry in entries}
 

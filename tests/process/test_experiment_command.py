@@ -1,13 +1,12 @@
 import json
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
-from processes import COMMAND_S
+from places import DEPLOY
+from processes import finished
 
 AOS = Path(sys.executable).parent / "aos"
-DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 
 EXPERIMENT = f"""
 aos: 1
@@ -31,7 +30,7 @@ def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(tmp_p
     def run(seeds: int, check: str) -> dict[str, Any]:
         experiment.write_text(EXPERIMENT.replace("CHECK", check))
         command = [AOS, "experiment", "run", experiment, "--seeds", str(seeds), "--out", out, "--json"]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
+        done = finished(*command)
         assert done.returncode == 0, done.stderr
         part: dict[str, Any] = json.loads(done.stdout)["parts"][0]
         return part

@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 from gateway import Gateway, gateway, played, worn_system
-from processes import COMMAND_S, HANG_S
+from places import ROOT
+from processes import HANG_S, finished
 
 from aos_deploy.export.run_bundle import write_bundle
 
@@ -136,17 +137,17 @@ def test_a_past_mission_is_streamed_from_a_record_on_with_its_end(past: tuple[Ga
     ]
 
 
-def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, str], root: Path):
+def test_the_example_follows_the_latest_mission_to_its_end(past: tuple[Gateway, str]):
     served, name = past
-    example = [sys.executable, root / "docs/examples/follow_events.py", f"http://127.0.0.1:{served.port}"]
+    example = [sys.executable, ROOT / "docs/examples/follow_events.py", f"http://127.0.0.1:{served.port}"]
     with_token = os.environ | {"TOKEN": served.token}
-    told = subprocess.run(example, env=with_token, capture_output=True, text=True, timeout=COMMAND_S).stdout
+    told = finished(*example, env=with_token).stdout
     records = served.ask(f"/v1/missions/{name}/decisions").json["records"]
     response = records[1]["outcome"]["response"]
     assert told.splitlines()[:2] == [f"step 1: {records[0]['action']}", f"step 1: {response}"]
     assert told.splitlines()[-1] == "ended: goal"
     without = os.environ | {"TOKEN": ""}
-    lone = subprocess.run(example, env=without, capture_output=True, text=True, check=False)
+    lone = finished(*example, env=without)
     assert (lone.returncode, lone.stderr[:8]) == (1, "AOS903: ")
     read_end, write_end = os.pipe()
     os.close(read_end)
@@ -260,11 +261,11 @@ def test_openapi_describes_every_operation_with_schemas_that_are_there(past: tup
     assert all(one["security"] == [{"token": []}] for one in writes)
 
 
-def test_a_bundle_is_checked_with_the_place_of_each_finding(past: tuple[Gateway, str], root: Path):
+def test_a_bundle_is_checked_with_the_place_of_each_finding(past: tuple[Gateway, str]):
     served, _ = past
-    good = served.ask("/v1/checks?name=errand.zip", "POST", archive(root / ERRAND)).json
+    good = served.ask("/v1/checks?name=errand.zip", "POST", archive(ROOT / ERRAND)).json
     assert (good["is_accepted"], good["project"]) == (True, "errand")
-    broken = archive(root / ERRAND, errand="project: errand\nhorizon: many\n")
+    broken = archive(ROOT / ERRAND, errand="project: errand\nhorizon: many\n")
     bad = served.ask("/v1/checks?name=errand.zip", "POST", broken).json
     assert not bad["is_accepted"]
     assert any(found["span"]["file"] == "errand.ef" and found["span"]["line"] for found in bad["diagnostics"])
@@ -285,10 +286,10 @@ def test_an_upload_that_is_no_bundle_is_refused_and_nothing_is_kept(past: tuple[
 
 
 def test_a_mission_is_started_from_an_uploaded_bundle_and_ends_as_one_from_a_terminal(
-    past: tuple[Gateway, str], root: Path
+    past: tuple[Gateway, str],
 ):
     served, _ = past
-    kept = served.ask("/v1/projects?name=errand.zip", "POST", archive(root / ERRAND))
+    kept = served.ask("/v1/projects?name=errand.zip", "POST", archive(ROOT / ERRAND))
     assert kept.status == 201
     started = served.post(
         "/v1/runs", {"project": kept.json["project"], "seed": 3, "values": {"target": "alice"}}

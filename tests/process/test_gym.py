@@ -4,7 +4,8 @@ import traceback
 from pathlib import Path
 
 import pytest
-from processes import COMMAND_S
+from places import BUNDLES
+from processes import COMMAND_S, finished
 
 pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
 
@@ -148,8 +149,8 @@ def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path):
     subprocess.run([sys.executable, "-c", program], check=True, timeout=COMMAND_S)
 
 
-def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(bundles: Path, tmp_path: Path):
-    deploy, bundle = tmp_path / "errand.yaml", bundles / "errand"
+def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(tmp_path: Path):
+    deploy, bundle = tmp_path / "errand.yaml", BUNDLES / "errand"
     deploy.write_text(f"aos: 1\nrobot: errand\nbundles: [{bundle}]\nmission: {{set: {{target: bob}}}}\n")
     for environment in (AosEnv(bundle, mission_values={"target": "bob"}), AosEnv(deploy)):
         assert "give(to=bob)" in environment.action_names
@@ -192,22 +193,22 @@ def test_no_worlds_and_no_steps_are_refused(kettle: Path):
         AosEnv(kettle, max_episode_steps=0)
 
 
-def test_a_traceback_tells_every_mistake_of_what_was_set(bundles: Path):
+def test_a_traceback_tells_every_mistake_of_what_was_set():
     with pytest.raises(DeployError) as told:
-        AosEnv(bundles / "bench" / "tiger", mission_values={"drnik": 1})
+        AosEnv(BUNDLES / "bench" / "tiger", mission_values={"drnik": 1})
     shown = "".join(traceback.format_exception(told.value))
     assert "AOS801: what is set for the mission has errors" in shown
     assert "drnik" in shown
 
 
-def test_what_the_option_sets_wrongly_is_told_at_the_option(bundles: Path):
+def test_what_the_option_sets_wrongly_is_told_at_the_option():
     command = [
         Path(sys.executable).parent / "aos",
         "gym",
-        str(bundles / "bench" / "tiger"),
+        str(BUNDLES / "bench" / "tiger"),
         "--set",
         "drnik=1",
     ]
-    told = subprocess.run(command, check=False, capture_output=True, text=True, timeout=COMMAND_S).stderr
+    told = finished(*command).stderr
     assert told.startswith("--set:")
     assert "drnik" in told

@@ -1,13 +1,12 @@
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 from deploy_files import world_without_pictures
-from processes import events_of, until_taking_over
+from places import BIN, BUNDLES, DEPLOY, ROOT
+from processes import events_of, finished, until_taking_over
 
-BIN = Path(sys.executable).parent
 SENSING = ("observe_holding", "observe_arm_outstretched")
 
 
@@ -42,13 +41,13 @@ def picked(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def deploy_file(root: Path, tmp_path: Path, picked: Path) -> Path:
+def deploy_file(tmp_path: Path, picked: Path) -> Path:
     """The shipped hot-plug deploy file on a free port, with runs of its own and the patient pick."""
     (tmp_path / "patient.py").write_text(PATIENT_PICK)
-    text = (root / "deploy" / "armadillo-hotplug.yaml").read_text()
+    text = (DEPLOY / "armadillo-hotplug.yaml").read_text()
     for old, new in {
-        "[bundles/": f"[{root}/deploy/bundles/",
-        "world: worlds/armadillo.yaml": f"world: {world_without_pictures(root, tmp_path)}",
+        "[bundles/": f"[{ROOT}/deploy/bundles/",
+        "world: worlds/armadillo.yaml": f"world: {world_without_pictures(tmp_path)}",
         "runs: ../runs": "runs: runs",
         "/pick: pybullet": "/pick: patient",
         "\nbind:": f'\nadapters: {{patient: {{class: "patient:Patient", until: {picked}}}}}\nbind:',
@@ -61,19 +60,17 @@ def deploy_file(root: Path, tmp_path: Path, picked: Path) -> Path:
 
 
 def _push(bundle: Path, runs: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [BIN / "aos", "bundle", "push", bundle, "--runs", runs], capture_output=True, text=True, check=False
-    )
+    return finished(BIN / "aos", "bundle", "push", bundle, "--runs", runs)
 
 
 @pytest.mark.physics
 def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
-    root: Path, deploy_file: Path, tmp_path: Path, picked: Path
+    deploy_file: Path, tmp_path: Path, picked: Path
 ):
     runs = tmp_path / "runs"
     broken = tmp_path / "broken"
     broken.mkdir()
-    for document in (root / "deploy/bundles/armadillo-finer").iterdir():
+    for document in (BUNDLES / "armadillo-finer").iterdir():
         text = document.read_text().replace("state.arm_outstretched ?", "state.arm_out_streched ?")
         (broken / document.name).write_text(text)
 
@@ -86,7 +83,7 @@ def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
                     continue
                 decisions.append(event)
                 if event["skill"] == "pick" and not pushed:
-                    pushed = [_push(broken, runs), _push(root / "deploy/bundles/armadillo-finer", runs)]
+                    pushed = [_push(broken, runs), _push(BUNDLES / "armadillo-finer", runs)]
                     until_taking_over((runs / "latest").resolve(), decisions[0]["revision"] + 1)
                     picked.touch()
                 elif event["skill"] in (*SENSING, "serve"):

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from commands import aos
+from places import BUNDLES, DEPLOY
 from processes import HANG_S
 from test_mission_tests import MISSIONS
 
@@ -20,12 +21,8 @@ from aos_lab.trials.model_player import ModelPlayer
 from aos_lab.trials.trial import Trial
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
-DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 
-
-def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
-    bundles: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(monkeypatch: pytest.MonkeyPatch):
     async def third_interrupted(*arguments: Any, **options: Any) -> SimulatedRun:
         if arguments[1].seed == 3:
             os.kill(os.getpid(), signal.SIGINT)
@@ -33,7 +30,7 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(
         return await simulate_mission(*arguments, **options)
 
     monkeypatch.setattr(simulate, "simulate_mission", third_interrupted)
-    command = ["simulate", str(bundles / "bench" / "tiger"), "--runs", "5", "--simulations", "10", "--json"]
+    command = ["simulate", str(BUNDLES / "bench" / "tiger"), "--runs", "5", "--simulations", "10", "--json"]
     done = aos(*command)
     assert done.exit_code == 130
     assert [run["seed"] for run in json.loads(done.stdout)["runs"]] == [1, 2]

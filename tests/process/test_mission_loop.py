@@ -1,8 +1,8 @@
 import asyncio
-from pathlib import Path
 
 import pytest
 from models import built_bundle, built_text
+from places import BUNDLES
 from processes import HANG_S
 from scripted_missions import Clock, Surroundings, jammed, observed, run_mission, timed_out
 
@@ -22,8 +22,8 @@ ANSWERS = {
 
 
 @pytest.fixture
-async def finer(bundles: Path) -> BuiltModel:
-    return await built_bundle(bundles / "armadillo-finer")
+async def finer() -> BuiltModel:
+    return await built_bundle(BUNDLES / "armadillo-finer")
 
 
 async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(finer: BuiltModel):

@@ -3,19 +3,18 @@ import json
 import os
 import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import msgspec
 import pytest
 from commands import aos
 from models import built_bundle, built_project, built_text, engine_of
-from processes import COMMAND_S, HANG_S
-from scripted_models import text_project
+from places import BIN, BUNDLES, DEPLOY, ROOT
+from processes import COMMAND_S, HANG_S, finished
+from projects import files_project, text_project
 
 from aos_deploy.history_check.files import check_run
 from aos_deploy.runs.directory import RunDirectory
-from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option
 from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError, PlanningError
@@ -25,8 +24,6 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.mission.models.model_shelf import ModelShelf
 from aos_solver.mission.models.past import Evidence, Past, updated
-
-BIN = Path(sys.executable).parent
 
 
 async def exact_values(engine: Engine) -> dict[str, float]:
@@ -45,15 +42,15 @@ def with_constant(bundle: Path, person: str) -> dict[str, str]:
     return files
 
 
-async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Path):
-    built = await built_bundle(bundles / "errand")
+async def test_one_compiled_model_has_the_exact_values_of_each_value():
+    built = await built_bundle(BUNDLES / "errand")
     async with engine_of(built) as engine:
         pids = set()
         for person in ("alice", "bob", "alice"):
             await engine.start_with({"target": person})
             pids.add(engine.pid)
             assert engine.description.mission_parameters == {"target": person}
-            constant = await built_text(with_constant(bundles / "errand", person))
+            constant = await built_text(with_constant(BUNDLES / "errand", person))
             async with engine_of(constant) as written:
                 truth = await exact_values(written)
                 assert [a.name for a in engine.description.actions] == list(truth)
@@ -64,8 +61,8 @@ async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Pa
         assert len(pids) == 3
 
 
-async def test_an_engine_that_is_killed_comes_back_with_its_values_and_its_belief(bundles: Path):
-    built = await built_bundle(bundles / "errand")
+async def test_an_engine_that_is_killed_comes_back_with_its_values_and_its_belief():
+    built = await built_bundle(BUNDLES / "errand")
     async with engine_of(msgspec.structs.replace(built, mission_values={"target": "bob"})) as engine:
         await engine.update("look", "nobody")
         before = await engine.export_belief()
@@ -142,25 +139,21 @@ class Shelf(ModelShelf):
         super().__init__(cache_dir, lambda remark: None, start, lambda revision: True, (), values)
 
 
-def errand(bundles: Path, **replaced: str) -> Project:
+def errand(**replaced: str) -> Project:
     files = {
         path.name: path.read_text().replace(replaced.get("before", "\0"), replaced.get("after", "")).encode()
-        for path in sorted((bundles / "errand").iterdir())
+        for path in sorted((BUNDLES / "errand").iterdir())
     }
-    loaded = load_files(files)
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
+    return files_project(files)
 
 
-async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values(
-    bundles: Path, cache_dir: Path
-):
+async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values(cache_dir: Path):
     shelf = Shelf(cache_dir)
-    await shelf.make(ProjectRevision(1, "", errand(bundles)))
+    await shelf.make(ProjectRevision(1, "", errand()))
     running = await shelf.first()
     # Nobody has set the parameter: the mission has the default that the documents had at its start.
     await shelf.make(
-        ProjectRevision(2, "", errand(bundles, before="default_value: alice", after="default_value: bob"))
+        ProjectRevision(2, "", errand(before="default_value: alice", after="default_value: bob"))
     )
     newest = await shelf.newest(running, Past())
     try:
@@ -172,11 +165,9 @@ async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values
         await shelf.close()
 
 
-async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_seen(
-    bundles: Path, cache_dir: Path
-):
+async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_seen(cache_dir: Path):
     shelf = Shelf(cache_dir, "target=bob")
-    await shelf.make(ProjectRevision(1, "", errand(bundles)))
+    await shelf.make(ProjectRevision(1, "", errand()))
     running = await shelf.first()
     past = Past(steps=[Evidence("look", "look", "nobody")])
     for step in past.steps:
@@ -185,7 +176,7 @@ async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_s
     is_replayed = asyncio.Event()
     shelf.on_ready = is_replayed.set
     assert await shelf.newest(running, past) is None
-    await shelf.make(ProjectRevision(2, "", errand(bundles, before="initial_belief:", after=gained)))
+    await shelf.make(ProjectRevision(2, "", errand(before="initial_belief:", after=gained)))
     async with asyncio.timeout(HANG_S):
         while (newest := await shelf.newest(running, past)) is None:
             await is_replayed.wait()
@@ -199,31 +190,31 @@ async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_s
     assert newest.model.engine.description.mission_parameters == {"target": "bob"}
 
 
-async def test_documents_without_the_value_that_was_set_are_refused(bundles: Path, cache_dir: Path):
+async def test_documents_without_the_value_that_was_set_are_refused(cache_dir: Path):
     shelf = Shelf(cache_dir, "target=bob")
-    await shelf.make(ProjectRevision(1, "", errand(bundles)))
+    await shelf.make(ProjectRevision(1, "", errand()))
     running = await shelf.first()
-    (found,) = await shelf.check(errand(bundles, before="target", after="whom"), running)
+    (found,) = await shelf.check(errand(before="target", after="whom"), running)
     assert (found.code, found.span.file) == ("AOS146", "errand.ef")
     assert found.message == "unknown mission parameter `target`"
     await shelf.close()
 
 
-async def test_values_are_for_all_bundles_of_a_start_together(bundles: Path, cache_dir: Path):
+async def test_values_are_for_all_bundles_of_a_start_together(cache_dir: Path):
     shelf = Shelf(cache_dir, "whom=bob")
     try:
-        assert await shelf.check(errand(bundles), None) == ()
-        await shelf.make(ProjectRevision(1, "", errand(bundles)))
+        assert await shelf.check(errand(), None) == ()
+        await shelf.make(ProjectRevision(1, "", errand()))
         with pytest.raises(DocumentError, match="unknown mission parameter `whom`"):
             await shelf.first()
-        await shelf.make(ProjectRevision(2, "", errand(bundles, before="target", after="whom")))
+        await shelf.make(ProjectRevision(2, "", errand(before="target", after="whom")))
         assert (await shelf.first()).engine.description.mission_parameters == {"whom": "bob"}
     finally:
         await shelf.close()
 
 
-def test_commands_take_values_and_a_policy_is_for_its_own(bundles: Path, tmp_path: Path):
-    bundle, policy = str(bundles / "errand"), str(tmp_path / "bob.policy")
+def test_commands_take_values_and_a_policy_is_for_its_own(tmp_path: Path):
+    bundle, policy = str(BUNDLES / "errand"), str(tmp_path / "bob.policy")
 
     def run(*arguments: str) -> object:
         done = aos(*arguments, "--json")
@@ -263,11 +254,11 @@ tests:
     (("--set", "target=alice"), "bob", 4),
 ])  # fmt: skip
 def test_missions_of_a_test_file_have_its_values_or_the_commands(
-    root: Path, tmp_path: Path,
+    tmp_path: Path,
     options: tuple[str, ...], person: str, status: int,
 ):  # fmt: skip
     file = tmp_path / "missions.yaml"
-    file.write_text(MISSIONS.format(deploy=root / "deploy" / "errand.yaml", person=person))
+    file.write_text(MISSIONS.format(deploy=DEPLOY / "errand.yaml", person=person))
     assert aos("test", file, *options).exit_code == status
 
 
@@ -282,12 +273,10 @@ def give(call, to):
 """
 
 
-def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_its_command(
-    root: Path, tmp_path: Path
-):
+def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_its_command(tmp_path: Path):
     (tmp_path / "robot.py").write_text(SLOW_GIVE)
-    text = (root / "deploy" / "errand.yaml").read_text()
-    text = text.replace("[bundles/errand]", f"[{root}/deploy/bundles/errand]")
+    text = (DEPLOY / "errand.yaml").read_text()
+    text = text.replace("[bundles/errand]", f"[{ROOT}/deploy/bundles/errand]")
     text = text.replace("bind: {", "bus: {listen: tcp/127.0.0.1:0}\nbind: {/give: {python: robot.py:give}, ")
     deploy_file = tmp_path / "errand.yaml"
     deploy_file.write_text(text)
@@ -300,9 +289,7 @@ def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_i
     (tmp_path / "may_give").touch()
     run = (tmp_path / "runs" / "latest").resolve()
     resume = [BIN / "aos-up", "--resume", run, "--json"]
-    resumed, refused = (
-        subprocess.run(resume, capture_output=True, text=True, timeout=COMMAND_S) for _ in range(2)
-    )
+    resumed, refused = (finished(*resume) for _ in range(2))
     assert resumed.returncode == 0, resumed.stderr
     steps = [event["step"] for event in map(json.loads, resumed.stdout.splitlines()) if "action" in event]
     assert steps == sorted(steps)

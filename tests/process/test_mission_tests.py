@@ -5,10 +5,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from processes import COMMAND_S
+from places import DEPLOY
+from processes import COMMAND_S, finished
 
 AOS = Path(sys.executable).parent / "aos"
-DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 
 MISSIONS = f"""
 aos: 1
@@ -30,12 +30,7 @@ def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path):
     missions.write_text(MISSIONS)
 
     def run(*options: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [AOS, "test", missions, "--keep", tmp_path / "kept", *options],
-            capture_output=True,
-            text=True,
-            timeout=COMMAND_S,
-        )
+        return finished(AOS, "test", missions, "--keep", tmp_path / "kept", *options)
 
     first = run("--junit", str(junit))
     assert first.returncode == 4, first.stderr
@@ -103,11 +98,6 @@ def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(tmp_
         for fault, claim in LOSSY_CLAIMS.items()
     ]
     (tmp_path / "missions.yaml").write_text("aos: 1\ntests:" + "".join(tests))
-    done = subprocess.run(
-        [AOS, "test", tmp_path / "missions.yaml", "--keep", tmp_path / "kept"],
-        capture_output=True,
-        text=True,
-        timeout=COMMAND_S,
-    )
+    done = finished(AOS, "test", tmp_path / "missions.yaml", "--keep", tmp_path / "kept")
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("ok     ") == 6

@@ -4,7 +4,6 @@ import os
 import queue
 import signal
 import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,7 +12,8 @@ from typing import Any
 
 import pytest
 from gateway import write_slow_tiger
-from processes import COMMAND_S, HANG_S, kill, until_taking_over
+from places import BIN, BUNDLES, ROOT
+from processes import HANG_S, finished, kill, until_taking_over
 
 from aos_deploy.history_check.files import check_run
 from aos_protocol.access import OPERATOR
@@ -24,7 +24,6 @@ from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import mission_folder
 from aos_solver.mission.records.logbook import entries_of
 
-BIN = Path(sys.executable).parent
 DEPLOY = """\
 aos: 1
 robot: tiger
@@ -84,14 +83,7 @@ class System:
         slow.touch() if is_slow else slow.unlink(missing_ok=True)
 
     def aos(self, *arguments: str) -> tuple[int, str, str]:
-        done = subprocess.run(
-            [BIN / "aos", *arguments],
-            cwd=self.folder,
-            env=self._environment,
-            capture_output=True,
-            text=True,
-            timeout=COMMAND_S,
-        )
+        done = finished(BIN / "aos", *arguments, cwd=self.folder, env=self._environment)
         return done.returncode, done.stdout, done.stderr
 
     def interrupt(self) -> int:
@@ -110,11 +102,11 @@ class System:
 
 
 @contextmanager
-def up(root: Path, folder: Path, *options: str) -> Iterator[System]:
+def up(folder: Path, *options: str) -> Iterator[System]:
     environment = {**os.environ, "AOS_RUNNING_DIR": str(folder / "running")}
     write_slow_tiger(folder)
-    (folder / "tiger.yaml").write_text(DEPLOY.format(root=root))
-    (folder / "errand.yaml").write_text(ERRAND.format(root=root))
+    (folder / "tiger.yaml").write_text(DEPLOY.format(root=ROOT))
+    (folder / "errand.yaml").write_text(ERRAND.format(root=ROOT))
     (folder / "robot.py").write_text(ROBOT)
     command = [BIN / "aos-up", *(options or ("tiger.yaml", "--stay")), "--json"]
     pipes = {"stdout": subprocess.PIPE, "stderr": None}
@@ -139,8 +131,8 @@ bind: {{"*": model}}
 
 
 @pytest.fixture
-def stays(root: Path, tmp_path: Path) -> Iterator[System]:
-    with up(root, tmp_path) as system:
+def stays(tmp_path: Path) -> Iterator[System]:
+    with up(tmp_path) as system:
         yield system
 
 
@@ -208,7 +200,7 @@ async def test_missions_follow_one_another_and_are_told_apart(stays: System):
 
 
 async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_has_the_same_belief(
-    root: Path, stays: System
+    stays: System,
 ):
     stays.until("mission", phase="ended")
     kill(stays.record["pids"]["solver"])
@@ -228,7 +220,7 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
     assert "was killed. `aos-up --resume " in stays.aos("mission", "hold")[2]
     stays.be_slow(False)
     run = stays.run
-    with up(root, stays.folder, "--resume") as again:
+    with up(stays.folder, "--resume") as again:
         assert again.until("mission", mission=mission, phase="ended")["ending"] == "step_limit"
         assert again.run == run
         again.be_slow(True)
@@ -257,10 +249,10 @@ def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays
     assert stays.interrupt() == 0
 
 
-async def test_the_next_mission_has_other_parameters_and_newer_documents(root: Path, tmp_path: Path):
-    files = {path.name: path.read_bytes() for path in (root / "deploy/bundles/errand").iterdir()}
+async def test_the_next_mission_has_other_parameters_and_newer_documents(tmp_path: Path):
+    files = {path.name: path.read_bytes() for path in (BUNDLES / "errand").iterdir()}
     files["look.sd"] = files["look.sd"].replace(b"__reward = -1;", b"__reward = -2;")
-    with up(root, tmp_path, "errand.yaml") as system:
+    with up(tmp_path, "errand.yaml") as system:
         system.until("mission", phase="ended")
         code, _, error = system.aos("mission", "start", "--set", "target=bod")
         assert code == 1

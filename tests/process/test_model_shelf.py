@@ -3,7 +3,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
-from aos_language.load import load_files
+from projects import files_project
+
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
@@ -35,9 +36,7 @@ LIGHT = Evidence("look", "look", "light")
 def lamp(revision: int) -> ProjectRevision:
     """Documents that differ in a cost, so that each revision is a model of its own."""
     files = {name: text.replace("COST", str(revision)).encode() for name, text in LAMP.items()}
-    project = load_files(files).project
-    assert project is not None
-    return ProjectRevision(revision, "", project)
+    return ProjectRevision(revision, "", files_project(files))
 
 
 class Workshop:

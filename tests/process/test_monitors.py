@@ -1,11 +1,11 @@
 import random
 from collections import defaultdict
 from collections.abc import AsyncIterator, Mapping
-from pathlib import Path
 
 import msgspec
 import pytest
 from models import built_bundle, engine_of
+from places import DATA
 from scripted_missions import run_mission
 
 from aos_protocol.messages import Activate, BeliefSummary, Outcome
@@ -22,7 +22,7 @@ State = tuple[str, bool]
 """The charge, and whether the robot is there."""
 Belief = dict[State, float]
 
-BATTERY = Path(__file__).parents[1] / "data" / "bundles" / "battery"
+BATTERY = DATA / "bundles" / "battery"
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
-from pathlib import Path
-
 import pytest
 from models import built_bundle, built_text, engine_of, engine_of_text
+from places import BUNDLES
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
@@ -80,8 +79,8 @@ __reward = -3;
 
 
 @pytest.fixture
-async def counted_tiger(bundles: Path) -> BuiltModel:
-    files = {file.name: file.read_text() for file in sorted((bundles / "bench" / "tiger").iterdir())}
+async def counted_tiger() -> BuiltModel:
+    files = {file.name: file.read_text() for file in sorted((BUNDLES / "bench" / "tiger").iterdir())}
     return await built_text(files | {"tiger.ef": files["tiger.ef"] + COUNT})
 
 
@@ -91,8 +90,8 @@ async def decide(engine: Engine, horizon: int) -> Plan:
     return plan
 
 
-async def test_a_count_that_matters_to_nothing_moves_no_bound(bundles: Path, counted_tiger: BuiltModel):
-    plain = await built_bundle(bundles / "bench" / "tiger")
+async def test_a_count_that_matters_to_nothing_moves_no_bound(counted_tiger: BuiltModel):
+    plain = await built_bundle(BUNDLES / "bench" / "tiger")
     async with engine_of(plain) as engine, engine_of(counted_tiger) as counted:
         exact = {value.action: value.q for value in (await engine.exact_values(6)).actions}
         plan = await decide(counted, 6)

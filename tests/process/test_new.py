@@ -6,6 +6,7 @@ import msgspec
 import pytest
 import typer
 from commands import aos
+from projects import bundle_project
 from typer.testing import Result
 
 from aos_deploy.deployment.reading import read_deploy_file
@@ -83,9 +84,7 @@ def test_a_skill_needs_a_bundle():
 def test_a_new_skill_belongs_to_the_bundles_project():
     run("new project fetch")
     run("new skill wipe --in fetch")
-    project = load_bundle(Path("fetch")).project
-    assert project is not None
-    assert [skill.name for skill in project.skills] == ["look", "take", "wipe"]
+    assert [skill.name for skill in bundle_project(Path("fetch")).skills] == ["look", "take", "wipe"]
 
 
 @pytest.mark.parametrize("name", deploy_files())

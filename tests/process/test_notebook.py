@@ -2,13 +2,13 @@
 
 import json
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from gateway import environment
-from processes import COMMAND_S
+from places import DEPLOY, ROOT
+from processes import finished
 
 from aos_deploy.started_system import started_system
 from aos_protocol.errors import DeployError
@@ -35,17 +35,18 @@ print(json.dumps([len(names["behind_left"]), names["state"].held_by != "", names
 """Runs each cell as a task of its own in one loop, as IPython does."""
 
 
-def test_the_notebook_starts_follows_steers_studies_and_plots(root: Path, tmp_path: Path):
-    (tmp_path / "deploy").symlink_to(root / "deploy")
+def test_the_notebook_starts_follows_steers_studies_and_plots(tmp_path: Path):
+    (tmp_path / "deploy").symlink_to(DEPLOY)
     (tmp_path / "docs").mkdir()
-    done = subprocess.run(
-        [sys.executable, "-W", "ignore::UserWarning", "-c", RUN_CELLS, root / "docs/notebook.ipynb"],
+    done = finished(
+        sys.executable,
+        "-W",
+        "ignore::UserWarning",
+        "-c",
+        RUN_CELLS,
+        ROOT / "docs/notebook.ipynb",
         cwd=tmp_path / "docs",
         env=environment(tmp_path),
-        capture_output=True,
-        text=True,
-        timeout=COMMAND_S,
-        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     steps, is_held, action, without, sure = json.loads(done.stdout.splitlines()[-1])

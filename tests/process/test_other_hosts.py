@@ -1,16 +1,14 @@
 import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from commands import aos
-from processes import COMMAND_S
+from places import BIN
+from processes import finished
 from ssh_host import refusing_ssh, slow_stand_in, ssh_server, stand_in
-
-BIN = Path(sys.executable).parent
 
 FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_robot.py"
 
@@ -43,13 +41,13 @@ def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
     before, _, after = text.partition("{command:")
     adapter = f"{{command: {command}, host: robot@arm, folder: {folder}}}"
     Path("fetch.yaml").write_text(before + adapter + after.partition("}")[2])
-    done = subprocess.run(
-        [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"],
+    done = finished(
+        BIN / "aos-up",
+        "fetch.yaml",
+        "--plain",
+        "--listen",
+        "tcp/127.0.0.1:0",
         env={**os.environ, "PATH": f"{ssh}{os.pathsep}{os.environ['PATH']}"},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=COMMAND_S,
     )
     return done.returncode, done.stdout + done.stderr
 

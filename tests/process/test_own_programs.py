@@ -17,14 +17,13 @@ from typing import Any
 
 import pytest
 from commands import aos
-from processes import COMMAND_S, HANG_S, descendants, kill
+from places import BIN
+from processes import COMMAND_S, HANG_S, descendants, finished, kill
 from supervised_system import System, command, small
 
 from aos_deploy.deployment.own_programs import ReadyPart
 from aos_deploy.processes.program import Program
 from aos_protocol.errors import AosError
-
-BIN = Path(sys.executable).parent
 
 SERVES_A_PORT = """
 import socket, sys, time
@@ -234,7 +233,7 @@ with socket.create_server(("127.0.0.1", 0)) as server:
 
 def up(*options: str) -> subprocess.CompletedProcess[str]:
     words = [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0", *options]
-    return subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
+    return finished(*words)
 
 
 KILLS_THE_MIDDLEWARE = """    CAME.acquire()
@@ -318,7 +317,7 @@ def test_a_program_that_does_not_stop_is_not_said_to_stand_still(project: Path):
 
 def test_without_an_output_a_mission_runs_and_nothing_beside_a_robot_that_documents_play(project: Path):
     words = ["sh", "-c", 'exec "$@" >&-', "sh", BIN / "aos-up", "fetch.yaml", "--model"]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(*words)
     assert done.returncode == 0, done.stderr
     pids = json.loads(Path("runs/latest/run.json").read_text())["pids"]
     assert "solver" in pids

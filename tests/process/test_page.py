@@ -11,12 +11,12 @@ import pytest
 from gateway import Gateway, gateway, worn_system
 from long_run import write_long_run
 from page_sources import installed_sources
+from places import BUNDLES, DEPLOY
 from playwright.sync_api import Browser, Page, Route, expect, sync_playwright
 from processes import HANG_S
 
 from aos_protocol.messages import Marginal, PredictedObservation
 
-ROOT = Path(__file__).resolve().parents[2]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 VIEWS = ("", "/why", "/steps", "/model", "/documents", "/system")
 MOST_BYTES = 400_000
@@ -88,7 +88,7 @@ def wait_for_width(page: Page):
 def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
     """The findings of the accessibility checker: the rule, and the elements. A screen may not be too wide."""
     wait_for_width(page)
-    page.evaluate((installed_sources(ROOT, cache_dir) / AXE).read_text())
+    page.evaluate((installed_sources(cache_dir) / AXE).read_text())
     found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
     return [(each["id"], [node["target"] for node in each["nodes"]]) for each in found]
 
@@ -199,10 +199,10 @@ def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_k
         expect(page.locator(".connection")).to_contain_text("Recorded")
 
 
-def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gateway, str], root: Path):
+def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gateway, str]):
     served, _ = past
     page = opened(browser, served)
-    bundle = shutil.make_archive(str(Path(served.folder) / "errand"), "zip", root / "deploy/bundles/errand")
+    bundle = shutil.make_archive(str(Path(served.folder) / "errand"), "zip", BUNDLES / "errand")
     page.locator("input[type=file]").set_input_files(bundle)
     expect(page.get_by_label("Project")).to_have_value(re.compile(r"errand\.yaml$"))
     page.get_by_role("button", name="Start mission").click()
@@ -377,7 +377,7 @@ def test_a_mission_whose_model_is_compiled_says_so_everywhere_and_another_follow
     compiler.chmod(0o755)
     monkeypatch.setenv("CXX", str(compiler))
     with gateway(tmp_path, tmp_path / "cache") as served:
-        start = {"deploy_file": str(ROOT / "deploy/errand.yaml"), "model": True, "stay": True}
+        start = {"deploy_file": str(DEPLOY / "errand.yaml"), "model": True, "stay": True}
         started = served.post("/v1/runs", start)
         page = opened(browser, served)
         page.goto(f"http://127.0.0.1:{served.port}/#/missions/latest")

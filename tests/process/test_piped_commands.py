@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 from models import built_bundle
-from processes import COMMAND_S
+from places import BUNDLES
+from processes import COMMAND_S, finished
 
 from aos_solver.offline.solver_program import build_solver
 
@@ -21,18 +22,11 @@ COMMANDS = (
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_piped_command_says_nothing_beside_its_result(
-    command: tuple[str, ...], bundles: Path, cache_dir: Path
-):
-    bundle = bundles / "bench" / "tiger"
+def test_a_piped_command_says_nothing_beside_its_result(command: tuple[str, ...], cache_dir: Path):
+    bundle = BUNDLES / "bench" / "tiger"
     asyncio.run(built_bundle(bundle))
     asyncio.run(build_solver(cache_dir))
-    done = subprocess.run(
-        [AOS, command[0], str(bundle), *command[1:], "--json"],
-        capture_output=True,
-        text=True,
-        timeout=COMMAND_S,
-    )
+    done = finished(AOS, command[0], str(bundle), *command[1:], "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)
     assert done.stderr == ""
@@ -59,7 +53,7 @@ def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str,
 def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path):
     (tmp_path / "file").touch()
     command = [AOS, "experiment", "run", "armadillo", "--out", tmp_path / "file" / "out"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(*command)
     assert done.returncode == 3
     assert done.stderr == f"aos: {tmp_path}/file/out cannot be used: Not a directory\n"
 
@@ -69,13 +63,13 @@ def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path):
 )
 def test_a_file_in_no_folder_is_told_before_the_work_begins(command: tuple[str, ...], tmp_path: Path):
     target = tmp_path / "none" / "it.pomdp"
-    done = subprocess.run([AOS, *command, target], capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(AOS, *command, target)
     assert (done.returncode, done.stdout) == (2, "")
     assert f"Invalid value for '{command[-1]}': there is no folder {target.parent}" in done.stderr
 
 
 def test_an_experiment_of_no_missions_is_refused():
     command = [AOS, "experiment", "run", "armadillo", "--seeds", "0"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(*command)
     assert done.returncode == 2
     assert "no missions: give --seeds or --system-seeds" in done.stderr

@@ -1,7 +1,6 @@
-from pathlib import Path
-
 import pytest
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from places import BUNDLES
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
@@ -62,8 +61,8 @@ __moduleResponse = done;
 
 
 @pytest.fixture
-async def tag(bundles: Path) -> BuiltModel:
-    return await built_bundle(bundles / "bench" / "tag")
+async def tag() -> BuiltModel:
+    return await built_bundle(BUNDLES / "bench" / "tag")
 
 
 async def _decide(engine: Engine, simulations: int = 20_000, seed: int = 1) -> Plan:
@@ -166,10 +165,8 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
     # Behind two doors, and on 49 cells with 8 rocks: what the rover has learnt does not count.
     [("bench/tiger", "exact", "2 states"), ("bench/rocksample-7-8", "sarsop", f"{49 * 2**8} states")],
 )
-async def test_auto_chooses_by_states_and_budget_and_says_so(
-    problem: str, planner: str, why: str, bundles: Path
-):
-    async with engine_of_bundle(bundles / problem) as engine:
+async def test_auto_chooses_by_states_and_budget_and_says_so(problem: str, planner: str, why: str):
+    async with engine_of_bundle(BUNDLES / problem) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
     assert why in plan.why

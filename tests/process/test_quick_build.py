@@ -4,7 +4,9 @@ from unittest.mock import AsyncMock
 import msgspec
 import pytest
 from kept_cache import link_engines
-from scripted_models import bundle_project, lowered
+from places import BUNDLES
+from projects import bundle_project
+from scripted_models import lowered
 
 from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuildKind, BuiltModel, build
@@ -15,9 +17,9 @@ from aos_solver.child.engine import Engine
 
 
 async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(
-    bundles: Path, cache_dir: Path, tmp_path: Path
+    cache_dir: Path, tmp_path: Path
 ):
-    emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
+    emitted, _ = lowered(bundle_project(BUNDLES / "armadillo-finer"))
     found: list[BuiltModel] = []
     kinds: tuple[BuildKind, ...] = ("quick", "thorough")
     for kind in kinds:
@@ -35,7 +37,7 @@ async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_i
 
 
 async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known(
-    bundles: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     limits: list[int | None] = []
 
@@ -45,14 +47,14 @@ async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known
 
     monkeypatch.setattr("aos_solver.building.build.run_compiler", compiled)
     monkeypatch.setattr("aos_solver.building.build.build_engine", AsyncMock())
-    emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
+    emitted, _ = lowered(bundle_project(BUNDLES / "armadillo-finer"))
     with pytest.raises(ModelError, match="stopped by the test"):
         await build(emitted, cache_dir=tmp_path)
     assert set(limits) == {None}
 
 
-def test_documents_that_come_back_are_not_emitted_again(bundles: Path):
-    first, again = (emitted_model(bundle_project(bundles / "armadillo-finer")) for _ in range(2))
+def test_documents_that_come_back_are_not_emitted_again():
+    first, again = (emitted_model(bundle_project(BUNDLES / "armadillo-finer")) for _ in range(2))
     assert again is first
 
 

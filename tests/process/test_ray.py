@@ -11,6 +11,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from commands import aos
+from places import DEPLOY
 
 from aos_lab.trials import ray_cluster
 from aos_lab.trials.campaign import HERE, Place, play_campaign
@@ -26,7 +27,7 @@ pytestmark = pytest.mark.filterwarnings(
 needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="ray is not installed")
 
 
-def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None = None) -> list[Trial]:
+def play(out: Path, seeds: range, on: str, report: list[str] | None = None) -> list[Trial]:
     """The missions, without how long they took; `report` gets a line for each that is played or was."""
     setting = Setting(deploy="armadillo.yaml", simulations=2000, step_limit=6)
     lines = report if report is not None else []
@@ -34,7 +35,7 @@ def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None 
         play_campaign(
             setting,
             seeds,
-            folder=root / "deploy",
+            folder=DEPLOY,
             out=out,
             on_trial=lambda: lines.append("mission"),
             place=Place(on=on, jobs=2, on_progress=lines.append),
@@ -44,32 +45,30 @@ def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None 
 
 
 @needs_ray
-def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(
-    root: Path, tmp_path: Path
-):
-    here = play(root, tmp_path / "here", range(1, 7), HERE)
-    there = play(root, tmp_path / "there", range(1, 5), ray_cluster.OWN)
+def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(tmp_path: Path):
+    here = play(tmp_path / "here", range(1, 7), HERE)
+    there = play(tmp_path / "there", range(1, 5), ray_cluster.OWN)
     assert there == here[:4]
     lines: list[str] = []
-    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, lines) == here
+    assert play(tmp_path / "there", range(1, 7), ray_cluster.OWN, lines) == here
     assert lines[:4] == ["mission"] * 4
     assert "processors of the Ray cluster ray" in lines[4]
     lines = []
-    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, lines) == here
+    assert play(tmp_path / "there", range(1, 7), ray_cluster.OWN, lines) == here
     assert lines == ["mission"] * 6
 
 
 @needs_ray
-def test_a_machine_with_another_aos_is_refused(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_machine_with_another_aos_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(ray_cluster, "_sources_of", lambda folders: ("9.9", "f" * 64))
     with pytest.raises(DeployError, match=r"has another AOS: .* there, 9\.9 with sources ffffffff here"):
-        play(root, tmp_path, range(1, 2), ray_cluster.OWN)
+        play(tmp_path, range(1, 2), ray_cluster.OWN)
 
 
 @needs_ray
-def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Path, tmp_path: Path):
+def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(tmp_path: Path):
     with pytest.raises(DeployError) as caught:
-        play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")
+        play(tmp_path, range(1, 2), "ray://127.0.0.1:9")
     assert caught.value.code == "AOS809"
     assert "ray://127.0.0.1:9 cannot be reached" in caught.value.message
 
@@ -93,12 +92,10 @@ def test_a_head_whose_process_for_this_client_did_not_come_up_is_asked_once_more
     assert caught.value.message.endswith("Initialization failure from server: no process came up")
 
 
-def test_without_ray_the_command_says_how_to_install_it(
-    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_without_ray_the_command_says_how_to_install_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(DeployError, match=r"aos-autonomy\[ray\]") as caught:
-        play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")
+        play(tmp_path, range(1, 2), "ray://127.0.0.1:9")
     assert caught.value.code == "AOS805"
 
 

@@ -2,6 +2,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from places import BUNDLES
 from processes import kill_engine
 from study.played import Beside, Played, play
 
@@ -43,18 +44,16 @@ async def kill_at_step_2(engine: Engine, step: int):
     ],
     ids=["exact", "three threads", "particles"],
 )
-async def test_decisions_repeat_in_values_counts_and_beliefs(
-    bundles: Path, bundle: str, budget: dict[str, object]
-):
-    played = await play(files_of(bundles / bundle), steps=4, **budget)
+async def test_decisions_repeat_in_values_counts_and_beliefs(bundle: str, budget: dict[str, object]):
+    played = await play(files_of(BUNDLES / bundle), steps=4, **budget)
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
     assert all(row.has_values for row in found if row.decides)
     assert all(row.has_belief for row in found)
 
 
-async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happened(bundles: Path):
-    files = files_of(bundles / "armadillo-finer")
+async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happened():
+    files = files_of(BUNDLES / "armadillo-finer")
     other = files | {"pick.sd": files["pick.sd"].replace(b"__reward = -2", b"__reward = -3")}
     assert other != files
     played = await play(
@@ -73,7 +72,7 @@ async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happe
 
 
 async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_need(
-    bundles: Path, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ):
     """The hold comes when the third search has begun; without a grace it is given up."""
     monkeypatch.setattr(abandoning, "GRACE_S", 0.0)
@@ -86,7 +85,7 @@ async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_nee
             mission.steer(Steer("resume", by="ana", request="2"))
 
     played = await play(
-        files_of(bundles / "bench/laser-normal"), steps=4, beside=Beside(steering=steer), simulations=2000
+        files_of(BUNDLES / "bench/laser-normal"), steps=4, beside=Beside(steering=steer), simulations=2000
     )
     decisions = played.mission.decisions
     assert [each.engine_starts for each in decisions] == [1, 1, 2, 2]
@@ -96,8 +95,8 @@ async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_nee
     assert all(row.has_values for row in found if row.decides)
 
 
-async def test_the_first_difference_is_named_with_its_cause(bundles: Path):
-    played = await play(files_of(bundles / "armadillo-finer"), steps=3)
+async def test_the_first_difference_is_named_with_its_cause():
+    played = await play(files_of(BUNDLES / "armadillo-finer"), steps=3)
     place, row = next((n, r) for n, r in enumerate(played.rows) if r.kind == "decision")
     record = msgspec.json.decode(row.payload, type=DecisionRecord)
     first, *others = record.actions
@@ -111,16 +110,16 @@ async def test_the_first_difference_is_named_with_its_cause(bundles: Path):
     assert differing.cause == "belief, budget and seed are the same"
 
 
-async def test_a_budget_in_time_is_compared_by_its_beliefs(bundles: Path):
-    played = await play(files_of(bundles / "armadillo-finer"), steps=3, planner="pomcp", time_s=0.02)
+async def test_a_budget_in_time_is_compared_by_its_beliefs():
+    played = await play(files_of(BUNDLES / "armadillo-finer"), steps=3, planner="pomcp", time_s=0.02)
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
     assert all(row.has_belief and not row.has_values for row in found)
     assert all("0.02 s" in row.without for row in found if row.decides)
 
 
-async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path):
-    played = await play(files_of(bundles / "armadillo-finer"), steps=2)
+async def test_the_journal_has_whole_beliefs_that_an_engine_takes():
+    played = await play(files_of(BUNDLES / "armadillo-finer"), steps=2)
     rows = list(played.mission.of_kind(BeliefRow))
     assert [row.step for row in rows] == [0, 1, 2]
     replay = played.replay()
@@ -133,8 +132,8 @@ async def test_the_journal_has_whole_beliefs_that_an_engine_takes(bundles: Path)
     assert [b.particles for b in believed.beliefs] == [b.particles for b in rows[1].beliefs]
 
 
-async def test_a_prediction_changes_no_particle(bundles: Path):
-    played = await play(files_of(bundles / "bench" / "laser-normal"), steps=2, simulations=100)
+async def test_a_prediction_changes_no_particle():
+    played = await play(files_of(BUNDLES / "bench" / "laser-normal"), steps=2, simulations=100)
     replay = played.replay()
     try:
         await replay.go_to(2)

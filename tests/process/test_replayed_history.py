@@ -4,6 +4,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from models import engine_of
+from places import BUNDLES
 from scripted_missions import Surroundings, breaking
 
 from aos_deploy.history_check.replayed import Replay, replayed
@@ -43,19 +44,19 @@ async def played(tiger: BuiltModel) -> Rows:
     return around.journalled
 
 
-async def replay_of(rows: Rows, run: Path, bundles: Path) -> Replay:
-    write_run(rows, run, bundles)
+async def replay_of(rows: Rows, run: Path) -> Replay:
+    write_run(rows, run)
     return await replayed(run, lambda _: None)
 
 
-def write_run(rows: Rows, run: Path, bundles: Path):
+def write_run(rows: Rows, run: Path):
     (run / "settings").mkdir(parents=True)
     settings = Settings(
         robot="t", service="solver", endpoint="", run_dir=str(run), project="tiger", cache_dir="", seed=3
     )
     (run / "settings" / "solver.json").write_bytes(msgspec.json.encode(settings))
     catalogue = Catalogue.open(run / "catalogue.db")
-    files = {path.name: path.read_bytes() for path in (bundles / "bench" / "tiger").iterdir()}
+    files = {path.name: path.read_bytes() for path in (BUNDLES / "bench" / "tiger").iterdir()}
     catalogue.store("tiger", "digest", files, (), 0)
     catalogue.close()
     with Journal.open(run / "journal.db", survives_power_loss=False) as journal:
@@ -77,14 +78,14 @@ def with_another_belief(record: DecisionRecord) -> DecisionRecord:
     return replace(record, belief=replace(record.belief, digest="0123456789abcdef"))
 
 
-async def test_a_replay_gives_each_belief_again(tiger: BuiltModel, bundles: Path, tmp_path: Path):
-    replay = await replay_of(await played(tiger), tmp_path, bundles)
+async def test_a_replay_gives_each_belief_again(tiger: BuiltModel, tmp_path: Path):
+    replay = await replay_of(await played(tiger), tmp_path)
     assert (replay.violations, replay.compared, replay.remark) == ([], 2 * STEPS, "")
 
 
 @pytest.mark.parametrize("spoil", [with_another_response, with_another_belief])
 async def test_a_history_with_another_belief_is_caught_at_its_row(
-    spoil: Callable[[DecisionRecord], DecisionRecord], tiger: BuiltModel, bundles: Path, tmp_path: Path
+    spoil: Callable[[DecisionRecord], DecisionRecord], tiger: BuiltModel, tmp_path: Path
 ):
     rows = await played(tiger)
     number, record = next(
@@ -93,36 +94,36 @@ async def test_a_history_with_another_belief_is_caught_at_its_row(
         if each[1].outcome is not None and each[1].outcome.response == "tiger_left"
     )
     rows[number] = (rows[number][0], spoil(record))
-    replay = await replay_of(rows, tmp_path, bundles)
+    replay = await replay_of(rows, tmp_path)
     assert {violation.rule for violation in replay.violations} == {"replay"}
     assert replay.violations[0].row == number + 1
     assert f"step {record.step} is observed as the belief" in replay.violations[0].text
 
 
-async def test_a_run_of_another_seed_or_start_is_caught(tiger: BuiltModel, bundles: Path, tmp_path: Path):
+async def test_a_run_of_another_seed_or_start_is_caught(tiger: BuiltModel, tmp_path: Path):
     rows = await played(tiger)
     first = records(rows)[0][0]
     rows[first] = (rows[first][0], with_another_belief(records(rows)[0][1]))
-    replay = await replay_of(rows, tmp_path, bundles)
+    replay = await replay_of(rows, tmp_path)
     assert [violation.row for violation in replay.violations] == [first + 1]
 
 
-async def test_what_cannot_be_replayed_is_said(tiger: BuiltModel, bundles: Path, tmp_path: Path):
+async def test_what_cannot_be_replayed_is_said(tiger: BuiltModel, tmp_path: Path):
     rows = await played(tiger)
     third = records(rows)[2][0]
     changed: Rows = [*rows[:third], ("adopted", ModelAdopted(2, "other", 1)), *rows[third:]]
-    replay = await replay_of(changed, tmp_path / "changed", bundles)
+    replay = await replay_of(changed, tmp_path / "changed")
     assert (replay.violations, replay.compared) == ([], 2)
     assert replay.remark == "the catalogue has no revision 2 of tiger"
 
     begun = rows[0][1]
     assert isinstance(begun, MissionBegun)
     other: Rows = [(BEGUN, replace(begun, model_digest="of an older AOS")), *rows[1:]]
-    replay = await replay_of(other, tmp_path / "other", bundles)
+    replay = await replay_of(other, tmp_path / "other")
     assert (replay.compared, replay.violations) == (0, [])
     assert "revision 1 gives another model here" in replay.remark
 
-    write_run(rows, tmp_path / "bare", bundles)
+    write_run(rows, tmp_path / "bare")
     (tmp_path / "bare" / "catalogue.db").unlink()
     replay = await replayed(tmp_path / "bare", lambda _: None)
     assert "no catalogue of its documents" in replay.remark

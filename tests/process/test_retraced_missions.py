@@ -4,8 +4,8 @@ import msgspec
 import pytest
 from hall import HALL, changed, with_bell
 from models import built_text, engine_of_text
+from projects import text_project
 from scripted_missions import Surroundings, observed
-from scripted_models import text_project
 from texts import encoded
 
 from aos_deploy.history_check.replayed import replayed

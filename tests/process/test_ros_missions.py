@@ -11,14 +11,14 @@ from typing import Any
 
 import pytest
 from deploy_files import world_without_pictures
-from processes import COMMAND_S, HANG_S, events_of
+from places import BIN, ROOT
+from processes import HANG_S, events_of, finished
 from ros1_core import roscore, skip_without_ros1
 
 from aos_runtime.processes.parent import PARENT_VARIABLE
 
 pytestmark = [pytest.mark.physics, pytest.mark.slow]
 
-BIN = Path(sys.executable).parent
 
 ORIGINAL_INTERFACES = {
     "robotican_demos_upgrade/srv/pick_unknown.srv": """string robot
@@ -79,14 +79,14 @@ def up(arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
 
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
-    master: str, corpus: Path, root: Path, tmp_path: Path
+    master: str, corpus: Path, tmp_path: Path
 ):
     for name, text in ORIGINAL_INTERFACES.items():
         path = tmp_path / "interfaces" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
     values = {"bundle": corpus / "armadillo-rough", "master": master}
-    stand_in = original_on_our_robot(root, corpus, tmp_path)
+    stand_in = original_on_our_robot(corpus, tmp_path)
     stand_in = stand_in.replace("robot: iros", "robot: stand-in\nproject: iros")
     (tmp_path / "robot.yaml").write_text(stand_in + SERVED.format(**values))
     (tmp_path / "mission.yaml").write_text(MISSION.format(**values))
@@ -103,9 +103,9 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
 
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(
-    corpus: Path, root: Path, tmp_path: Path
+    corpus: Path, tmp_path: Path
 ):
-    (tmp_path / "deploy.yaml").write_text(original_on_our_robot(root, corpus, tmp_path))
+    (tmp_path / "deploy.yaml").write_text(original_on_our_robot(corpus, tmp_path))
     with up([str(tmp_path / "deploy.yaml")]) as mission:
         events = list(events_of(mission))
     assert_whole_mission(events, tmp_path / "runs" / "latest")
@@ -116,10 +116,10 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_pat
     assert {step["path"] for step in moved} <= {"/navigate", "/pick", "/sense", "/serve"}
 
 
-def original_on_our_robot(root: Path, corpus: Path, folder: Path) -> str:
+def original_on_our_robot(corpus: Path, folder: Path) -> str:
     """The deploy file of the documentation, with the places where bundle and world are."""
-    world = world_without_pictures(root, folder)
-    text = (root / "docs" / "examples" / "armadillo-original.yaml").read_text()
+    world = world_without_pictures(folder)
+    text = (ROOT / "docs" / "examples" / "armadillo-original.yaml").read_text()
     text = text.replace("[armadillo-rough]", f"[{corpus / 'armadillo-rough'}]")
     text = text.replace("step_limit: 15", "step_limit: 5")
     return text.replace("../../deploy/worlds/armadillo.yaml", str(world))
@@ -135,32 +135,32 @@ def assert_whole_mission(events: list[dict[str, Any]], run: Path):
 
 
 def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a_program_of_others(
-    root: Path, tmp_path: Path
+    tmp_path: Path,
 ):
     pytest.importorskip("zenoh_ros2_sdk", reason="needs the package zenoh-ros2-sdk")
-    page = (root / "docs" / "ros.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "ros.md").read_text(encoding="utf-8")
     serve, drive = re.findall(r"^\.venv/bin/aos-up (.*)$", page, re.MULTILINE)
     block = page.partition("The first one prints what it serves:")[2].split("```")[1]
     here = ["--runs", str(tmp_path / "robot"), "--listen", "tcp/127.0.0.1:0"]
-    with up([*in_the_checkout(serve, root), *here]) as robot:
+    with up([*in_the_checkout(serve), *here]) as robot:
         texts = [str(event.get("text")) for event in events_of_until(robot, "Ctrl-C stops it")]
         for line in block.strip().splitlines():
             assert line == "..." or line in texts
         served = json.loads((tmp_path / "robot" / "latest" / "run.json").read_text())["ros2"]
-        program = subprocess.run(
-            [sys.executable, "-m", "tests.ros2_sdk_client", served.rpartition(":")[2]],
-            cwd=root,
+        program = finished(
+            sys.executable,
+            "-m",
+            "tests.ros2_sdk_client",
+            served.rpartition(":")[2],
+            cwd=ROOT,
             env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
-            capture_output=True,
-            text=True,
-            timeout=COMMAND_S,
         )
         assert program.stdout.splitlines()[-1:] == ["True 7"], program.stderr
-        (file,) = in_the_checkout(drive, root)
+        (file,) = in_the_checkout(drive)
         # Where the page has the ports of a whole machine, a test has those that are free.
         text = Path(file).read_text().replace("tcp/127.0.0.1:7447", served)
-        text = text.replace("bundles/", f"{root}/deploy/bundles/").replace("100_000", "1_000")
-        text = text.replace("[interfaces]", f"[{root}/deploy/interfaces]").replace("../runs", "runs")
+        text = text.replace("bundles/", f"{ROOT}/deploy/bundles/").replace("100_000", "1_000")
+        text = text.replace("[interfaces]", f"[{ROOT}/deploy/interfaces]").replace("../runs", "runs")
         (tmp_path / "mission.yaml").write_text(text)
         with up([str(tmp_path / "mission.yaml")]) as mission:
             first = next(event for event in events_of(mission) if event.get("outcome"))
@@ -170,9 +170,9 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a
     assert (summary["ending"], summary["exit_code"], summary["steps"]) == ("stopped", 0, 0)
 
 
-def in_the_checkout(arguments: str, root: Path) -> list[str]:
+def in_the_checkout(arguments: str) -> list[str]:
     """Arguments of aos-up with their deploy file where it is."""
-    return [str(root / word) if word.endswith(".yaml") else word for word in arguments.split()]
+    return [str(ROOT / word) if word.endswith(".yaml") else word for word in arguments.split()]
 
 
 def events_of_until(process: subprocess.Popen[str], text: str) -> Iterator[dict[str, Any]]:

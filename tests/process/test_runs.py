@@ -4,7 +4,6 @@ import queue
 import signal
 import socket
 import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -12,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import COMMAND_S, HANG_S
+from places import BIN, ROOT
+from processes import HANG_S, finished
 
 from aos_deploy.processes.endpoint import hold_endpoint
 from aos_deploy.runs.directory import RunDirectory
@@ -23,7 +23,6 @@ from aos_protocol.mission_rows import BEGUN
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import JOURNAL
 
-BIN = Path(sys.executable).parent
 TIGER = """\
 aos: 1
 robot: tiger
@@ -86,13 +85,13 @@ class Place:
     Missions are noted in `running`, so that those of other tests are not seen.
     """
 
-    def __init__(self, root: Path, folder: Path, endpoint: str, running: Path):
+    def __init__(self, folder: Path, endpoint: str, running: Path):
         self.folder = folder
         self.endpoint = endpoint
         own = {"AOS_RUNNING_DIR": str(running), "PYTHONUNBUFFERED": "1"}
         self.environment = {**os.environ, **own}
         self.deploy = folder / "tiger.yaml"
-        self.deploy.write_text(TIGER.format(root=root, endpoint=endpoint))
+        self.deploy.write_text(TIGER.format(root=ROOT, endpoint=endpoint))
         (folder / "robot.py").write_text(SLOW_ROBOT)
 
     @property
@@ -110,14 +109,7 @@ class Place:
                 process.kill()
 
     def run(self, *arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [BIN / "aos", *arguments],
-            cwd=folder or self.folder,
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=COMMAND_S,
-        )
+        return finished(BIN / "aos", *arguments, cwd=folder or self.folder, env=self.environment)
 
 
 def free_port() -> int:
@@ -127,9 +119,9 @@ def free_port() -> int:
 
 
 @pytest.fixture(scope="module")
-def place(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Place:
+def place(tmp_path_factory: pytest.TempPathFactory) -> Place:
     endpoint, running = f"tcp/127.0.0.1:{free_port()}", tmp_path_factory.mktemp("running")
-    return Place(root, tmp_path_factory.mktemp("place"), endpoint, running)
+    return Place(tmp_path_factory.mktemp("place"), endpoint, running)
 
 
 @pytest.fixture(scope="module")
@@ -167,10 +159,10 @@ def test_a_living_mission_is_never_pruned(place: Place, mission: Path):
     assert mission.is_dir()
 
 
-def test_of_two_living_missions_one_has_to_be_named(root: Path, place: Place, mission: Path, tmp_path: Path):
+def test_of_two_living_missions_one_has_to_be_named(place: Place, mission: Path, tmp_path: Path):
     (tmp_path / "other").mkdir()
     running = Path(place.environment["AOS_RUNNING_DIR"])
-    other = Place(root, tmp_path / "other", "tcp/127.0.0.1:0", running)
+    other = Place(tmp_path / "other", "tcp/127.0.0.1:0", running)
     with other.up() as up:
         assert up.has_decided()
         anywhere = place.run("bundle", "list", folder=tmp_path)
@@ -183,9 +175,9 @@ def test_of_two_living_missions_one_has_to_be_named(root: Path, place: Place, mi
 
 
 def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads_them_to_the_end(
-    root: Path, tmp_path: Path
+    tmp_path: Path,
 ):
-    place = Place(root, tmp_path, "tcp/127.0.0.1:0", tmp_path / "running")
+    place = Place(tmp_path, "tcp/127.0.0.1:0", tmp_path / "running")
     with place.up() as up:
         assert up.has_decided()
         command = [BIN / "aos", "logs", "router", "python", "--follow", "--json"]
@@ -206,8 +198,8 @@ def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads
     assert "Did you mean `router`?" in place.run("logs", "ruter").stderr
 
 
-def test_of_two_starts_at_once_one_runs(root: Path, tmp_path: Path):
-    place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", tmp_path)
+def test_of_two_starts_at_once_one_runs(tmp_path: Path):
+    place = Place(tmp_path, f"tcp/127.0.0.1:{free_port()}", tmp_path)
     with place.up() as one, place.up() as other:
         decided = {start: start.has_decided() for start in (one, other)}
         codes = {decided[start]: start.end()[0] if decided[start] else start.ended()[0] for start in decided}

@@ -1,4 +1,3 @@
-import subprocess
 import sys
 from pathlib import Path
 
@@ -6,7 +5,7 @@ import pytest
 from hostile.cases import MODELS
 from hostile.counters import counting
 from models import built_text, engine_of
-from processes import COMMAND_S
+from processes import finished
 from texts import write_texts
 
 from aos_protocol.errors import CodeFaultError, ModelError
@@ -74,11 +73,11 @@ def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Pa
     script = Path(__file__).parents[1] / "without_landlock.py"
     aos = str(Path(sys.executable).with_name("aos"))
     command = [sys.executable, str(script), aos, "lint", str(tmp_path)]
-    refused = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, check=False)
+    refused = finished(*command)
     assert refused.returncode == 3
     assert "AOS805" in refused.stderr
     assert "no Landlock" in refused.stderr
     command.append("--trust-documents")
-    trusted = subprocess.run(command, capture_output=True, text=True, timeout=COMMAND_S, check=False)
+    trusted = finished(*command)
     assert trusted.returncode == 0, trusted.stderr
     assert "no Landlock" in trusted.stderr

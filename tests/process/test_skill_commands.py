@@ -2,16 +2,14 @@ import json
 import re
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from commands import aos
-from processes import COMMAND_S, HANG_S
-
-BIN = Path(sys.executable).parent
+from places import BIN
+from processes import HANG_S, finished
 
 ROBOT = """
 from pathlib import Path
@@ -54,7 +52,7 @@ class Running:
 
     def aos(self, *arguments: str) -> str:
         command = [BIN / "aos", *arguments, "--runs", "runs"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=COMMAND_S)
+        done = finished(*command)
         return done.stdout + done.stderr
 
 

@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from places import BUNDLES, DATA, PROBLEMS, ROOT
 from processes import COMMAND_S
 
 from aos_deploy.places import cache_dir
@@ -30,8 +31,8 @@ QUICK = SolvingLimits(precision=1e-3, cpu_s=1)
 
 
 @pytest.fixture
-def published(root: Path) -> Path:
-    folder = root.parent / "shared" / "problems"
+def published() -> Path:
+    folder = ROOT.parent / "shared" / "problems"
     if not folder.is_dir():
         pytest.skip("needs the published problem files in ../shared/problems, not part of this project")
     return folder
@@ -59,9 +60,9 @@ def saved(found: Enumeration, digest: str, solution: Solution) -> Policy:
     return Policy(header, solution.vectors)
 
 
-async def test_bounds_only_come_nearer(problems: Path):
+async def test_bounds_only_come_nearer():
     bounds: list[Bounds] = []
-    model = read_problem(problems / "rover.pomdpx")
+    model = read_problem(PROBLEMS / "rover.pomdpx")
     solution = await solved(model, on_progress=bounds.append)
     assert tuple(bounds) == solution.history
     assert all(a.lower <= b.lower and a.upper >= b.upper for a, b in pairwise(bounds))
@@ -148,8 +149,8 @@ async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path):
     assert solution.bounds.lower - 0.05 <= graph.value <= solution.bounds.upper
 
 
-async def test_variables_that_change_nothing_are_left_out(root: Path, tmp_path: Path):
-    folder = root / "tests" / "data" / "bundles" / "tiger"
+async def test_variables_that_change_nothing_are_left_out(tmp_path: Path):
+    folder = DATA / "bundles" / "tiger"
     files = {path.name: path.read_text() for path in folder.iterdir()}
     files["tiger.ef"] += "\nstate_variable: int listened\n\nstate_variable: bool heard []\n"
     files["tiger.ef"] += "code:\nstate.heard = {false, false};\n"
@@ -173,8 +174,8 @@ async def test_variables_that_change_nothing_are_left_out(root: Path, tmp_path: 
     assert decided[0].q == pytest.approx(solution.bounds.lower, abs=1e-3)
 
 
-async def test_a_policy_decides_online_and_returns_what_it_promises(bundles: Path, tmp_path: Path):
-    built = await built_bundle(bundles / "armadillo-finer")
+async def test_a_policy_decides_online_and_returns_what_it_promises(tmp_path: Path):
+    built = await built_bundle(BUNDLES / "armadillo-finer")
     async with engine_of(built) as engine:
         found = await enumerate_model(engine)
         solution = await solved(found.model)
@@ -193,8 +194,8 @@ async def test_a_policy_decides_online_and_returns_what_it_promises(bundles: Pat
     assert sum(response.probability for response in first.predicted) == pytest.approx(1)
 
 
-async def test_a_policy_for_other_documents_is_refused(root: Path, bundles: Path, tmp_path: Path):
-    folder = root / "tests" / "data" / "bundles" / "tiger"
+async def test_a_policy_for_other_documents_is_refused(tmp_path: Path):
+    folder = DATA / "bundles" / "tiger"
     found = await enumerated(folder)
     solution = await solved(found.model)
     policy = saved(found, "of yesterday", solution)
@@ -256,39 +257,37 @@ async def test_continuous_draws_and_endless_counters_cannot_be_solved_before():
         assert caught.value.code == "AOS220"
 
 
-async def test_a_discount_of_one_is_refused(problems: Path):
-    model = msgspec.structs.replace(read_problem(problems / "tiger.pomdp"), discount=1.0)
+async def test_a_discount_of_one_is_refused():
+    model = msgspec.structs.replace(read_problem(PROBLEMS / "tiger.pomdp"), discount=1.0)
     with pytest.raises(PlanningError, match=r"--discount 0\.99") as caught:
         await solved(model)
     assert caught.value.code == "AOS320"
 
 
-async def test_rewards_that_cannot_be_added_up_are_refused(problems: Path):
-    model = read_problem(problems / "tiger.pomdp")
+async def test_rewards_that_cannot_be_added_up_are_refused():
+    model = read_problem(PROBLEMS / "tiger.pomdp")
     large = msgspec.structs.replace(model, rewards=model.rewards * 1e306)
     with pytest.raises(PlanningError, match="too large"):
         await solved(large)
 
 
-async def test_without_a_precision_small_rewards_have_near_bounds(problems: Path):
-    model = read_problem(problems / "tiger.pomdp")
+async def test_without_a_precision_small_rewards_have_near_bounds():
+    model = read_problem(PROBLEMS / "tiger.pomdp")
     small = msgspec.structs.replace(model, rewards=model.rewards * 1e-6)
     bounds = (await solved(small, SolvingLimits(cpu_s=1))).bounds
     assert bounds.lower == pytest.approx(19.3714e-6, abs=1e-7)
 
 
 @pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
-async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
-    problems: Path, value: float, actions: set[int]
-):
-    model = with_stopping(read_problem(problems / "tiger.pomdp"), value)
+async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(value: float, actions: set[int]):
+    model = with_stopping(read_problem(PROBLEMS / "tiger.pomdp"), value)
     solution = await solved(model)
     graph = policy_graph(model, solution.vectors)
     assert {node.action for node in graph.nodes} == actions
     assert graph.value == pytest.approx(max(value, 19.3714), abs=1e-3)
 
 
-async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path):
+async def test_whoever_stops_it_keeps_the_best_so_far():
     stop = asyncio.Event()
     endless = SolvingLimits(precision=0, cpu_s=1000)
     model = random_model(3)
@@ -298,8 +297,8 @@ async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path):
 
 
 @pytest.fixture
-def tiger_graph(problems: Path) -> PolicyGraph:
-    model = read_problem(problems / "tiger.pomdp")
+def tiger_graph() -> PolicyGraph:
+    model = read_problem(PROBLEMS / "tiger.pomdp")
     return policy_graph(model, asyncio.run(solved(model)).vectors)
 
 

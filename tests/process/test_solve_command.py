@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from commands import aos
+from places import DATA
 
 from aos_deploy.deployment.reading import read_deploy_file
 from aos_deploy.processes.program import programs_of_deployment
@@ -12,13 +13,13 @@ from aos_solver.offline.policy import Policy
 
 
 @pytest.fixture
-def tiger(root: Path) -> Path:
-    return root / "tests" / "data" / "problems" / "tiger.pomdp"
+def tiger() -> Path:
+    return DATA / "problems" / "tiger.pomdp"
 
 
 @pytest.fixture
-def bundle(root: Path) -> Path:
-    return root / "tests" / "data" / "bundles" / "tiger"
+def bundle() -> Path:
+    return DATA / "bundles" / "tiger"
 
 
 def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_path: Path):

@@ -2,14 +2,15 @@ import subprocess
 from pathlib import Path
 
 from collector import collector
-from gateway import BIN, ROOT, environment
+from gateway import environment
+from places import BIN, DEPLOY, ROOT
 from processes import COMMAND_S
 
 from aos_deploy.export.kept_missions import kept_missions
 
 
 def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_its_end(tmp_path: Path):
-    text = (ROOT / "deploy/errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/")
+    text = (DEPLOY / "errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/")
     with collector() as got:
         (tmp_path / "errand.yaml").write_text(f"{text}\nspans: {{otlp: '{got.address}'}}\n")
         up = subprocess.run(

@@ -2,11 +2,11 @@
 engine."""
 
 from collections.abc import AsyncIterator, Mapping
-from pathlib import Path
 
 import pytest
 from mappings import mapping_text
 from models import built_text, engine_of, engine_of_bundle
+from places import BUNDLES
 
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
@@ -250,8 +250,8 @@ async def test_a_simulated_state_is_shown_by_the_documents_print_function(engine
     assert run.states[0] in ("Base at 1\n", "Base at 1, mapped\n")
 
 
-async def test_without_a_print_function_a_state_is_shown_by_its_variables(bundles: Path):
-    async with engine_of_bundle(bundles / "armadillo-finer") as engine:
+async def test_without_a_print_function_a_state_is_shown_by_its_variables():
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         await engine.reset_world(1)
         text = await engine.world_state()
     assert ", robot_at=HardTable, holding_can=false, " in text

@@ -1,10 +1,11 @@
 import asyncio
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from hostile.counters import counting
 from models import built_project, built_text, engine_of
+from places import BUNDLES
+from projects import bundle_project
 from scripted_missions import Surroundings, hears_left, jammed, observed
 from test_taking_up import rows_of
 
@@ -12,7 +13,6 @@ from aos_deploy.commands.steering import _held
 from aos_deploy.deployment.constraints import constrained, constraint_of_option
 from aos_deploy.history_check.steering_rules import SteeringRules
 from aos_deploy.views.lines import decision_line
-from aos_language.load import load_bundle
 from aos_protocol.errors import SteeringError
 from aos_protocol.messages import ActionRefused, Activate, MissionBegun, MissionState, Outcome, Steer
 from aos_protocol.mission_rows import BEGUN
@@ -212,9 +212,8 @@ async def test_a_mission_without_anything_left_holds_until_something_is_taken_ba
     assert violations(around) == []
 
 
-async def test_constraints_hold_for_what_an_operator_wants(bundles: Path):
-    project = load_bundle(bundles / "bench" / "tiger").project
-    assert project is not None
+async def test_constraints_hold_for_what_an_operator_wants():
+    project = bundle_project(BUNDLES / "bench" / "tiger")
     never = "open && state.tiger_behind == Left"
     constraint = constraint_of_option(f"0.1: {never}")
     built = await built_project(constrained(project, [constraint]))

@@ -6,7 +6,8 @@ import time
 from pathlib import Path
 
 import pytest
-from processes import COMMAND_S, kill
+from places import ROOT
+from processes import finished, kill
 from test_missions import up
 
 from aos_deploy.history_check.files import check_run
@@ -17,15 +18,15 @@ from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import mission_folder
 
 
-def followed(root: Path, run: Path) -> subprocess.CompletedProcess[str]:
-    example = [sys.executable, root / "docs/examples/follow_decisions.py", run]
-    return subprocess.run(example, capture_output=True, text=True, timeout=COMMAND_S, check=False)
+def followed(run: Path) -> subprocess.CompletedProcess[str]:
+    example = [sys.executable, ROOT / "docs/examples/follow_decisions.py", run]
+    return finished(*example)
 
 
 async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(
-    root: Path, tmp_path: Path
+    tmp_path: Path,
 ):
-    with up(root, tmp_path) as system:
+    with up(ROOT, tmp_path) as system:
         system.be_slow(True)
         name = system.until("mission", phase="acting")["mission"]
         code, said, _ = system.aos("mission", "hold")
@@ -53,9 +54,9 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert system.until("mission", phase="ended")["ending"] == "step_limit"
         code, _, error = system.aos("mission", "hold")
         assert "AOS517: no mission runs" in error
-        assert "\nstep 2: operator chose open(door=right_door)\n" in followed(root, system.run).stdout
+        assert "\nstep 2: operator chose open(door=right_door)\n" in followed(system.run).stdout
         assert system.interrupt() == 0
-        over = followed(root, system.run)
+        over = followed(system.run)
         assert (over.returncode, over.stderr[:3]) == (1, "AOS")
         assert check_run(system.run).violations == []
         with Journal.read(mission_folder(system.run, 1) / "journal.db") as journal:
@@ -67,8 +68,8 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert len({row["by"] for row in rows}) == 1
 
 
-async def test_a_program_steers_and_stop_cancels_motion_at_once(root: Path, tmp_path: Path):
-    with up(root, tmp_path) as system:
+async def test_a_program_steers_and_stop_cancels_motion_at_once(tmp_path: Path):
+    with up(ROOT, tmp_path) as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
         async with AosClient.of_run(system.run, OPERATOR, by="ana") as aos:

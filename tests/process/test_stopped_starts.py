@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 from kept_cache import kept_cache, link_engines
+from places import ROOT
 from test_missions import up
 
 from aos_deploy.history_check.files import check_run
@@ -15,8 +16,8 @@ def compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 
 
-def test_the_only_mission_is_cancelled_while_its_model_compiles(root: Path, tmp_path: Path):
-    with up(root, tmp_path, "tiger.yaml") as system:
+def test_the_only_mission_is_cancelled_while_its_model_compiles(tmp_path: Path):
+    with up(ROOT, tmp_path, "tiger.yaml") as system:
         system.until("mission", phase="compiling")
         answer = json.loads(system.aos("mission", "stop", "--json")[1])
         assert (answer["phase"], answer["ending"]) == ("ended", "cancelled")
@@ -29,10 +30,8 @@ def test_the_only_mission_is_cancelled_while_its_model_compiles(root: Path, tmp_
         assert check_run(system.run).violations == []
 
 
-def test_the_first_mission_of_a_system_that_stays_does_not_begin_and_the_next_one_may(
-    root: Path, tmp_path: Path
-):
-    with up(root, tmp_path) as system:
+def test_the_first_mission_of_a_system_that_stays_does_not_begin_and_the_next_one_may(tmp_path: Path):
+    with up(ROOT, tmp_path) as system:
         system.until("mission", phase="compiling")
         code, said, _ = system.aos("mission", "stop")
         assert (code, said) == (0, f"{system.run.name}-1 does not begin: stopped by hand\n")

@@ -1,9 +1,9 @@
 import math
-from pathlib import Path
 
 import msgspec
 import pytest
 from models import engine_of_bundle
+from places import BUNDLES
 from study.played import Played, play
 
 from aos_deploy.places import cache_dir
@@ -17,8 +17,8 @@ BUNDLE = "armadillo-rough"
 
 
 @pytest.fixture
-async def played(bundles: Path) -> Played:
-    return await play(read_bundle_files(bundles / BUNDLE)[0], steps=2)
+async def played() -> Played:
+    return await play(read_bundle_files(BUNDLES / BUNDLE)[0], steps=2)
 
 
 async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played):
@@ -53,15 +53,13 @@ async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Play
         await study.close()
 
 
-async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them(
-    played: Played, bundles: Path
-):
+async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them(played: Played):
     study = Study(played, cache_dir())
     try:
         chosen = played.mission.decision(1).action
         forbidden = await study.what_if(WhatIfQuery(1, forbid=(chosen,)))
         assert forbidden.action != chosen == forbidden.before
-        lines = (bundles / BUNDLE / "pick.sd").read_text().split("\n")
+        lines = (BUNDLES / BUNDLE / "pick.sd").read_text().split("\n")
         place = f"pick.sd:{lines.index('__reward = -2;') + 1}"
         changed = await study.what_if(WhatIfQuery(1, change=(f"{place}=-20",)))
         assert changed.supposed == (f"{place}: -20 instead of -2",)
@@ -70,7 +68,7 @@ async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them
         assert all(not value.action.startswith("pick") for value in without.actions)
         tree = await study.tree(TreeQuery(1, depth=2, branches=2))
         assert tree.root.actions[0].action == chosen
-        async with engine_of_bundle(bundles / BUNDLE) as engine:
+        async with engine_of_bundle(BUNDLES / BUNDLE) as engine:
             index = [action.name for action in engine.description.actions].index(chosen)
             predicted = {each.response: each.probability for each in (await engine.predict(index)).predicted}
         assert {response: p for response, p, _ in tree.root.actions[0].after} == predicted
@@ -98,8 +96,8 @@ async def test_what_cannot_be_supposed_is_told(played: Played):
         await study.close()
 
 
-async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study(bundles: Path):
-    played = await play(read_bundle_files(bundles / BUNDLE)[0], steps=1)
+async def test_an_action_that_a_person_chose_is_valued_by_a_search_of_the_study():
+    played = await play(read_bundle_files(BUNDLES / BUNDLE)[0], steps=1)
     chosen = played.mission.decision(1)
     asked = msgspec.structs.replace(
         chosen,
@@ -150,9 +148,9 @@ async def test_a_decision_whose_activation_brought_nothing_says_so(played: Playe
     assert "nothing was observed, its activation ended as unknown: the adapter was lost" in why.remark
 
 
-async def test_an_action_of_a_script_is_explained_where_values_are_searched(bundles: Path):
+async def test_an_action_of_a_script_is_explained_where_values_are_searched():
     played = await play(
-        read_bundle_files(bundles / "bench" / "tiger")[0], steps=1, planner="pomcp", simulations=4000
+        read_bundle_files(BUNDLES / "bench" / "tiger")[0], steps=1, planner="pomcp", simulations=4000
     )
     opened = "open(door=left_door)"
     asked = msgspec.structs.replace(
@@ -181,8 +179,8 @@ async def test_an_action_of_a_script_is_explained_where_values_are_searched(bund
         await study.close()
 
 
-async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps(bundles: Path):
-    files = read_bundle_files(bundles / "bench" / "tiger")[0]
+async def test_rewards_of_more_outcomes_than_can_be_listed_are_means_of_drawn_steps():
+    files = read_bundle_files(BUNDLES / "bench" / "tiger")[0]
     tolls = "for (int i = 0; i < 16; i++) __reward -= AOS.Bernoulli(0.25) ? 1 : 0;"
     files["listen.sd"] = files["listen.sd"].replace(b"__reward = -1;", f"__reward = -1;\n{tolls}".encode())
     played = await play(files, steps=1, planner="pomcp", simulations=500)

@@ -3,13 +3,14 @@ from pathlib import Path
 
 import pytest
 from installed import SIMULATOR, Installation, built_wheel, install, link_packages
+from places import ROOT
 
 ANY_PORT = ("--listen", "tcp/127.0.0.1:0")
 
 
 @pytest.fixture(scope="module")
-def wheel(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return built_wheel(root, tmp_path_factory.mktemp("wheel"))
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return built_wheel(ROOT, tmp_path_factory.mktemp("wheel"))
 
 
 @pytest.fixture(scope="module")

@@ -3,13 +3,14 @@ import shutil
 from pathlib import Path
 
 from commands import aos
+from places import BUNDLES, ROOT
 from test_missions import up
 
 LINES = 8
 
 
-def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(root: Path, tmp_path: Path):
-    with up(root, tmp_path, "tiger.yaml") as system:
+def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(tmp_path: Path):
+    with up(ROOT, tmp_path, "tiger.yaml") as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
         code, out, error = system.aos("why", "1", "--json")
@@ -68,8 +69,8 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(root: Path, 
         assert "simulations: 200 in A, 100 in B" in out
 
 
-def test_a_plan_may_begin_with_another_belief(bundles: Path, tmp_path: Path):
-    bundle, supposed = bundles / "bench" / "tiger", tmp_path / "belief.txt"
+def test_a_plan_may_begin_with_another_belief(tmp_path: Path):
+    bundle, supposed = BUNDLES / "bench" / "tiger", tmp_path / "belief.txt"
     supposed.write_text("tiger_behind=Left:0.999\n")
     for belief in ("tiger_behind=Left:0.999", supposed):
         done = aos("plan", bundle, "--belief", belief, "--json")

@@ -5,10 +5,10 @@ import itertools
 import math
 import random
 from functools import cache
-from pathlib import Path
 
 import pytest
 from models import built_bundle, built_bundles, engine_of, engine_of_bundle
+from places import BUNDLES, DEPLOY
 from tictactoe_games import game
 
 from aos_skills.pybullet.world_file import load_world_file
@@ -31,16 +31,16 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
     ],
 )
 async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
-    names: tuple[str, ...], first: str, bundles: Path
+    names: tuple[str, ...], first: str
 ):
-    async with engine_of(await built_bundles([bundles / name for name in names])) as engine:
+    async with engine_of(await built_bundles([BUNDLES / name for name in names])) as engine:
         values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
     assert values[0].action == first
     assert values[0].q > values[1].q + 1
 
 
-async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path):
-    both = [bundles / name for name in ("armadillo-finer-blind", "armadillo-rough-blind")]
+async def test_the_blind_robot_serves_and_goes_back_to_the_tables():
+    both = [BUNDLES / name for name in ("armadillo-finer-blind", "armadillo-rough-blind")]
     async with engine_of(await built_bundles(both)) as engine:
         await engine.reset_belief()
         for action, response in (
@@ -55,11 +55,11 @@ async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path)
             await engine.update(action, response)
 
 
-async def test_the_turtlebot_takes_the_shortest_of_all_tours(root: Path, bundles: Path):
-    room = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
+async def test_the_turtlebot_takes_the_shortest_of_all_tours():
+    room = load_world_file(DEPLOY / "worlds/turtlebot.yaml").room
     at = {name: (place.x, place.y) for name, place in room.places.items()}
     decided = []
-    async with engine_of_bundle(bundles / "turtlebot") as engine:
+    async with engine_of_bundle(BUNDLES / "turtlebot") as engine:
         await engine.reset_belief()
         for step in range(len(at)):
             plan = await engine.plan(simulations=100_000, seed=step, planner="auto")
@@ -79,16 +79,16 @@ def shortest_tour(start: Point, places: frozenset[Point]) -> float:
     )
 
 
-async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path):
+async def test_the_panda_never_loses_a_game_that_it_begins():
     chance = random.Random(1)
-    async with engine_of_bundle(bundles / "tictactoe") as engine:
+    async with engine_of_bundle(BUNDLES / "tictactoe") as engine:
         for seed in range(3):
             ending, moves = await game(engine, "perfect", chance, seed, dry_centre=0.0)
             assert ending != "X", moves
 
 
-async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path):
-    both = [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")]
+async def test_the_person_of_the_other_documents_makes_no_mistake():
+    both = [BUNDLES / name for name in ("tictactoe", "tictactoe-perfect-person")]
     chance = random.Random(1)
     async with engine_of(await built_bundles(both)) as engine:
         indices = {action.name: index for index, action in enumerate(engine.description.actions)}
@@ -107,9 +107,9 @@ async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path)
                 board = response
 
 
-async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world(bundles: Path):
-    own = await built_bundle(bundles / "tictactoe")
-    other = await built_bundles([bundles / name for name in ("tictactoe", "tictactoe-perfect-person")])
+async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world():
+    own = await built_bundle(BUNDLES / "tictactoe")
+    other = await built_bundles([BUNDLES / name for name in ("tictactoe", "tictactoe-perfect-person")])
     limits = MissionLimits(goal_probability=0.9, step_limit=30)
     async with engine_of(own) as engine, engine_of(other) as world:
         search = Search(simulations=1000, seed=1)

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import msgspec
 from models import built_project
+from projects import files_project
 
 from aos_deploy.places import cache_dir
-from aos_language.load import load_files
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Activate, Message, MissionBegun, MissionState, Outcome
@@ -60,7 +60,7 @@ class Played(msgspec.Struct):
         """The documents of a revision, from 1; StorageError AOS702 if there is none."""
         if not 0 < number <= len(self.revisions):
             raise StorageError(f"there is no revision {number}", code="AOS702")
-        return _project(self.revisions[number - 1])
+        return files_project(self.revisions[number - 1])
 
     # As a source of studies:
 
@@ -69,12 +69,6 @@ class Played(msgspec.Struct):
 
     async def files(self, revision: int) -> dict[str, bytes]:
         return dict(self.revisions[revision - 1])
-
-
-def _project(files: Files) -> Project:
-    project = load_files(files).project
-    assert project is not None
-    return project
 
 
 _NOBODY = Beside()
@@ -156,7 +150,7 @@ async def play(
         step_limit=steps,
         **budget,
     )
-    project = _project(files)
+    project = files_project(files)
     built = await built_project(project)
     engine = await Engine.start(built, seed=seed)
     world = await Engine.start(built, seed=seed + 1000)
@@ -168,7 +162,7 @@ async def play(
         parameters = engine.description.mission_parameters
         around.journal(BEGUN, MissionBegun("m", 1, seed, 1, running.digest, parameters))
         if then is not None:
-            other = await built_project(_project(then[1]))
+            other = await built_project(files_project(then[1]))
             model = RunningModel(2, await Engine.start(other, seed=seed))
             around.next = (then[0], Successor(model, around.clock))
         search = msgspec.structs.replace(msgspec.convert(settings, Search, from_attributes=True), seed=seed)

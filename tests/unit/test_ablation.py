@@ -1,10 +1,9 @@
 import re
-from pathlib import Path
 
 from ablation.losses import Losses
 from ablation.mechanisms import BUNDLES, ROUTES
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 CPP = ROOT / "services" / "solver" / "aos_solver" / "cpp"
 
 

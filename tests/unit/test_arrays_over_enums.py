@@ -1,8 +1,9 @@
 import json
 
 import pytest
-from dialects import project_of, say_the_same
-from scripted_models import ScriptedModel, scripted, text_project
+from dialects import say_the_same
+from projects import files_project, text_project
+from scripted_models import ScriptedModel, scripted
 
 from aos_language.load import load_files
 from aos_language.outline import outline
@@ -102,7 +103,7 @@ def test_a_list_of_another_length_is_a_fault(model: ScriptedModel):
 
 
 def test_all_dialects_say_the_same():
-    assert "variable Place[Item] at = Shelf" in outline(project_of(files()))
+    assert "variable Place[Item] at = Shelf" in outline(files_project(files()))
     as_json, sdl = say_the_same(files())
     assert b'"IndexedBy": "Item"' in as_json["environment.ef.json"]
     assert b"state_variable: Place at [Item]" in sdl["environment.ef"]

@@ -1,8 +1,7 @@
-import subprocess
 import sys
 
 import pytest
-from processes import COMMAND_S
+from processes import finished
 
 PROGRAM = """
 import asyncio, ctypes, time
@@ -31,7 +30,7 @@ def test_only_a_loop_that_stands_still_ends_the_process(tmp_path, takes_time, to
     robot = tmp_path / "robot.py"
     # A loop that goes on has all the time that a busy machine may need.
     robot.write_text(PROGRAM.format(takes_time=takes_time, answer_s=0.1 if told else 60.0))
-    done = subprocess.run([sys.executable, robot], capture_output=True, text=True, timeout=COMMAND_S)
+    done = finished(sys.executable, robot)
     assert done.returncode == bool(told), done.stderr
     assert ("went on" in done.stdout) == (not told)
     assert told.format(robot=robot) in done.stderr

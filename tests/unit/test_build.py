@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 from kept_cache import link_engines
 from mappings import mapping_of_model, mapping_text
+from places import BUNDLES
 from processes import COMMAND_S, HANG_S, until_ended
-from scripted_models import bundle_project, json_text, lowered, text_project
+from projects import bundle_project, text_project
+from scripted_models import json_text, lowered
 
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as build_module
@@ -56,8 +58,8 @@ def places(error: ModelError) -> list[str]:
     return [str(diagnostic.span) for diagnostic in error.diagnostics]
 
 
-async def test_a_model_is_built_once_which_is_told_and_then_found(bundles: Path, cache_dir: Path):
-    emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
+async def test_a_model_is_built_once_which_is_told_and_then_found(cache_dir: Path):
+    emitted, _ = lowered(bundle_project(BUNDLES / "armadillo-finer"))
     told: list[str] = []
     first = await build(emitted, cache_dir=cache_dir, on_progress=told.append)
     assert told[0].startswith(f"compiling {emitted.project} with ")

@@ -4,27 +4,28 @@ from pathlib import Path
 
 import pytest
 from commands import aos
+from places import BUNDLES
 
 from aos_protocol.errors import DocumentError
 
 
 @pytest.fixture
-def broken(bundles: Path, tmp_path: Path) -> Path:
-    folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
+def broken(tmp_path: Path) -> Path:
+    folder = shutil.copytree(BUNDLES / "armadillo-finer", tmp_path / "broken")
     path = folder / "serve.sd"
     path.write_text(path.read_text().replace("delivered : not_delivered", "deliverd : not_delivered"))
     (folder / "armadillo.ef").unlink()
     return folder
 
 
-def test_lint_of_a_good_bundle_ends_with_zero(bundles: Path):
-    result = aos("lint", bundles / "armadillo-rough", "--no-compile")
+def test_lint_of_a_good_bundle_ends_with_zero():
+    result = aos("lint", BUNDLES / "armadillo-rough", "--no-compile")
     assert result.exit_code == 0
     assert result.output.endswith("0 errors, 1 warning\n")
 
 
-def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(bundles: Path, tmp_path):
-    folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
+def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(tmp_path):
+    folder = shutil.copytree(BUNDLES / "armadillo-finer", tmp_path / "broken")
     path = folder / "pick.sd"
     path.write_text(path.read_text().replace("bool in_hand =", "bool in_hand = in_the_hand &&"))
     line = next(n for n, text in enumerate(path.read_text().split("\n"), 1) if "in_the_hand" in text)
@@ -99,11 +100,11 @@ def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(broken: Path
     assert "broken: error[AOS115]: there is no environment document" in result.output
 
 
-def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(bundles: Path):
-    alone = aos("lint", bundles / "armadillo-retract", "--no-compile")
+def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to():
+    alone = aos("lint", BUNDLES / "armadillo-retract", "--no-compile")
     assert alone.exit_code == 1
     assert "armadillo-retract --also BUNDLE" in alone.output
-    arguments = ["lint", str(bundles / "armadillo-retract"), "--also", str(bundles / "armadillo-finer")]
+    arguments = ["lint", str(BUNDLES / "armadillo-retract"), "--also", str(BUNDLES / "armadillo-finer")]
     together = aos(*arguments, "--no-compile")
     assert together.exit_code == 0
     assert "armadillo-retract: 0 errors" in together.output
@@ -119,8 +120,8 @@ def test_lint_gives_the_same_as_json(broken: Path, option):
     assert error["hint"] == "Did you mean `delivered`?"
 
 
-def test_inspect_prints_the_documents_with_their_places(bundles: Path):
-    result = aos("inspect", bundles / "armadillo-rough")
+def test_inspect_prints_the_documents_with_their_places():
+    result = aos("inspect", BUNDLES / "armadillo-rough")
     assert result.exit_code == 0
     assert "project armadillo: horizon 10, discount 0.99" in result.output
     assert "variable bool holding_can" in result.output
@@ -129,13 +130,13 @@ def test_inspect_prints_the_documents_with_their_places(bundles: Path):
 
 
 @pytest.mark.parametrize("stage", ["documents", "model", "cpp", "python"])
-def test_inspect_prints_each_stage_as_json(bundles: Path, stage):
-    result = aos("inspect", bundles / "armadillo-rough", "--stage", stage, "--json")
+def test_inspect_prints_each_stage_as_json(stage):
+    result = aos("inspect", BUNDLES / "armadillo-rough", "--stage", stage, "--json")
     assert "pick" in str(json.loads(result.output)[stage])
 
 
-def test_inspect_prints_the_python_of_one_skill(bundles: Path):
-    arguments = ["inspect", str(bundles / "armadillo-finer"), "--stage", "python", "--skill", "pick"]
+def test_inspect_prints_the_python_of_one_skill():
+    arguments = ["inspect", str(BUNDLES / "armadillo-finer"), "--stage", "python", "--skill", "pick"]
     result = aos(*arguments)
     assert "skill pick, project armadillo" in result.output
     assert "navigate" not in result.output
@@ -147,7 +148,7 @@ def test_inspect_of_a_broken_bundle_raises_with_all_findings(broken: Path):
     assert {d.code for d in result.exception.diagnostics if d.is_error} == {"AOS115", "AOS116"}
 
 
-def test_a_push_without_a_running_system_says_so(bundles: Path, tmp_path):
-    arguments = ["bundle", "push", str(bundles / "armadillo-finer"), "--runs", str(tmp_path)]
+def test_a_push_without_a_running_system_says_so(tmp_path):
+    arguments = ["bundle", "push", str(BUNDLES / "armadillo-finer"), "--runs", str(tmp_path)]
     result = aos(*arguments)
     assert "there is no run in" in str(result.exception)

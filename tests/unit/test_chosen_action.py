@@ -1,6 +1,7 @@
 import pytest
 from mappings import mapping_text
-from scripted_models import ScriptedModel, scripted, text_project
+from projects import text_project
+from scripted_models import ScriptedModel, scripted
 
 PARAMETERLESS = "project: test\ndynamic_model:\n"
 

@@ -1,14 +1,15 @@
 from pathlib import Path
 
 import pytest
+from places import DATA
 
 from aos_lab.trials.files import read_test_file
 from aos_protocol.errors import DeployError
 
 
 @pytest.fixture
-def folder(root: Path, tmp_path: Path) -> Path:
-    bundle = root / "tests" / "data" / "bundles" / "fetch"
+def folder(tmp_path: Path) -> Path:
+    bundle = DATA / "bundles" / "fetch"
     deploy = f"aos: 1\nrobot: fetch\nbundles: [{bundle}]\nleave_out: [look]\nbind: {{'*': model}}\n"
     (tmp_path / "fetch.yaml").write_text(deploy)
     (tmp_path / "watching.yaml").write_text(f"{deploy}watch: drop\n")

@@ -1,8 +1,8 @@
-from pathlib import Path
 from typing import Any
 
 import pytest
 from msgspec.structs import replace
+from places import DEPLOY
 
 from aos_skills.pybullet.parts.room_file import Place
 from aos_skills.pybullet.world_file import load_world_file
@@ -15,9 +15,9 @@ pytestmark = pytest.mark.physics
 
 
 @pytest.fixture
-def file(root: Path) -> CleanLabFile:
+def file() -> CleanLabFile:
     """The shipped laboratory, without faults."""
-    room: CleanLabFile = load_world_file(root / "deploy/worlds/cleanlab.yaml").room
+    room: CleanLabFile = load_world_file(DEPLOY / "worlds/cleanlab.yaml").room
     return replace(room, faults=FaultModel())
 
 

@@ -4,16 +4,14 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import redirect_stdout
-from pathlib import Path
 
 import pytest
 import typer
+from places import ROOT
 from typer.core import TyperGroup
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def paths_below(group: TyperGroup, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:

@@ -1,6 +1,7 @@
 from pathlib import Path
 
 import pytest
+from places import BUNDLES
 
 from aos_deploy.bundles.files import project_of
 from aos_deploy.deployment.constraints import constraint_of_option
@@ -14,9 +15,9 @@ HEAD = "aos: 1\nrobot: armadillo\nbundles: [{bundle}]\nmission:\n  constraints:\
 
 
 @pytest.fixture
-def write(tmp_path: Path, bundles: Path) -> Path:
+def write(tmp_path: Path) -> Path:
     path = tmp_path / "deploy.yaml"
-    path.write_text(HEAD.format(bundle=bundles / "armadillo-finer"))
+    path.write_text(HEAD.format(bundle=BUNDLES / "armadillo-finer"))
     return path
 
 

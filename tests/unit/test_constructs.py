@@ -4,9 +4,9 @@ tests/constructs.md lists the constructs, with the tests that show each of them 
 """
 
 import re
-from pathlib import Path
 
 import pytest
+from places import ROOT
 from test_reading_rules import Rule, bundle_of
 
 from aos_language.load import load_files
@@ -130,9 +130,9 @@ WARNED_OF = {"AOS.SampleUniform", "anyValue"}
 """All other misuses are errors."""
 
 
-def page_rows(root: Path) -> dict[str, tuple[str, str]]:
+def page_rows() -> dict[str, tuple[str, str]]:
     """The test and the code of each construct, as tests/constructs.md lists them."""
-    page = (root / "tests" / "constructs.md").read_text(encoding="utf-8")
+    page = (ROOT / "tests" / "constructs.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([^|]+) \| `([^`|]+)` \| (AOS\d{3}) \|$", page, re.MULTILINE)
     return {name.replace("`", ""): (test, code) for name, test, code in rows}
 
@@ -151,13 +151,13 @@ def test_a_construct_that_is_misused_is_told_at_its_place(construct):
     assert any(finding.is_error for finding in told) == (construct not in WARNED_OF)
 
 
-def test_the_page_of_the_constructs_names_every_one_and_tests_that_exist(root: Path):
-    rows = page_rows(root)
+def test_the_page_of_the_constructs_names_every_one_and_tests_that_exist():
+    rows = page_rows()
     assert {name: code for name, (_, code) in rows.items()} == {
         name: rule.code for name, rule in MISUSES.items()
     }
     for test, _ in rows.values():
         file, _, function = test.rpartition("/")[2].partition("::")
         folder = test.rpartition("/")[0] or "unit"
-        source = (root / "tests" / folder / f"{file}.py").read_text(encoding="utf-8")
+        source = (ROOT / "tests" / folder / f"{file}.py").read_text(encoding="utf-8")
         assert f"def {function}(" in source, test

@@ -5,6 +5,7 @@ from commands import aos
 from dialects import converted, say_the_same
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from places import BUNDLES, ROOT
 from texts import encoded
 
 from aos_language.convert import Dialect, convert
@@ -24,17 +25,17 @@ def test_an_original_bundle_says_the_same_in_both_dialects(corpus: Path, name):
 
 
 @pytest.mark.parametrize("name", ["armadillo-finer", "armadillo-rough"])
-def test_a_shipped_bundle_says_the_same_in_both_dialects(bundles: Path, name):
-    say_the_same(read_bundle_files(bundles / name)[0])
+def test_a_shipped_bundle_says_the_same_in_both_dialects(name):
+    say_the_same(read_bundle_files(BUNDLES / name)[0])
 
 
 @pytest.mark.parametrize("dialect", ["sdl", "json"])
-def test_the_language_pages_examples_say_the_same_in_both_dialects(root: Path, dialect):
-    say_the_same(read_bundle_files(root / "docs" / "examples" / f"kettle-{dialect}")[0])
+def test_the_language_pages_examples_say_the_same_in_both_dialects(dialect):
+    say_the_same(read_bundle_files(ROOT / "docs" / "examples" / f"kettle-{dialect}")[0])
 
 
-def test_file_names_come_from_the_documents_not_from_the_files(root: Path):
-    files, _ = read_bundle_files(root / "docs" / "examples" / "kettle-json")
+def test_file_names_come_from_the_documents_not_from_the_files():
+    files, _ = read_bundle_files(ROOT / "docs" / "examples" / "kettle-json")
     sdl = converted(files, Dialect.SDL)
     assert sorted(sdl) == ["environment.ef", "environment.lf", "pour.am", "pour.sd"]
     names = [f"{name}.json" for name in sorted(sdl)]
@@ -90,9 +91,9 @@ def test_any_code_stays_as_it_is_or_is_refused(lines: list[str]):
         assert any(finding.is_error for finding in findings)
 
 
-def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(bundles: Path, tmp_path):
+def test_the_command_writes_a_new_directory_and_nothing_over_an_old_one(tmp_path):
     out = tmp_path / "json"
-    arguments = ["convert", str(bundles / "armadillo-finer"), "--to", "json", "--out", str(out)]
+    arguments = ["convert", str(BUNDLES / "armadillo-finer"), "--to", "json", "--out", str(out)]
     result = aos(*arguments)
     assert result.exit_code == 0
     assert f"{out}: 11 documents" in result.stdout

@@ -2,7 +2,6 @@ import fcntl
 import os
 import shutil
 import socket as sockets
-import subprocess
 import sys
 import tempfile
 import threading
@@ -12,6 +11,8 @@ from pathlib import Path
 
 import pytest
 from commands import aos
+from places import ROOT
+from processes import finished
 
 from aos_deploy.processes.passes import Outsider, Passes
 from aos_deploy.runs.bus_socket import place_of_socket, remove_left_sockets, remove_socket
@@ -83,10 +84,10 @@ def test_the_bus_is_in_the_run_directory_or_where_its_path_is_short_enough(tmp_p
 
 
 @pytest.mark.parametrize("written", ["{command: [python], credential: x}", "{external: '', credential: 3}"])
-def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path, written):
+def test_a_credential_is_a_file_of_an_external_adapter(tmp_path, written):
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
-        f"aos: 1\nrobot: r\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
+        f"aos: 1\nrobot: r\nbundles: [{ROOT}/deploy/bundles/armadillo-finer]\n"
         f"adapters:\n  arm: {written}\nbind: {{'*': arm}}\n"
     )
     result = aos("doctor", deploy)
@@ -94,11 +95,11 @@ def test_a_credential_is_a_file_of_an_external_adapter(root: Path, tmp_path, wri
     assert "credential" in f"{result.output}{result.exception}"
 
 
-def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path, monkeypatch):
+def test_a_unit_starts_a_mission_with_the_machine(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "base_prefix", "/home/robot/.pyenv/versions/3.11")
     deploy = tmp_path / "r.yaml"
     deploy.write_text(
-        f"aos: 1\nrobot: r\nproject: armadillo\nbundles: [{root}/deploy/bundles/armadillo-finer]\n"
+        f"aos: 1\nrobot: r\nproject: armadillo\nbundles: [{ROOT}/deploy/bundles/armadillo-finer]\n"
         "bind: {'*': model}\n"
     )
     result = aos("new", "unit", deploy, "--to", tmp_path, "--user", "robot")
@@ -118,11 +119,11 @@ def test_a_unit_starts_a_mission_with_the_machine(root: Path, tmp_path, monkeypa
     assert again.exit_code != 0
     if shutil.which("systemd-analyze") is None:
         pytest.skip("needs systemd-analyze, which reads the unit as systemd does")
-    done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
+    done = finished("systemd-analyze", "verify", unit)
     assert unit.name not in done.stderr.replace("Failed to prepare filename", ""), done.stderr
     # Tenths of systemd's scale, from 0 to 10.
     rated = ["systemd-analyze", "security", "--offline=true", "--threshold=25", unit]
-    done = subprocess.run(rated, capture_output=True, text=True, check=False)
+    done = finished(*rated)
     assert done.returncode == 0, done.stdout
 
 

@@ -1,11 +1,12 @@
 import re
-from pathlib import Path
+
+from places import ROOT
 
 MOST_WORDS = 320
 
 
-def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root: Path):
-    folder = root / "docs" / "decisions"
+def test_a_superseded_record_names_its_successor_and_the_successor_names_it():
+    folder = ROOT / "docs" / "decisions"
     status = {path.name[:4]: path.read_text().splitlines()[2] for path in folder.glob("0*.md")}
     names: set[tuple[str, str]] = set()
     for new, line in status.items():
@@ -20,7 +21,7 @@ def test_a_superseded_record_names_its_successor_and_the_successor_names_it(root
     assert marked == names
 
 
-def test_a_record_is_short(root: Path):
+def test_a_record_is_short():
     """Some 200 words are enough for a situation, a choice and what follows; git keeps how it came about."""
-    words = {path.name: len(path.read_text().split()) for path in (root / "docs/decisions").glob("0*.md")}
+    words = {path.name: len(path.read_text().split()) for path in (ROOT / "docs/decisions").glob("0*.md")}
     assert {name: count for name, count in words.items() if count > MOST_WORDS} == {}

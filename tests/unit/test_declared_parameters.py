@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 from dialects import say_the_same
-from scripted_models import text_project
+from projects import text_project
 from texts import encoded, write_texts
 
 from aos_deploy.bundles.files import project_of

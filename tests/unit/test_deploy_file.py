@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 from deploy_files import HEAD, findings, read
+from places import DEPLOY
 
 from aos_deploy.bundles.files import files_of_bundle
 from aos_deploy.deployment.own_programs import ReadyPart
@@ -71,8 +72,8 @@ runs: ../elsewhere
 
 
 @pytest.mark.parametrize("name", ["armadillo", "armadillo-rough", "armadillo-hotplug"])
-def test_the_shipped_deploy_files_are_good(root: Path, name):
-    assert read_deploy_file(root / "deploy" / f"{name}.yaml").file.robot == "armadillo"
+def test_the_shipped_deploy_files_are_good(name):
+    assert read_deploy_file(DEPLOY / f"{name}.yaml").file.robot == "armadillo"
 
 
 def test_programs_stand_between_the_services_and_the_adapters(folder: Path):
@@ -156,8 +157,8 @@ def test_what_a_deploy_file_starts_is_looked_for_before_it_is_started(folder: Pa
         check_needed_here(read(folder, f"{HEAD}programs: {{nav: {{command: {command}}}}}\n"))
 
 
-def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path):
-    deployment = read_deploy_file(root / "deploy" / "armadillo-hotplug.yaml")
+def test_the_hot_plug_file_leaves_out_the_sensing_skills():
+    deployment = read_deploy_file(DEPLOY / "armadillo-hotplug.yaml")
     assert deployment.file.leave_out == ("observe_holding", "observe_arm_outstretched")
 
 

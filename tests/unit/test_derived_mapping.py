@@ -3,6 +3,7 @@ import json
 import pytest
 from mapping_runs import fields, loaded, observed
 from mappings import mapping_text
+from projects import files_project
 from texts import encoded
 
 from aos_deploy.adapter_templates import adapter_files
@@ -179,9 +180,7 @@ def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path):
     written = (
         mapping_text("seen", "unseen", project="barn", skill="look").replace("__input.answer", code).encode()
     )
-    own = load_files({**files, "look.am": written}).project
-    assert own is not None
-    made = adapter_files("python", own, "barn")
+    made = adapter_files("python", files_project({**files, "look.am": written}), "barn")
     assert "return {'echoes': [], 'pose': {'at': {'x': ''}}}" in made["barn_robot.py"]
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)

@@ -3,11 +3,9 @@ import re
 import subprocess
 from collections.abc import Iterator
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
+from places import ROOT
 
 FRAGMENTS = re.compile(
     r"(about|after|as|at|back|before|below|beside|between|by|for|from|how|in|kept|not|of|on|out|that|to|told"

@@ -1,13 +1,13 @@
 import json
-from pathlib import Path
 from typing import Any
 
+from places import ROOT
+from projects import files_project, text_project
 from texts import encoded
 
-from aos_language.load import load_files
 from aos_protocol.documents import LocalSource, Project
 
-FOLDER = Path(__file__).parents[2] / "docs" / "examples" / "kettle-json"
+FOLDER = ROOT / "docs" / "examples" / "kettle-json"
 ENVIRONMENT, LOW_LEVEL, SKILL, MAPPING = (
     json.loads((FOLDER / f"{name}.json").read_text())
     for name in ("environment", "environment glue", "pour", "pour glue")
@@ -31,10 +31,7 @@ MAPPING["LocalVariablesInitialization"][3]["IsHeavyVariable"] = True
 
 
 def project_of(*documents: dict[str, Any]) -> Project:
-    files = {f"{i} document.json": json.dumps(document).encode() for i, document in enumerate(documents)}
-    loaded = load_files(files)
-    assert loaded.project is not None, loaded.diagnostics
-    return loaded.project
+    return text_project({f"{i} document.json": json.dumps(each) for i, each in enumerate(documents)})
 
 
 def test_every_construct_of_a_json_environment_is_read():
@@ -130,9 +127,7 @@ def test_a_text_response_and_parameters_by_code_are_read_from_both_dialects():
     environment = {k: v for k, v in ENVIRONMENT.items() if k != "ExtrinsicChangesDynamicModel"}
     documents = (environment, LOW_LEVEL, skill, mapping)
     files = {f"{i}.json": json.dumps(document).encode() for i, document in enumerate(documents)}
-    loaded = load_files(files | encoded(sdl))
-    assert loaded.project is not None, loaded.diagnostics
-    look, see = loaded.project.skills
+    look, see = files_project(files | encoded(sdl)).skills
     for read_skill in (look, see):
         assert read_skill.mapping.response_variable == "text"
         assert (read_skill.mapping.activation.kind, read_skill.mapping.activation.max_duration_s) == (

@@ -1,8 +1,8 @@
-from pathlib import Path
-
 import pytest
 from mistakes import Verdict, judged, mistakes
-from scripted_models import bundle_project, scripted
+from places import DATA
+from projects import bundle_project
+from scripted_models import scripted
 
 RIGHT_COLUMNS = 0.95
 
@@ -25,6 +25,6 @@ def test_nearly_every_mistake_is_told_in_the_right_column(verdicts: list[Verdict
 
 
 @pytest.mark.parametrize("bundle", ["doors", "fancy", "fetch", "lamp", "tiger"])
-def test_the_bundles_emit_compile_and_run(root: Path, bundle):
-    model = scripted(bundle_project(root / "tests/data/bundles" / bundle))
+def test_the_bundles_emit_compile_and_run(bundle):
+    model = scripted(bundle_project(DATA / "bundles" / bundle))
     assert model.walk(1000)["steps"] == 1000

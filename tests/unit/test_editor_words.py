@@ -1,10 +1,10 @@
 import json
 import re
 import shutil
-from pathlib import Path
 from typing import Any
 
 import pytest
+from places import BUNDLES, ROOT
 
 from aos_editor.checking import check_folder
 from aos_editor.documents import meaning_at, outline, proposals_at
@@ -32,9 +32,9 @@ def test_a_part_is_explained_as_part_of_its_section():
     assert meaning_at("p.ef", text, 4, 7) is None
 
 
-def test_what_lies_beside_the_documents_is_told_at_none_of_them(bundles: Path, tmp_path):
+def test_what_lies_beside_the_documents_is_told_at_none_of_them(tmp_path):
     folder = tmp_path / "armadillo"
-    shutil.copytree(bundles / "armadillo-finer", folder)
+    shutil.copytree(BUNDLES / "armadillo-finer", folder)
     (folder / "runs").mkdir()
     (folder / "up.yaml").write_text("aos: 1\n")
     checked = check_folder(folder, {"navigate.sd": (folder / "navigate.sd").read_text()})
@@ -70,8 +70,8 @@ def test_files_that_are_no_sdl_have_no_words():
 
 
 @pytest.fixture(scope="module")
-def colours(root: Path) -> dict[str, Any]:
-    path = root / "docs/examples/vscode/syntaxes/aos.tmLanguage.json"
+def colours() -> dict[str, Any]:
+    path = ROOT / "docs/examples/vscode/syntaxes/aos.tmLanguage.json"
     grammar: dict[str, Any] = json.loads(path.read_text())
     return grammar
 

@@ -1,7 +1,9 @@
 from pathlib import Path
 
 import pytest
-from scripted_models import ScriptedModel, bundle_project, scripted
+from places import BUNDLES
+from projects import bundle_project
+from scripted_models import ScriptedModel, scripted
 
 ACTIONS = {
     "armadillo-finer": 7,
@@ -26,8 +28,8 @@ def test_every_bundle_emits_compiles_and_runs(corpus: Path, bundle):
     assert model.walk(1000)["steps"] == 1000
 
 
-def test_our_armadillo_moves_as_the_original_does(corpus: Path, bundles: Path):
-    ours = model_of(bundles / "armadillo-finer")
+def test_our_armadillo_moves_as_the_original_does(corpus: Path):
+    ours = model_of(BUNDLES / "armadillo-finer")
     original = model_of(corpus / "armadillo-finer")
     mine = ours.play("pick|3", "navigate(destination=easy_table)|1", "pick|1", "serve|1")
     theirs = original.play(

@@ -2,7 +2,8 @@ from typing import Any
 
 import pytest
 from mappings import mapping_text
-from scripted_models import ScriptedModel, json_text, scripted, text_project
+from projects import text_project
+from scripted_models import ScriptedModel, json_text, scripted
 
 
 def skill_text(name: str, code: str | list[dict[str, Any]], **sections: Any) -> str:

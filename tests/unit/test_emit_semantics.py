@@ -1,6 +1,7 @@
 import pytest
 from mappings import mapping_text
-from scripted_models import ScriptedModel, json_text, scripted, text_project
+from projects import text_project
+from scripted_models import ScriptedModel, json_text, scripted
 
 SWITCH = {
     "home.ef": """project: test

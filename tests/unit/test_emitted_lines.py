@@ -1,9 +1,10 @@
 import re
-from pathlib import Path
 
 import pytest
 from mappings import mapping_text
-from scripted_models import bundle_project, lowered, text_project
+from places import BUNDLES
+from projects import bundle_project, text_project
+from scripted_models import lowered
 
 from aos_solver.emission.emit import EmittedModel
 from aos_solver.emission.lowering.lower import lower
@@ -23,14 +24,14 @@ def own_lines(emitted: EmittedModel) -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["armadillo-finer", "bench/tag", "bench/rocksample-7-8", "bench/pocman"])
-def test_lines_are_narrow_and_names_are_none_of_the_compilers(name, bundles: Path):
-    own = own_lines(lowered(bundle_project(bundles / name))[0])
+def test_lines_are_narrow_and_names_are_none_of_the_compilers(name):
+    own = own_lines(lowered(bundle_project(BUNDLES / name))[0])
     assert [line for line in own if len(line) > MAX_COLUMNS] == []
     reserved = {found for line in own for found in re.findall(r"(?<!\w)_[_A-Z]\w*|\b[A-Za-z]\w*__\w+", line)}
     assert {name for name in reserved if not LANGUAGE.fullmatch(name)} == set()
 
 
-def test_long_lists_go_on_in_the_next_line(bundles: Path):
+def test_long_lists_go_on_in_the_next_line():
     values = ", ".join(f"place_number_{number}" for number in range(40))
     home = (
         f"project: test\nhorizon: 3\ndefine_type: Place\nenum_members: {values}\nstate_variable: Place at\n"

@@ -2,7 +2,8 @@ import msgspec
 import pytest
 from dialects import say_the_same
 from mappings import mapping_text
-from scripted_models import ScriptedModel, scripted, text_project
+from projects import text_project
+from scripted_models import ScriptedModel, scripted
 from texts import encoded
 
 from aos_language.load import load_files

@@ -4,6 +4,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from places import ROOT
 from test_reading_rules import REFUSED, WARNED, WHOLE_FILES
 
 from aos_deploy.runs.directory import RunDirectory
@@ -46,12 +47,12 @@ def test_runs_that_cannot_be_written_are_told(tmp_path):
     assert caught.value.code == "AOS805"
 
 
-def test_no_code_of_the_table_is_left_without_a_provocation(root: Path):
+def test_no_code_of_the_table_is_left_without_a_provocation():
     provoked = {rule.code for rule in (*WARNED, *REFUSED)}
     provoked |= {whole.code for whole in WHOLE_FILES} | {"AOS120", "AOS302", "AOS603", "AOS805"}
     this_file = Path(__file__)
     files = ("**/*.py", "data/mistakes.toml", "golden/documents/*.txt")
-    for path in (path for pattern in files for path in (root / "tests").glob(pattern)):
+    for path in (path for pattern in files for path in (ROOT / "tests").glob(pattern)):
         if path != this_file:
             provoked |= set(re.findall(r"\bAOS\d{3}\b", path.read_text(encoding="utf-8")))
     assert sorted(CODES.keys() - provoked) == []

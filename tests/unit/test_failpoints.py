@@ -1,9 +1,9 @@
 import signal
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from processes import finished
 
 from aos_runtime.disk.journal import Journal
 from aos_runtime.failpoints import EXIT_STATUS
@@ -27,14 +27,7 @@ print("went on")
 def appended(folder: Path, armed: str) -> tuple[int, str, int]:
     """The exit status, the output and the rows of a process that appends three times."""
     environment = {"AOS_FAILPOINT": armed, "AOS_FAILPOINT_DONE": str(folder / "done")}
-    ran = subprocess.run(
-        [sys.executable, "-c", APPENDS],
-        cwd=folder,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    ran = finished(sys.executable, "-c", APPENDS, cwd=folder, env=environment)
     with Journal.read(folder / "journal.db") as journal:
         return ran.returncode, ran.stdout, journal.last
 

@@ -1,10 +1,10 @@
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import msgspec
 import pytest
 from decision_records import decision_record
+from places import ROOT
 
 from aos_deploy.history_check import check
 from aos_deploy.history_check.files import check_run
@@ -389,8 +389,8 @@ def test_each_rule_is_broken_by_some_history():
     assert set(BREAKS.values()) == RULES.keys() - by_an_engine
 
 
-def test_the_page_has_each_rule(root: Path):
-    page = (root / "docs" / "reliability.md").read_text()
+def test_the_page_has_each_rule():
+    page = (ROOT / "docs" / "reliability.md").read_text()
     assert all(f"| `{name}` | {sentence} |" in page for name, sentence in RULES.items())
 
 

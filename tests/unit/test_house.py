@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("protocol", "services", "deploy", "tests", "docs")
 MOST_LINES = 60
 MOST_PARAMETERS = 7

@@ -4,6 +4,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from decision_records import decision_record
+from places import DEPLOY
 
 from aos_deploy.deployment.reading import read_deploy_file, without_a_robot
 from aos_deploy.history_check.files import check_run
@@ -104,7 +105,7 @@ def rows_read(run: Path) -> list[JournalRow] | None:
         return None if error.code == "AOS702" else []
 
 
-def test_who_takes_up_a_run_in_a_simulated_world_is_told_that_the_world_begins_anew(root: Path):
-    text = worlds_text(read_deploy_file(root / "deploy" / "armadillo.yaml"))
+def test_who_takes_up_a_run_in_a_simulated_world_is_told_that_the_world_begins_anew():
+    text = worlds_text(read_deploy_file(DEPLOY / "armadillo.yaml"))
     assert text.startswith("the world of pybullet begins anew")
-    assert worlds_text(without_a_robot(read_deploy_file(root / "deploy" / "armadillo.yaml"))) == ""
+    assert worlds_text(without_a_robot(read_deploy_file(DEPLOY / "armadillo.yaml"))) == ""

@@ -1,9 +1,9 @@
 from pathlib import Path
 from typing import Any
 
-from mapping_documents import emitted, project_in
+from mapping_documents import emitted
 from mappings import mapping_text
-from scripted_models import text_project
+from projects import bundle_project, text_project
 from texts import encoded
 
 from aos_language.load import load_files
@@ -107,7 +107,7 @@ def test_a_field_that_a_low_level_type_has_not_is_a_warning_where_it_is_set():
 
 
 def test_the_original_armadillos_places_have_their_constants(corpus: Path):
-    constants = default_constants(project_in(corpus / "armadillo-finer"))
+    constants = default_constants(bundle_project(corpus / "armadillo-finer"))
     assert constants["locationCorridor.actual_location"] == "___locationCorridor"
     assert len(constants) == 3
 

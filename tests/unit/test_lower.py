@@ -1,7 +1,8 @@
 import pytest
 from mappings import mapping_of_model, mapping_text
 from msgspec.structs import replace
-from scripted_models import json_text, text_project
+from projects import text_project
+from scripted_models import json_text
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project

@@ -1,9 +1,9 @@
 import re
-from pathlib import Path
 
 import pytest
 from acting import acting
-from scripted_models import bundle_project
+from places import BUNDLES
+from projects import bundle_project
 
 from aos_protocol.documents import Project
 from aos_solver.emission.lowering.relevance import (
@@ -116,8 +116,8 @@ def test_code_that_cannot_be_read_makes_everything_matter():
     assert idle("state__.count = = 1;") == set()
 
 
-def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Path):
-    project = bundle_project(bundles / "bench" / "rocksample-7-8")
+def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody():
+    project = bundle_project(BUNDLES / "bench" / "rocksample-7-8")
     assert {"worth", "unsampled", "promising", "looking_good"} <= irrelevant_variables(project)
     assert not {"x", "y", "is_good", "has_left"} & irrelevant_variables(project)
 

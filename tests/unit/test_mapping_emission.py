@@ -1,12 +1,13 @@
 import ast
-from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mapping_documents import emitted, mapping_of, project_in, skill_of
+from mapping_documents import emitted, mapping_of, skill_of
 from mapping_runs import HEAD, emitted_with
 from msgspec.structs import replace
+from places import BUNDLES, ROOT
+from projects import bundle_project
 
 from aos_language.findings import Findings
 from aos_language.load import load_files, read_bundle_files
@@ -112,10 +113,10 @@ def test_document_text_never_becomes_template_or_comment_source():
 # --- places ---
 
 
-def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path):
-    project = project_in(bundles / "armadillo-finer")
+def test_each_line_of_a_snippet_knows_its_line_in_a_text_document():
+    project = bundle_project(BUNDLES / "armadillo-finer")
     mapping = next(generated for generated in emit_project(project) if generated.skill == "observe_holding")
-    source = (bundles / "armadillo-finer" / "observe_holding.am").read_text().splitlines()
+    source = (BUNDLES / "armadillo-finer" / "observe_holding.am").read_text().splitlines()
     lines = mapping.python.splitlines()
     generated = lines.index("    return min(__input.left_force_n, __input.right_force_n)")
     span = mapping.locate(generated + 1, lines[generated].index("min") + 1)
@@ -124,7 +125,7 @@ def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path)
 
 
 def kettle(old: bytes, new: bytes) -> dict[str, bytes]:
-    files = read_bundle_files(Path(__file__).parents[2] / "docs" / "examples" / "kettle-json")[0]
+    files = read_bundle_files(ROOT / "docs" / "examples" / "kettle-json")[0]
     assert old in files[GLUE]
     return files | {GLUE: files[GLUE].replace(old, new)}
 

@@ -6,8 +6,10 @@ The module runs in this process; tests/process runs it where it belongs.
 from pathlib import Path
 
 import pytest
-from mapping_documents import emitted, project_in
+from mapping_documents import emitted
 from mapping_runs import HEAD, fields, loaded, observed, running
+from places import BUNDLES, ROOT
+from projects import bundle_project
 
 from aos_middleware.emission.python_code import PythonCode, read_body
 from aos_middleware.mappings.revisions import emit_project
@@ -17,15 +19,15 @@ from aos_protocol.documents import LowLevelConstant, LowLevelDocument, Snippet
 
 
 def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
-    project = project_in(corpus / bundle)
+    project = bundle_project(corpus / bundle)
     return loaded(next(generated for generated in emit_project(project) if generated.skill == skill))
 
 
 # --- sources of local variables ---
 
 
-def test_parameters_reach_the_call_through_dotted_paths(bundles: Path):
-    project = project_in(bundles / "armadillo-finer")
+def test_parameters_reach_the_call_through_dotted_paths():
+    project = bundle_project(BUNDLES / "armadillo-finer")
     navigate = next(mapping for mapping in emit_project(project) if mapping.skill == "navigate")
     parameters = {"destination": {"place": "EasyTable", "x": 0.5, "y": 2.0, "yaw": 1.57}}
     assert fields(loaded(navigate), parameters) == {"x": 0.5, "y": 2.0, "yaw": 1.57}
@@ -228,8 +230,8 @@ board = __input.state
 # --- imports and low-level values ---
 
 
-def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value(root: Path):
-    (emission,) = emit_project(project_in(root / "docs" / "examples" / "kettle-json"))
+def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value():
+    (emission,) = emit_project(bundle_project(ROOT / "docs" / "examples" / "kettle-json"))
     assert fields(loaded(emission), {"cup": {"handle": "___left_handle"}}) == {"x": 0.3}
 
 

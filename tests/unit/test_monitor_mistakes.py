@@ -1,7 +1,7 @@
-from pathlib import Path
-
 import pytest
-from dialects import project_of, say_the_same
+from dialects import say_the_same
+from places import DATA
+from projects import files_project
 from texts import encoded, write_texts
 
 from aos_editor.symbols import read_bundle
@@ -9,10 +9,7 @@ from aos_language.load import load_files
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lowering.lower import lower
 
-BATTERY = {
-    path.name: path.read_text()
-    for path in sorted((Path(__file__).parents[1] / "data" / "bundles" / "battery").iterdir())
-}
+BATTERY = {path.name: path.read_text() for path in sorted((DATA / "bundles" / "battery").iterdir())}
 RULE = "response_rule: level < 0.2"
 TOPIC = "topic: /battery\nmessage_type: Battery\n"
 
@@ -131,6 +128,6 @@ def test_a_model_is_another_one_with_other_responses_of_a_monitor_and_without_it
 
 
 def emitted(files: dict[str, str]) -> str:
-    program, diagnostics = lower(project_of(encoded(files)))
+    program, diagnostics = lower(files_project(encoded(files)))
     assert program is not None, diagnostics
     return emit(program).digest

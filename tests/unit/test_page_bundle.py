@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from page_sources import installed_sources
+from places import ROOT
 from processes import COMMAND_S
 from starlette.requests import Request
 
@@ -23,42 +24,42 @@ def files_in(folder: Path) -> dict[str, bytes]:
     return {path.stem: gzip.decompress(path.read_bytes()) for path in folder.glob("*.gz")}
 
 
-def test_scripts_are_small_when_compressed(root: Path):
-    scripts = list((root / MADE).glob("*.js.gz"))
+def test_scripts_are_small_when_compressed():
+    scripts = list((ROOT / MADE).glob("*.js.gz"))
     assert scripts
     assert sum(script.stat().st_size for script in scripts) <= MOST_SCRIPT_BYTES
 
 
-def test_licences_of_what_is_bundled_come_along(root: Path):
-    text = files_in(root / MADE)["licences.txt"].decode()
+def test_licences_of_what_is_bundled_come_along():
+    text = files_in(ROOT / MADE)["licences.txt"].decode()
     for library in ("preact", "htm", "@preact/signals"):
         assert f"\n{library} " in f"\n{text}"
 
 
-def test_the_page_asks_no_other_server(root: Path):
-    files = files_in(root / MADE)
+def test_the_page_asks_no_other_server():
+    files = files_in(ROOT / MADE)
     for name in ("index.html", "page.js", "page.css"):
         text = files[name].decode()
         named = {word for word in text.split('"') if word.startswith(("http://", "https://", "//"))}
         assert not {address for address in named if not address.startswith("http://www.w3.org/")}, name
 
 
-def test_what_its_sources_make_is_what_comes_with_aos(root: Path, tmp_path, cache_dir: Path):
-    libraries = installed_sources(root, cache_dir) / "node_modules"
+def test_what_its_sources_make_is_what_comes_with_aos(tmp_path, cache_dir: Path):
+    libraries = installed_sources(cache_dir) / "node_modules"
     sources = tmp_path / "page"
-    shutil.copytree(root / SOURCES, sources, ignore=shutil.ignore_patterns("node_modules"))
+    shutil.copytree(ROOT / SOURCES, sources, ignore=shutil.ignore_patterns("node_modules"))
     (sources / "node_modules").symlink_to(libraries)
     made = tmp_path / "made"
     subprocess.run(["node", "build.mjs", made], cwd=sources, check=True, timeout=COMMAND_S)
-    kept, anew = files_in(root / MADE), files_in(made)
+    kept, anew = files_in(ROOT / MADE), files_in(made)
     assert kept.keys() == anew.keys()
     other = [name for name in kept if kept[name] != anew[name]]
     assert other == [], "run `make page`, and commit what it makes"
 
 
 @pytest.mark.parametrize("name", ["page.js", "page.css", "licences.txt", "index.html"])
-def test_a_browser_gets_a_file_as_it_understands_it(name, root: Path):
-    files = files_in(root / MADE)
+def test_a_browser_gets_a_file_as_it_understands_it(name):
+    files = files_in(ROOT / MADE)
     (route,) = (each for each in page_routes() if each.path == ("/" if name == "index.html" else f"/{name}"))
     packed, plain = (
         asyncio.run(route.endpoint(Request({"type": "http", "headers": [(b"accept-encoding", encoding)]})))

@@ -4,8 +4,8 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 DIARIES = ("CHANGELOG.md", "docs/lab/", "docs/decisions/", "docs/experiments/")
 """Pages whose measurements, decisions and reports belong to a date."""

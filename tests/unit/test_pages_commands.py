@@ -1,14 +1,13 @@
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import typer
+from places import ROOT
 from typer.core import TyperCommand, TyperGroup
 
 from aos_deploy.cli import aos_app
 
-ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
     *ROOT.glob("*.md"),
     *(page for page in (ROOT / "docs").rglob("*.md") if "experiments" not in page.parts),

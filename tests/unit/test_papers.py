@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 import pytest
 from packaging.requirements import Requirement
+from places import DEPLOY, ROOT
 
 from aos_deploy.deployment.parts import BusPart, DeployFile, MissionPart, SolverPart
 from aos_protocol import __version__, keys, messages
@@ -27,8 +28,8 @@ def requirements(lock: Path) -> dict[str, list[str]]:
     }
 
 
-def test_readme_shows_exactly_two_commands_on_its_first_screen(root: Path):
-    first_screen = (root / "README.md").read_text(encoding="utf-8").splitlines()[:FIRST_SCREEN_LINES]
+def test_readme_shows_exactly_two_commands_on_its_first_screen():
+    first_screen = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()[:FIRST_SCREEN_LINES]
     commands = [line for line in first_screen if line.startswith("./setup.sh")]
     assert commands == [
         "./setup.sh && .venv/bin/aos-up deploy/armadillo.yaml",
@@ -37,16 +38,16 @@ def test_readme_shows_exactly_two_commands_on_its_first_screen(root: Path):
 
 
 @pytest.mark.parametrize("number", [1, 2])
-def test_scripts_find_each_command_in_readme(root: Path, number):
-    script = [str(root / "tests" / "readme_command.sh"), str(number)]
+def test_scripts_find_each_command_in_readme(number):
+    script = [str(ROOT / "tests" / "readme_command.sh"), str(number)]
     found = subprocess.run(script, capture_output=True, text=True, check=True).stdout
     assert found.startswith("./setup.sh")
     assert found.count("\n") == 1
 
 
 @pytest.mark.parametrize("script", ["setup.sh", "tests/check.sh", "tests/newcomer.sh", ".ci/run"])
-def test_scripts_can_be_run(root: Path, script):
-    assert (root / script).stat().st_mode & 0o111
+def test_scripts_can_be_run(script):
+    assert (ROOT / script).stat().st_mode & 0o111
 
 
 def test_the_table_of_keys_holds_every_key_that_can_be_built():
@@ -82,21 +83,21 @@ def test_every_message_in_the_table_of_keys_exists():
         assert issubclass(getattr(messages, name), messages.Message)
 
 
-def test_every_error_code_that_is_used_has_a_meaning(root: Path):
+def test_every_error_code_that_is_used_has_a_meaning():
     sources = [
-        *(root / "protocol").rglob("*.py"),
-        *(root / "services").rglob("*.?pp"),
-        *(root / "deploy").rglob("*.py"),
+        *(ROOT / "protocol").rglob("*.py"),
+        *(ROOT / "services").rglob("*.?pp"),
+        *(DEPLOY).rglob("*.py"),
     ]
-    sources += (root / "services").rglob("*.py")
+    sources += (ROOT / "services").rglob("*.py")
     used = {
         code for path in sources for code in re.findall(r"\bAOS\d{3}\b", path.read_text(encoding="utf-8"))
     }
     assert used <= CODES.keys()
 
 
-def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch):
-    monkeypatch.syspath_prepend(root / "docs")
+def test_a_limit_that_has_left_the_sources_is_an_error(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "docs")
     table = importlib.import_module("limits_table")
     assert table.value_at("aos_runtime.bus.config.LEASE_S") == 2.0
     assert table.value_at("planning/listed/state_lister.hpp:states") == 400_000
@@ -106,8 +107,8 @@ def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch):
 
 
 @pytest.mark.parametrize("part", [DeployFile, BusPart, MissionPart, SolverPart, SkillRule])
-def test_the_page_of_the_deploy_file_has_every_key_with_its_default(root: Path, part):
-    page = (root / "docs" / "deploy-file.md").read_text(encoding="utf-8")
+def test_the_page_of_the_deploy_file_has_every_key_with_its_default(part):
+    page = (ROOT / "docs" / "deploy-file.md").read_text(encoding="utf-8")
     rows = [line for line in page.splitlines() if line.startswith(("| ", "## "))]
     for field in msgspec.structs.fields(part):
         row = next(line for line in rows if f"`{field.name}`" in line)
@@ -116,23 +117,23 @@ def test_the_page_of_the_deploy_file_has_every_key_with_its_default(root: Path, 
             assert f"{default:g}" in row if isinstance(default, float) else str(default) in row
 
 
-def test_the_changelog_knows_the_version(root: Path):
-    assert __version__ in (root / "CHANGELOG.md").read_text(encoding="utf-8")
+def test_the_changelog_knows_the_version():
+    assert __version__ in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", LOCKS)
-def test_locks_pin_by_hash_and_hold_no_address(root: Path, name):
-    lock = root / "deploy" / "lock" / f"{name}.txt"
+def test_locks_pin_by_hash_and_hold_no_address(name):
+    lock = DEPLOY / "lock" / f"{name}.txt"
     assert "://" not in lock.read_text(encoding="utf-8")
     for package, hashes in requirements(lock).items():
         assert hashes, f"{package} has no hash"
 
 
-def test_locks_hold_every_dependency(root: Path):
-    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+def test_locks_hold_every_dependency():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
     runtime, dev, compiler = (
-        pins(root / "deploy" / "lock" / f"{name}.txt") for name in ("runtime", "dev", "compiler")
+        pins(DEPLOY / "lock" / f"{name}.txt") for name in ("runtime", "dev", "compiler")
     )
     for pinned, lines in (
         (runtime, [*project["dependencies"], *extras["sim"], *extras["page"]]),
@@ -144,8 +145,8 @@ def test_locks_hold_every_dependency(root: Path):
             assert pinned[canonical(wanted.name)] in wanted.specifier, line
 
 
-def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path):
-    runtime, dev = (pins(root / "deploy" / "lock" / f"{name}.txt") for name in ("runtime", "dev"))
+def test_the_development_lock_pins_only_what_the_runtime_one_does_not():
+    runtime, dev = (pins(DEPLOY / "lock" / f"{name}.txt") for name in ("runtime", "dev"))
     assert runtime.keys().isdisjoint(dev)
 
 
@@ -163,21 +164,21 @@ def test_the_development_lock_pins_only_what_the_runtime_one_does_not(root: Path
         ("https://a.b/numpy-2.4.6-cp311-cp311-manylinux_2_31_riscv64.whl", False),
     ],
 )
-def test_locks_have_the_wheels_of_the_machines_and_pythons_that_aos_runs_with(root: Path, wheel, can_run):
-    assert lock_files(root).can_run(wheel) is can_run
+def test_locks_have_the_wheels_of_the_machines_and_pythons_that_aos_runs_with(wheel, can_run):
+    assert lock_files().can_run(wheel) is can_run
 
 
-def test_locks_have_sources_only_of_what_may_have_to_be_built(root: Path):
+def test_locks_have_sources_only_of_what_may_have_to_be_built():
     def hashed(*wheels: str) -> list[str]:
         files = [{"url": f"https://a.b/{name}", "hashes": {"sha256": name}} for name in (*wheels, "x.tar.gz")]
-        return list(lock_files(root).digests({"wheels": files[:-1], "sdist": files[-1]}))
+        return list(lock_files().digests({"wheels": files[:-1], "sdist": files[-1]}))
 
     assert hashed(pure := "x-1-py3-none-any.whl") == [pure]
     assert hashed(built := "x-1-cp311-cp311-manylinux_2_17_x86_64.whl") == [built, "x.tar.gz"]
 
 
-def lock_files(root: Path) -> Any:
-    source = importlib.util.spec_from_file_location("lock_files", root / "deploy" / "lock_files.py")
+def lock_files() -> Any:
+    source = importlib.util.spec_from_file_location("lock_files", DEPLOY / "lock_files.py")
     assert source is not None
     assert source.loader is not None
     module = importlib.util.module_from_spec(source)

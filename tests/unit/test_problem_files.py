@@ -1,9 +1,9 @@
 from collections.abc import Callable
-from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
+from places import PROBLEMS, ROOT
 
 from aos_lab.formats.problem_files import read_problem
 from aos_lab.formats.problem_writers import write_problem
@@ -27,8 +27,8 @@ def joint(model: ExplicitModel) -> Floats:
     return dense
 
 
-def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read(problems: Path):
-    model = read_problem(problems / "tiger.pomdp")
+def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read():
+    model = read_problem(PROBLEMS / "tiger.pomdp")
     assert model.states == ("left", "right")
     assert model.discount == 0.95
     np.testing.assert_allclose(model.rewards, [[-1, -100, 10], [-1, 10, -100]])
@@ -37,8 +37,8 @@ def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read(problems: Path
     np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5])
 
 
-def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read(problems: Path):
-    model = read_problem(problems / "costs.pomdp")
+def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read():
+    model = read_problem(PROBLEMS / "costs.pomdp")
     np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5, 0])
     # From s0 `go` reaches s1 in 3 of 4 cases, and from s1 always s2, where it is light for sure.
     np.testing.assert_allclose(model.rewards, [[-1, -1.5], [-1, -6], [-8, 0]])
@@ -46,8 +46,8 @@ def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read(proble
     np.testing.assert_allclose(joint(model)[1, 1, 2], [0, 1])
 
 
-def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path):
-    model = read_problem(problems / "rover.pomdpx")
+def test_a_factored_file_becomes_the_states_that_can_be_reached():
+    model = read_problem(PROBLEMS / "rover.pomdpx")
     assert model.states == ("home,s0", "home,s1", "rock,s0", "rock,s1", "away,s0", "away,s1")
     assert model.actions == ("look", "move", "take")
     assert "rock,bright" in model.observations
@@ -64,9 +64,9 @@ def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path):
     np.testing.assert_allclose(model.rewards[2:4, 2], [-10, 10])
 
 
-def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path):
+def test_a_persistent_variable_keeps_its_own_value(tmp_path):
     """Also where an edge has named that value, and beside a parent that has the same values."""
-    text = (problems / "rover.pomdpx").read_text()
+    text = (PROBLEMS / "rover.pomdpx").read_text()
     kept = '<SubDAG type="persistent" var="{}"/>'
     diagram = f'<Parameter type="DD"><DAG>{kept.format("twin_1")}</DAG></Parameter>'
     start = "<Parameter><Entry><Instance>*</Instance><ProbTable>uniform</ProbTable></Entry></Parameter>"
@@ -84,7 +84,7 @@ def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path):
     for old, new in parts.items():
         text = replaced(old, new)(text)
     (tmp_path / "twin.pomdpx").write_text(text)
-    model, plain = read_problem(tmp_path / "twin.pomdpx"), read_problem(problems / "rover.pomdpx")
+    model, plain = read_problem(tmp_path / "twin.pomdpx"), read_problem(PROBLEMS / "rover.pomdpx")
     twins = [state.rsplit(",", 1) for state in model.states]
     for row in range(len(model.outcomes)):
         state, action = divmod(row, model.size.actions)
@@ -98,8 +98,8 @@ def test_a_persistent_variable_keeps_its_own_value(problems: Path, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["tiger.pomdp", "costs.pomdp", "rover.pomdpx"])
-def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path, name):
-    model = read_problem(problems / name)
+def test_a_model_reads_back_as_it_was_written(tmp_path, name):
+    model = read_problem(PROBLEMS / name)
     endings = (".pomdpx",) if len(model.starts) > 1 else (".pomdp", ".pomdpx")
     for ending in endings:
         write_problem(model, tmp_path / f"again{ending}")
@@ -113,8 +113,8 @@ def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path, name):
         assert sorted(start.weight for start in again.starts) == [start.weight for start in model.starts]
 
 
-def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tmp_path):
-    model = read_problem(problems / "rover.pomdpx")
+def test_what_only_one_format_can_say_is_refused_by_the_other(tmp_path):
+    model = read_problem(PROBLEMS / "rover.pomdpx")
     with pytest.raises(PlanningError, match=r"told at the start .* which \.pomdp cannot say") as caught:
         write_problem(model, tmp_path / "rover.pomdp")
     assert caught.value.code == "AOS320"
@@ -189,9 +189,9 @@ def replaced(old: str, new: str) -> Callable[[str], str]:
         ("rover.pomdpx", replaced("<Instance>- -<", "<Instance>- - -<"), "58:30 AOS106 the Instance has 3"),
     ],
 )
-def test_a_mistake_is_told_at_its_place(problems: Path, tmp_path, name, change, finding):
+def test_a_mistake_is_told_at_its_place(tmp_path, name, change, finding):
     broken = tmp_path / name
-    broken.write_text(change((problems / name).read_text()))
+    broken.write_text(change((PROBLEMS / name).read_text()))
     with pytest.raises(DocumentError) as caught:
         read_problem(broken)
     first = caught.value.diagnostics[0]
@@ -226,38 +226,36 @@ def test_one_mistake_of_a_whole_statement_is_told_once(problems: Path, tmp_path,
         ("T: 0 even", "even", "Write numbers, or one of uniform, identity, reset"),
     ],
 )
-def test_a_word_in_place_of_probabilities_is_told_what_it_was_meant_to_be(
-    problems: Path, tmp_path, rule, word, hint
-):
+def test_a_word_in_place_of_probabilities_is_told_what_it_was_meant_to_be(tmp_path, rule, word, hint):
     broken = tmp_path / "tiger.pomdp"
-    broken.write_text(f"{(problems / 'tiger.pomdp').read_text()}\n{rule}\n")
+    broken.write_text(f"{(PROBLEMS / 'tiger.pomdp').read_text()}\n{rule}\n")
     with pytest.raises(DocumentError) as caught:
         read_problem(broken)
     [first] = [one for one in caught.value.diagnostics if one.code == "AOS106"]
     assert (first.message, first.hint) == (f"{word} stands for no probabilities here", hint)
 
 
-def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(problems: Path, tmp_path):
+def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(tmp_path):
     broken = tmp_path / "rover.pomdpx"
-    text = (problems / "rover.pomdpx").read_text()
+    text = (PROBLEMS / "rover.pomdpx").read_text()
     broken.write_text(text.replace("<Terminal>0.8</Terminal>", "<Terminal>0.7</Terminal>"))
     with pytest.raises(DocumentError, match=r":31: .* of place_1 sum to 0.9 for do=move, place_0=home"):
         read_problem(broken)
 
 
-def test_too_many_states_are_told(problems: Path, tmp_path):
+def test_too_many_states_are_told(tmp_path):
     (tmp_path / "wide.pomdpx").write_text(
-        (problems / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>999999<")
+        (PROBLEMS / "rover.pomdpx").read_text().replace("<NumValues>2<", "<NumValues>999999<")
     )
     with pytest.raises(ModelError, match="too large once it is written out"):
         read_problem(tmp_path / "wide.pomdpx")
     with pytest.raises(ModelError, match="more than 3 states") as caught:
-        read_problem(problems / "rover.pomdpx", max_states=3)
+        read_problem(PROBLEMS / "rover.pomdpx", max_states=3)
     assert caught.value.code == "AOS220"
 
 
-def test_the_published_problems_have_their_known_sizes(root: Path):
-    folder = root.parent / "shared" / "problems"
+def test_the_published_problems_have_their_known_sizes():
+    folder = ROOT.parent / "shared" / "problems"
     if not folder.is_dir():
         pytest.skip("needs the published problem files in ../shared/problems, not part of this project")
     sizes = {name: read_problem(folder / f"{name}.pomdpx").size for name in ("Tiger", "TagAvoid", "Hallway2")}

@@ -6,17 +6,17 @@ no findings.
 """
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 from marked_change import changed
+from places import DATA
 from texts import encoded
 
 from aos_language.load import LoadedBundle, load_bundle, load_files
 from aos_protocol.diagnostics import Severity, Span
 
-BUNDLES = Path(__file__).parents[1] / "data" / "bundles"
+BUNDLES = DATA / "bundles"
 JSON = {path.name: path.read_text() for path in (BUNDLES / "rooms-json").iterdir()}
 SDL = {path.name: path.read_text() for path in (BUNDLES / "rooms-sdl").iterdir()}
 

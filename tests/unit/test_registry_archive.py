@@ -5,6 +5,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from places import BUNDLES
 
 from aos_language.archive import read_archive
 from aos_language.load import load_bundle, read_bundle_files
@@ -39,9 +40,9 @@ def refusal(path: Path) -> str:
 
 @pytest.mark.parametrize("form", ["tar", "gztar", "bztar", "xztar", "zip"])
 @pytest.mark.parametrize("is_folder_packed", [True, False])
-def test_a_packed_bundle_is_the_same_as_its_directory(bundles: Path, tmp_path, form, is_folder_packed):
-    bundle = bundles / "armadillo-finer"
-    base = {"root_dir": bundles, "base_dir": bundle.name} if is_folder_packed else {"root_dir": bundle}
+def test_a_packed_bundle_is_the_same_as_its_directory(tmp_path, form, is_folder_packed):
+    bundle = BUNDLES / "armadillo-finer"
+    base = {"root_dir": BUNDLES, "base_dir": bundle.name} if is_folder_packed else {"root_dir": bundle}
     path = Path(shutil.make_archive(str(tmp_path / "packed"), form, **base))
     assert read_bundle_files(path) == read_bundle_files(bundle)
     assert load_bundle(path).digest == load_bundle(bundle).digest

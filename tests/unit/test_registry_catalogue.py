@@ -1,7 +1,7 @@
-from pathlib import Path
 from typing import Any
 
 import pytest
+from places import BUNDLES
 
 from aos_language.load import bundle_digest, load_bundle, load_files, read_bundle_files
 from aos_language.merge import changed_skills, merge, pushed_project
@@ -10,8 +10,8 @@ from aos_registry.catalogue import Catalogue
 
 
 @pytest.fixture
-def files(bundles: Path) -> dict[str, bytes]:
-    return read_bundle_files(bundles / "armadillo-finer")[0]
+def files() -> dict[str, bytes]:
+    return read_bundle_files(BUNDLES / "armadillo-finer")[0]
 
 
 def test_a_document_replaces_the_one_of_its_kind_and_name_whatever_its_file_is_called(
@@ -45,8 +45,8 @@ def test_the_environment_names_the_project_of_a_push(files: dict[str, bytes]):
     assert pushed_project({"readme.md": b""}) == ""
 
 
-def test_new_and_changed_skills_are_told_apart(bundles: Path):
-    rough, finer = (load_bundle(bundles / f"armadillo-{name}").project for name in ("rough", "finer"))
+def test_new_and_changed_skills_are_told_apart():
+    rough, finer = (load_bundle(BUNDLES / f"armadillo-{name}").project for name in ("rough", "finer"))
     assert rough is not None
     assert finer is not None
     assert changed_skills(rough, finer) == ((), ("pick",))

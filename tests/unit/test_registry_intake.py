@@ -2,6 +2,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from places import DATA
 
 from aos_language.load import read_bundle_files
 from aos_language.reading import files as reading
@@ -14,8 +15,8 @@ from aos_runtime.clock import SystemClock
 
 
 @pytest.fixture
-def files(root: Path) -> dict[str, bytes]:
-    return read_bundle_files(root / "tests/data/bundles/fetch")[0]
+def files() -> dict[str, bytes]:
+    return read_bundle_files(DATA / "bundles/fetch")[0]
 
 
 @pytest.fixture

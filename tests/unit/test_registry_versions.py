@@ -1,6 +1,5 @@
-from pathlib import Path
-
 import pytest
+from places import BUNDLES
 
 from aos_language.load import load_files, read_bundle_files
 from aos_language.merge import merge
@@ -10,8 +9,8 @@ from aos_registry.catalogue import Catalogue
 
 
 @pytest.fixture
-def files(bundles: Path) -> dict[str, bytes]:
-    return read_bundle_files(bundles / "armadillo-finer")[0]
+def files() -> dict[str, bytes]:
+    return read_bundle_files(BUNDLES / "armadillo-finer")[0]
 
 
 def sdl(files: dict[str, bytes], version: str, reward: bytes = b"-2") -> dict[str, bytes]:

@@ -1,6 +1,7 @@
 import pytest
 from mappings import mapping_text
-from scripted_models import json_text, lowered, text_project
+from projects import text_project
+from scripted_models import json_text, lowered
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.observed import misuses_of, reported_numbers, reports_in

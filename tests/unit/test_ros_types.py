@@ -1,6 +1,5 @@
-from pathlib import Path
-
 import pytest
+from places import DATA
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
@@ -8,7 +7,7 @@ from aos_protocol.errors import DeployError, SkillError
 from aos_skills.ros.definitions import definitions_in, interface_name, messages_of
 from aos_skills.ros.types import RosTypes
 
-INTERFACES = Path(__file__).parents[1] / "data" / "interfaces"
+INTERFACES = DATA / "interfaces"
 
 CUP = {
     "name": "blue",

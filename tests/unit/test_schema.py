@@ -7,6 +7,7 @@ from typing import Any
 import jsonschema
 import pytest
 from json_values import plain
+from places import DATA, DEPLOY, ROOT
 from ruamel.yaml import YAML
 
 from aos_deploy.deployment.schemas import SCHEMAS
@@ -20,8 +21,8 @@ from aos_language.reading.source import Source, open_source
 DIALECTS = {"PlpMain": "plp", "GsdlMain": "gsdl"}
 
 
-def examples(root: Path) -> dict[str, Any]:
-    folder = root / "docs" / "examples" / "kettle-json"
+def examples() -> dict[str, Any]:
+    folder = ROOT / "docs" / "examples" / "kettle-json"
     return {path.name: json.loads(path.read_text(encoding="utf-8")) for path in folder.iterdir()}
 
 
@@ -43,8 +44,8 @@ def test_the_schema_is_one(name):
     jsonschema.Draft202012Validator.check_schema(SCHEMAS[name]())
 
 
-def test_the_examples_of_the_language_page_are_valid(root: Path):
-    documents = examples(root)
+def test_the_examples_of_the_language_page_are_valid():
+    documents = examples()
     assert documents
     assert [text for value in documents.values() for text in complaints("plp", value)] == []
 
@@ -58,9 +59,9 @@ def json_documents(*folders: Path) -> Iterator[tuple[str, bytes, Any]]:
 
 
 @pytest.mark.corpus
-def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: Path, root: Path):
+def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: Path):
     checked = 0
-    for name, data, value in json_documents(corpus, root / "tests" / "data" / "bundles"):
+    for name, data, value in json_documents(corpus, DATA / "bundles"):
         dialect = next((schema for header, schema in DIALECTS.items() if header in value), None)
         if dialect is None:
             continue
@@ -87,14 +88,14 @@ def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: 
         ("environment glue.json", '"InitCode"', '"Code"'),
     ],
 )
-def test_a_typing_mistake_is_no_valid_document(document, before, after, root: Path):
-    text = json.dumps(examples(root)[document])
+def test_a_typing_mistake_is_no_valid_document(document, before, after):
+    text = json.dumps(examples()[document])
     assert before in text
     assert complaints("plp", json.loads(text.replace(before, after, 1)))
 
 
-def test_gsdl_documents_have_their_own_header_and_kinds(root: Path):
-    document = examples(root)["pour.json"]
+def test_gsdl_documents_have_their_own_header_and_kinds():
+    document = examples()["pour.json"]
     head = document.pop("PlpMain")
     assert complaints("gsdl", {"GsdlMain": {**head, "Type": "GSDL"}, **document}) == []
     assert complaints("gsdl", {"GsdlMain": head, **document})
@@ -161,13 +162,13 @@ def _keys(value: Any) -> Iterator[str]:
             yield from _keys(item)
 
 
-def deploy_files(root: Path) -> dict[str, Any]:
-    files = sorted((root / "deploy").glob("*.yaml"))
+def deploy_files() -> dict[str, Any]:
+    files = sorted((DEPLOY).glob("*.yaml"))
     return {path.name: YAML(typ="safe", pure=True).load(path.read_text()) for path in files}
 
 
-def test_the_deploy_files_are_valid(root: Path):
-    files = deploy_files(root)
+def test_the_deploy_files_are_valid():
+    files = deploy_files()
     assert files
     assert [text for value in files.values() for text in complaints("deploy", value)] == []
 
@@ -184,6 +185,6 @@ def test_the_deploy_files_are_valid(root: Path):
         {"bind": {"/pick": 1}},
     ],
 )
-def test_a_mistake_in_a_deploy_file_is_found(change, root: Path):
-    value = copy.deepcopy(deploy_files(root)["armadillo.yaml"])
+def test_a_mistake_in_a_deploy_file_is_found(change):
+    value = copy.deepcopy(deploy_files()["armadillo.yaml"])
     assert complaints("deploy", {**value, **change})

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from commands import aos
+from places import BUNDLES, DEPLOY, ROOT
 
 from aos_deploy.deployment.reading import Deployment, read_deploy_file
 from aos_deploy.missions.serving import serving_program
@@ -15,20 +16,19 @@ from aos_skills.ros.adapter import Way, way_to
 from aos_skills.ros.documented import documented
 
 
-def deployment(folder: Path, root: Path, serve: str) -> Deployment:
+def deployment(folder: Path, serve: str) -> Deployment:
     path = folder / "robot.yaml"
     path.write_text(
-        f"aos: 1\nrobot: armadillo\nbundles: [{root}/deploy/bundles/armadillo-rough]\n"
-        f"world: {root}/deploy/worlds/armadillo.yaml\nbind: {{'*': pybullet}}\n{serve}"
+        f"aos: 1\nrobot: armadillo\nbundles: [{ROOT}/deploy/bundles/armadillo-rough]\n"
+        f"world: {ROOT}/deploy/worlds/armadillo.yaml\nbind: {{'*': pybullet}}\n{serve}"
     )
     return read_deploy_file(path)
 
 
-def test_types_are_written_shortly_or_in_full(root: Path, tmp_path):
+def test_types_are_written_shortly_or_in_full(tmp_path):
     program = serving_program(
         deployment(
             tmp_path,
-            root,
             "serve:\n  types: {/pick: std_srvs/Trigger, serve: std_srvs/srv/Trigger,"
             " /joints: a_msgs/msg/Joints}\n"
             "  ros1: {master: 'http://127.0.0.1:1'}\n",
@@ -62,15 +62,15 @@ def test_types_are_written_shortly_or_in_full(root: Path, tmp_path):
         ("serve: {types: {/pick: Trigger}}\n", "ros2", "'Trigger' is not the name of a ROS interface"),
     ],
 )
-def test_mistakes_are_said_with_their_place(root: Path, tmp_path, serve, kind, message):
+def test_mistakes_are_said_with_their_place(tmp_path, serve, kind, message):
     with pytest.raises(DeployError, match=message):
-        serving_program(deployment(tmp_path, root, serve), kind)
+        serving_program(deployment(tmp_path, serve), kind)
 
 
-def test_the_shipped_robot_has_a_type_for_every_path_and_topic(root: Path):
-    shipped = read_deploy_file(root / "deploy" / "armadillo-robot.yaml")
+def test_the_shipped_robot_has_a_type_for_every_path_and_topic():
+    shipped = read_deploy_file(DEPLOY / "armadillo-robot.yaml")
     types = serving_program(shipped, "ros2").settings["types"]
-    loaded = load_bundle(root / "deploy" / "bundles" / "armadillo-finer")
+    loaded = load_bundle(BUNDLES / "armadillo-finer")
     assert loaded.project is not None
     known = documented(loaded.project)
     assert {*known.paths, *known.topics, "/retract"} == set(types)
@@ -113,14 +113,14 @@ def test_anything_else_is_an_error_that_shows_how_to_write_it(target):
 
 
 @pytest.mark.parametrize("kind", ["ros2", "dds", "ros1"])
-def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(kind, root: Path, tmp_path):
-    bundle = root / "deploy" / "bundles" / "armadillo-finer"
+def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(kind, tmp_path):
+    bundle = BUNDLES / "armadillo-finer"
     command = ["new", "adapter", kind, "--in", str(bundle), "--to", str(tmp_path)]
     made = aos(*command)
     assert made.exit_code == 0, made.output
     (adapter,) = read_deploy_file(tmp_path / "armadillo.yaml").adapters
     page = re.search(r"in the sources of AOS, (\S+)\.$", (tmp_path / "armadillo.yaml").read_text(), re.M)
-    assert (root / page[1]).is_file()
+    assert (ROOT / page[1]).is_file()
     assert (adapter.kind_name, adapter.serves_others) == (kind, True)
     assert "`/pick`: the type that the robot says" in (tmp_path / "interfaces" / "README.md").read_text()
 

@@ -1,9 +1,10 @@
 import json
-from pathlib import Path
 
 import pytest
-from dialects import project_of, say_the_same
-from scripted_models import ScriptedModel, scripted, text_project
+from dialects import say_the_same
+from places import BUNDLES
+from projects import files_project, text_project
+from scripted_models import ScriptedModel, scripted
 from texts import encoded
 
 from aos_editor.symbols import read_bundle
@@ -116,7 +117,7 @@ def test_a_function_that_draws_ends_where_its_draws_say(model: ScriptedModel):
 
 
 def test_all_dialects_say_the_same(tmp_path):
-    assert "  | bool slips() { return slips(1); }" in outline(project_of(files()))
+    assert "  | bool slips() { return slips(1); }" in outline(files_project(files()))
     json_texts, _ = say_the_same(files())
     assert json.loads(json_texts["environment.ef.json"])["SharedCode"] == SHARED.split("\n")
     for name, data in files().items():
@@ -185,9 +186,9 @@ def test_a_variable_that_only_shapes_what_a_function_reads_matters():
 @pytest.mark.parametrize(
     "name", ["armadillo-finer", "turtlebot-noisy", "bench/laser", "bench/rocksample-7-8"]
 )
-def test_draws_behind_a_function_are_taken_for_no_less_than_written_out(bundles: Path, name):
+def test_draws_behind_a_function_are_taken_for_no_less_than_written_out(name):
     written, behind = {}, {}
-    for file, data in read_bundle_files(bundles / name)[0].items():
+    for file, data in read_bundle_files(BUNDLES / name)[0].items():
         text = data.decode()
         written[file] = data
         if not file.endswith(".am"):

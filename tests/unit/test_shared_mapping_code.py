@@ -1,8 +1,9 @@
 import json
 
 import pytest
-from dialects import project_of, say_the_same
+from dialects import say_the_same
 from mapping_runs import loaded, observed
+from projects import files_project
 
 from aos_language.load import load_files
 from aos_language.outline import outline
@@ -64,7 +65,7 @@ def files(change: str = "") -> dict[str, bytes]:
 
 def running(skill: str, change: str = "") -> LoadedMapping:
     return loaded(
-        next(mapping for mapping in emit_project(project_of(files(change))) if mapping.skill == skill)
+        next(mapping for mapping in emit_project(files_project(files(change))) if mapping.skill == skill)
     )
 
 
@@ -77,7 +78,7 @@ def test_all_mappings_call_the_functions_and_know_the_constants():
 
 def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents():
     look, step = (
-        next(mapping for mapping in emit_project(project_of(files())) if mapping.skill == name)
+        next(mapping for mapping in emit_project(files_project(files())) if mapping.skill == name)
         for name in ("look", "step")
     )
     lines = look.python.split("\n")
@@ -87,7 +88,7 @@ def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents():
 
 
 def test_all_dialects_say_the_same():
-    assert "shared code of the mappings" in outline(project_of(files()))
+    assert "shared code of the mappings" in outline(files_project(files()))
     as_json, _ = say_the_same(files())
     assert json.loads(as_json["environment.ef.json"])["SharedMappingCode"] == SHARED.split("\n")
 

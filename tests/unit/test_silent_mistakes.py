@@ -1,12 +1,11 @@
-from pathlib import Path
-
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found, skill_after
+from places import ROOT
 
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
 
-KETTLE = Path(__file__).parents[2] / "docs/examples/kettle-json"
+KETTLE = ROOT / "docs/examples/kettle-json"
 
 TEXT = MAPPING.replace("response: walked\nresponse_rule: True\n", "response_local_variable: steps\n")
 SIDES = f"{ENVIRONMENT}\ndefine_type: Side\nenum_members: Left, Right\nstate_variable: Side side\n"

@@ -2,11 +2,11 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 from msgspec.structs import replace
+from places import DEPLOY, ROOT
 from processes import COMMAND_S
 
 from aos_skills.pybullet.world_file import load_world_file
@@ -24,8 +24,8 @@ Make = Callable[..., Armadillo]
 
 
 @pytest.fixture
-def file(root: Path) -> ArmadilloFile:
-    room: ArmadilloFile = load_world_file(root / "deploy/worlds/armadillo.yaml").room
+def file() -> ArmadilloFile:
+    room: ArmadilloFile = load_world_file(DEPLOY / "worlds/armadillo.yaml").room
     return room
 
 
@@ -94,11 +94,11 @@ def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, file: Armadil
     assert world.is_holding
 
 
-def test_the_frequencies_are_json_and_nothing_else(root: Path):
+def test_the_frequencies_are_json_and_nothing_else():
     module = "aos_skills.pybullet.worlds.armadillo.frequencies"
     command = [sys.executable, "-m", module, "deploy/worlds/armadillo.yaml"]
     ended = subprocess.run(
-        [*command, "1", "--json"], cwd=root, capture_output=True, timeout=COMMAND_S, check=True
+        [*command, "1", "--json"], cwd=ROOT, capture_output=True, timeout=COMMAND_S, check=True
     )
     counts = json.loads(ended.stdout)
     assert counts["picks"] == 1

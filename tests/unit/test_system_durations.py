@@ -1,6 +1,5 @@
-from pathlib import Path
-
 from decision_records import decision_record
+from places import DEPLOY
 
 from aos_deploy.deployment.reading import read_deploy_file
 from aos_deploy.missions.system_run import SystemRun
@@ -19,9 +18,9 @@ class Clock(SystemClock):
         return self.now_s
 
 
-def test_a_mission_lasts_as_long_as_the_monotonic_clock_says(root: Path):
+def test_a_mission_lasts_as_long_as_the_monotonic_clock_says():
     clock = Clock()
-    run = SystemRun(read_deploy_file(root / "deploy/errand.yaml"), lambda _: None, clock)
+    run = SystemRun(read_deploy_file(DEPLOY / "errand.yaml"), lambda _: None, clock)
     decided = decision_record(0, "r-2")
     for event in (MissionState("r-1", "planning", 0, 0.0, epoch=1), decision_record(0, "r-1")):
         run._take(event)

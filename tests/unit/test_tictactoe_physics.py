@@ -6,12 +6,12 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 import pytest
+from places import DEPLOY
 from processes import HANG_S
 
 from aos_skills.pybullet.world_file import load_world_file
@@ -28,8 +28,8 @@ Make = Callable[..., TicTacToe]
 
 
 @pytest.fixture
-def file(root: Path) -> TicTacToeFile:
-    room: TicTacToeFile = load_world_file(root / "deploy/worlds/tictactoe.yaml").room
+def file() -> TicTacToeFile:
+    room: TicTacToeFile = load_world_file(DEPLOY / "worlds/tictactoe.yaml").room
     return room
 
 

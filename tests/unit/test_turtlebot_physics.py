@@ -1,11 +1,11 @@
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 import pytest
+from places import DEPLOY
 
 from aos_skills.pybullet.parts.room_file import Place
 from aos_skills.pybullet.parts.route import FloorMap
@@ -21,8 +21,8 @@ Make = Callable[..., Turtlebot]
 
 
 @pytest.fixture
-def make(root: Path) -> Make:
-    file: TurtlebotFile = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
+def make() -> Make:
+    file: TurtlebotFile = load_world_file(DEPLOY / "worlds/turtlebot.yaml").room
 
     def build(**changes: Any) -> Turtlebot:
         return Turtlebot(msgspec.structs.replace(file, **changes), seed=1)

@@ -1,6 +1,5 @@
-from pathlib import Path
-
 import pytest
+from places import DEPLOY
 
 pytest.importorskip("pybullet", reason="needs the simulator: pip install 'aos-autonomy[sim]'")
 
@@ -10,7 +9,7 @@ from aos_skills.pybullet.world_file import load_world_file
 pytestmark = pytest.mark.physics
 
 
-WORLD = Path(__file__).parents[2] / "deploy" / "worlds" / "armadillo.yaml"
+WORLD = DEPLOY / "worlds" / "armadillo.yaml"
 
 
 def test_the_hard_can_of_the_shipped_world_is_perceived_as_the_easy_one():
