@@ -28,7 +28,7 @@ def free_endpoint() -> str:
 
 
 @pytest.fixture(scope="module")
-def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def endpoint(tmp_path_factory) -> Iterator[str]:
     """The address of the module's router, which listens by then, however long its start takes."""
     folder: Path = tmp_path_factory.mktemp("router")
     settings = ServiceSettings(robot="test", service="router", endpoint=free_endpoint(), run_dir=str(folder))
@@ -65,16 +65,14 @@ async def other(endpoint: str) -> AsyncIterator[Bus]:
 
 
 @pytest_asyncio.fixture
-async def system(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[System]:
+async def system(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[System]:
     """A middleware that has our armadillo, and a skill that listens; `other` surrounds it."""
     async with running_system(bus, other, keys, tmp_path, endpoint, BUNDLES / "armadillo-finer") as running:
         yield running
 
 
 @pytest_asyncio.fixture
-async def process_system(
-    bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path
-) -> AsyncIterator[System]:
+async def process_system(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[System]:
     """The same with a middleware that is a process, which a test may freeze, end and start again."""
     bundle = BUNDLES / "armadillo-finer"
     async with running_system(bus, other, keys, tmp_path, endpoint, bundle, is_process=True) as running:
@@ -87,7 +85,7 @@ def finer() -> dict[str, bytes]:
 
 
 @pytest.fixture(scope="module")
-def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def master(tmp_path_factory) -> Iterator[str]:
     skip_without_ros1()
     with roscore(tmp_path_factory.mktemp("ros")) as uri:
         yield uri

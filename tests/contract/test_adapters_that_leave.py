@@ -30,7 +30,7 @@ async def launch(system: System, endpoint: str, folder: Path, robot: str = ROBOT
 
 @pytest.mark.parametrize("death", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
-    system: System, endpoint: str, tmp_path: Path, death: signal.Signals
+    system: System, endpoint: str, tmp_path, death: signal.Signals
 ):
     child = await launch(system, endpoint, tmp_path)
     try:
@@ -55,7 +55,7 @@ async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
 
 @pytest.mark.parametrize("is_told", [True, False], ids=["told", "untold"])
 async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_it_was_given_up(
-    system: System, endpoint: str, tmp_path: Path, is_told: bool
+    system: System, endpoint: str, tmp_path, is_told
 ):
     begun = tmp_path / "begun"
 
@@ -100,7 +100,7 @@ async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_i
         await child.wait()
 
 
-async def test_an_adapter_that_ends_at_once_may_have_begun(system: System, endpoint: str, tmp_path: Path):
+async def test_an_adapter_that_ends_at_once_may_have_begun(system: System, endpoint: str, tmp_path):
     for step in range(1, 5):
         child = await launch(system, endpoint, tmp_path, "import os\ndef sense(call):\n    os._exit(1)\n")
         await system.state_when(lambda state: "sense" not in state.unavailable)

@@ -3,7 +3,6 @@ import json
 import shutil
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
-from pathlib import Path
 
 import msgspec
 import pytest_asyncio
@@ -23,7 +22,7 @@ Aos = Callable[..., Awaitable[Result]]
 
 
 @pytest_asyncio.fixture
-async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Aos]:
+async def aos(tmp_path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Aos]:
     settings = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path))
     path = tmp_path / "registry.json"
     path.write_bytes(msgspec.json.encode(settings))
@@ -57,7 +56,7 @@ async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos):
     assert "skill pick()" in shown
 
 
-async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(aos: Aos, tmp_path: Path):
+async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(aos: Aos, tmp_path):
     await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     folder = shutil.copytree(BUNDLES / "armadillo-rough", tmp_path / "rough")
     (folder / "pick.am").write_text("project: armadillo\nresponse: pick_succeeded\nresponse_rule: True +\n")
@@ -86,7 +85,7 @@ async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos:
     assert "revision 4" in (await aos("bundle", "list")).output
 
 
-async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(aos: Aos, tmp_path: Path):
+async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(aos: Aos, tmp_path):
     await aos("bundle", "push", str(BUNDLES / "armadillo-finer"))
     skill = tmp_path / "ask"
     skill.mkdir()

@@ -14,7 +14,7 @@ KEYS = Keys(ROBOT)
 
 
 @pytest.fixture(scope="module")
-def router(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Routed]:
+def router(tmp_path_factory) -> Iterator[Routed]:
     with routed(tmp_path_factory.mktemp("runs"), PARTIES) as made:
         yield made
 

@@ -172,7 +172,7 @@ async def test_a_question_is_lost_once_its_server_has_left(endpoint: str, bus: B
 
 
 async def test_a_question_is_lost_whose_server_left_before_it_was_watched_and_another_came(
-    endpoint: str, bus: Bus, other: Bus, keys: Keys, monkeypatch: pytest.MonkeyPatch
+    endpoint: str, bus: Bus, other: Bus, keys: Keys, monkeypatch
 ):
     async with outsider_on(endpoint) as outsider:
         questions: queue.Queue[zenoh.Query] = queue.Queue()

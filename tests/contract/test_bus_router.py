@@ -32,7 +32,7 @@ def router(endpoint: str, folder: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 
 async def test_a_question_is_lost_with_its_router_also_where_nobody_tells_of_that(
-    tmp_path: Path, keys: Keys, unused_tcp_port: int, monkeypatch: pytest.MonkeyPatch
+    tmp_path, keys: Keys, unused_tcp_port: int, monkeypatch
 ):
     endpoint = f"tcp/127.0.0.1:{unused_tcp_port}"
     is_asked = asyncio.Event()

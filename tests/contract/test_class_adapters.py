@@ -1,5 +1,4 @@
 import asyncio
-from pathlib import Path
 
 import pytest
 from adapter_process import AdapterProcess
@@ -37,7 +36,7 @@ class Arm:
 
 
 async def test_a_call_that_is_no_coroutine_fails_and_is_told_how_to_write_it(
-    bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+    bus: Bus, keys: Keys, endpoint: str, tmp_path
 ):
     (tmp_path / "hasty_arm.py").write_text(ARM)
     arm = AdapterProcess(bus, keys, endpoint, tmp_path)
@@ -76,7 +75,7 @@ class StopsLate:
 
 
 async def test_a_call_that_was_told_as_stuck_is_told_as_stopped_to_nobody(
-    bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+    bus: Bus, keys: Keys, endpoint: str, tmp_path
 ):
     settings = AdapterSettings(
         robot=keys.robot, service="arm", endpoint=endpoint, run_dir=str(tmp_path), adapter="", cancel_s=0.1

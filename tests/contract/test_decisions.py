@@ -56,7 +56,7 @@ class Storyteller:
 
 
 @pytest.fixture
-def keys(request: pytest.FixtureRequest) -> Keys:
+def keys(request) -> Keys:
     """A robot of its own for each test, as the tests' streams must not mix."""
     return Keys(request.node.name[-60:])
 
@@ -97,9 +97,7 @@ async def test_a_long_history_comes_page_after_page(client: AosClient, solver: S
     assert await sequences(client) == list(range(10))
 
 
-async def test_a_history_that_is_late_is_asked_for_again(
-    client: AosClient, solver: Storyteller, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_history_that_is_late_is_asked_for_again(client: AosClient, solver: Storyteller, monkeypatch):
     monkeypatch.setattr("aos_runtime.client._ANSWER_S", 0.3)
     await solver.appear()
     solver.decide(is_lost=True)

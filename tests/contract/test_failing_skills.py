@@ -167,7 +167,7 @@ async def test_a_result_of_another_type_is_not_put_on_a_topic_that_said_nothing(
 
 
 @pytest.mark.parametrize("kind", ["late", "foreign"])
-async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind: str):
+async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind):
     is_over = asyncio.Event()
 
     async def sense(call: SkillCall) -> dict[str, Any]:

@@ -57,7 +57,7 @@ class Host:
 
 
 @pytest.fixture
-def host(tmp_path: Path, endpoint: str) -> Host:
+def host(tmp_path, endpoint: str) -> Host:
     return Host(tmp_path, endpoint)
 
 
@@ -81,14 +81,14 @@ async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys:
         assert first.returncode is None
 
 
-async def test_a_service_without_a_router_says_so(tmp_path: Path, unused_tcp_port: int):
+async def test_a_service_without_a_router_says_so(tmp_path, unused_tcp_port: int):
     host = Host(tmp_path, f"tcp/127.0.0.1:{unused_tcp_port}")
     async with host.running("garden", program=("-c", IMPATIENT)) as child:
         assert await child.wait() == 1
     assert host.fault("garden").code == "AOS605"
 
 
-async def test_wrong_settings_are_a_usage_error(tmp_path: Path):
+async def test_wrong_settings_are_a_usage_error(tmp_path):
     path = tmp_path / "settings.json"
     path.write_text('{"robot": "test"}')
     argv = [sys.executable, "-m", "small_service", str(path)]
@@ -109,7 +109,7 @@ asyncio.run(main())
 
 
 @pytest.mark.parametrize("mood", ["good", "parental"])
-async def test_a_service_ends_with_its_parent(host: Host, bus: Bus, keys: Keys, mood: str):
+async def test_a_service_ends_with_its_parent(host: Host, bus: Bus, keys: Keys, mood):
     argv = [sys.executable, "-c", START_A_SERVICE, str(host.settings("garden", mood))]
     parent = await Child.start(argv, env={"PYTHONPATH": str(TESTS)}, stdout=PIPE)
     async with bus.presence(keys.live("garden")) as changes, asyncio.timeout(HANG_S):

@@ -107,7 +107,7 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
     ids=["killed, its_result_tells_all", "stopped, its_topics_were_missed"],
 )
 async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
-    process_system: System, ending: str, skill: str, result: tuple[str, str]
+    process_system: System, ending, skill, result
 ):
     may_end = asyncio.Event()
 

@@ -2,7 +2,6 @@ import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -175,7 +174,7 @@ class Robot(QuietPorts):
 
 
 @pytest_asyncio.fixture
-async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
+async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[Robot]:
     project: Project = text_project(STOCK)
 
     async def answer(_: ProjectQuery, __: str) -> ProjectRevision:

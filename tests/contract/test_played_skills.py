@@ -1,7 +1,6 @@
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 from functools import partial
-from pathlib import Path
 
 import msgspec
 import pytest
@@ -44,7 +43,7 @@ StartSystem = Callable[..., AbstractAsyncContextManager[System]]
 
 
 @pytest.fixture
-def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str) -> StartSystem:
+def start(bus: Bus, other: Bus, keys: Keys, tmp_path, endpoint: str) -> StartSystem:
     return partial(running_system, bus, other, keys, tmp_path, endpoint, BUNDLES / "armadillo-finer")
 
 
@@ -53,7 +52,7 @@ def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str) -> St
     [((), "failed", 0), (("/sense",), "observed", 1), (("*",), "observed", 1), (("/look",), "failed", 0)],
 )
 async def test_a_played_skill_needs_no_fields_and_a_real_one_is_not_called_without(
-    start: StartSystem, played: tuple[str, ...], status: str, calls: int
+    start: StartSystem, played, status, calls
 ):
     async with start(played=played) as system:
         outcome = await outcome_of(system)

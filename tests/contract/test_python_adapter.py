@@ -1,7 +1,6 @@
 import asyncio
 import os
 from collections.abc import AsyncIterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -136,7 +135,7 @@ class Robot(AdapterProcess):
 
 
 @pytest_asyncio.fixture
-async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
+async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[Robot]:
     robot = Robot(bus, keys, endpoint, tmp_path)
     try:
         yield robot
@@ -198,7 +197,7 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot)
 
 
 @pytest.mark.parametrize("function", ["wait", "block"])
-async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function: str):
+async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function):
     await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
     async with asyncio.timeout(HANG_S), progress:
@@ -210,7 +209,7 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
 
 
 async def test_a_call_that_comes_again_while_it_runs_joins_it_and_its_id_is_for_nothing_else(
-    robot: Robot, tmp_path: Path
+    robot: Robot, tmp_path
 ):
     await robot.start(wait="robot.py:wait_for_pipe")
     pipe = tmp_path / "go on"
@@ -240,7 +239,7 @@ async def test_what_moves_is_stopped_when_the_middleware_was_away_for_too_long(r
 
 @pytest.mark.parametrize(("deadline_s", "until"), [(20.0, "executing"), (0.1, "cancelling")])
 async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown(
-    robot: Robot, deadline_s: float, until: str
+    robot: Robot, deadline_s, until
 ):
     await robot.start(skill="robot.py:hang")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
@@ -298,7 +297,7 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
         ("camera.py:go", "cannot be loaded: OSError: no camera. It was raised at camera.py:2"),
     ],
 )
-async def test_what_cannot_be_bound_ends_the_process_with_one_message(robot: Robot, target: str, text: str):
+async def test_what_cannot_be_bound_ends_the_process_with_one_message(robot: Robot, target, text):
     (robot.folder / "script.py").write_text("raise SystemExit(3)\n")
     (robot.folder / "camera.py").write_text("import os\nraise OSError('no camera')\n")
     child = await robot.launch(skill=target)

@@ -30,7 +30,7 @@ COMPRESSIONS = {"tar": bytes, "tar.gz": partial(gzip.compress, mtime=0), "tar.xz
 
 
 @pytest_asyncio.fixture
-async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[tuple[Path, Child]]:
+async def registry(tmp_path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[tuple[Path, Child]]:
     async with running_registry(tmp_path / "run", endpoint, bus, keys) as child:
         yield tmp_path / "run", child
 
@@ -141,7 +141,7 @@ async def test_dropped_hostile_archives_do_not_take_the_registry_down(
     assert not list(run_dir.parent.glob("*.sd"))
 
 
-def test_hostile_archives_are_read_or_refused(finer: dict[str, bytes], tmp_path: Path):
+def test_hostile_archives_are_read_or_refused(finer: dict[str, bytes], tmp_path):
     chance = random.Random(SEED)
     refused = 0
     for number in range(HOSTILE_ARCHIVES):

@@ -44,7 +44,7 @@ def stored_revisions(path: Path) -> list[Revision]:
 
 
 async def test_sigkill_at_any_moment_loses_no_accepted_push_and_leaves_no_half(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+    tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):
     chance = random.Random(SEED)
     run_dir = tmp_path / "run"

@@ -47,7 +47,7 @@ async def running_registry(
 
 
 @pytest_asyncio.fixture
-async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Path]:
+async def registry(tmp_path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Path]:
     async with running_registry(tmp_path / "run", endpoint, bus, keys):
         yield tmp_path / "run"
 
@@ -166,7 +166,7 @@ async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_un
 
 
 async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys
+    tmp_path, endpoint: str, bus: Bus, keys: Keys
 ):
     registry = tmp_path / "run"
     async with (
@@ -217,7 +217,7 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
 
 
 async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_a_document_alone_is_refused(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+    tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):
     drops = tmp_path / "run" / "drop"
     drops.mkdir(parents=True)
@@ -237,7 +237,7 @@ async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_a_
 
 
 async def test_the_catalogue_survives_a_restart(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+    tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):
     async with running_registry(tmp_path / "run", endpoint, bus, keys):
         await push(bus, keys, finer)

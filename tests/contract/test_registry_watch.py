@@ -1,6 +1,5 @@
 import asyncio
 
-import pytest
 from places import BUNDLES
 from processes import HANG_S
 
@@ -32,7 +31,7 @@ class Registry:
 
 
 async def test_documents_come_although_the_first_answers_are_late(
-    bus: Bus, other: Bus, keys: Keys, monkeypatch: pytest.MonkeyPatch
+    bus: Bus, other: Bus, keys: Keys, monkeypatch
 ):
     monkeypatch.setattr(registry_watch, "ASK_TIMEOUT_S", 0.1)
     registry = Registry(2, load_bundle(BUNDLES / "errand").project)
@@ -45,9 +44,7 @@ async def test_documents_come_although_the_first_answers_are_late(
     assert registry.questions >= 3
 
 
-async def test_whoever_asks_once_goes_on_without_documents(
-    bus: Bus, other: Bus, keys: Keys, monkeypatch: pytest.MonkeyPatch
-):
+async def test_whoever_asks_once_goes_on_without_documents(bus: Bus, other: Bus, keys: Keys, monkeypatch):
     monkeypatch.setattr(registry_watch, "ASK_TIMEOUT_S", 0.1)
     given: asyncio.Queue[ProjectRevision] = asyncio.Queue()
     await other.answer(keys.project, ProjectQuery, Registry(1, None).answer)

@@ -23,7 +23,7 @@ TEST = "actionlib/action/Test"
 
 
 @pytest_asyncio.fixture
-async def robot(master: str, tmp_path: Path) -> AsyncIterator[Child]:
+async def robot(master: str, tmp_path) -> AsyncIterator[Child]:
     """The robot's process; whoever asks for its services waits for them."""
     environment = {
         "ROS_MASTER_URI": master,
@@ -91,7 +91,7 @@ async def test_topics_are_found_by_name_and_latched_messages_come(robot: Child, 
 
 
 @pytest.fixture
-def kept_empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def kept_empty(tmp_path, monkeypatch) -> Iterator[None]:
     """Holds that the folder for temporary files is empty after the test."""
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     yield

@@ -83,7 +83,7 @@ async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, nod
 
 
 async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_silence(
-    endpoint: str, node: Node, tmp_path: Path
+    endpoint: str, node: Node, tmp_path
 ):
     folder = tmp_path / "example_interfaces" / "srv"
     folder.mkdir(parents=True)
@@ -95,9 +95,7 @@ async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_sile
     assert raised.value.code == "AOS509"
 
 
-async def test_a_type_that_is_not_known_here_names_the_file_to_add(
-    endpoint: str, robot: Node, tmp_path: Path
-):
+async def test_a_type_that_is_not_known_here_names_the_file_to_add(endpoint: str, robot: Node, tmp_path):
     robot.serve("/lab/add", ADD, add)
     async with opened(endpoint, "ignorant", tmp_path) as ignorant:
         with pytest.raises(DeployError, match=r"example_interfaces/srv/AddTwoInts\.srv"):
@@ -190,9 +188,7 @@ async def test_a_goal_that_was_given_up_before_it_was_accepted_may_move_the_robo
     assert node.unended.actions == ["/lab/fibonacci"]
 
 
-async def test_an_action_that_fails_is_aborted_and_the_log_says_why(
-    robot: Node, node: Node, caplog: pytest.LogCaptureFixture
-):
+async def test_an_action_that_fails_is_aborted_and_the_log_says_why(robot: Node, node: Node, caplog):
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     end = await node.run_action(ActionRequest("/lab/fibonacci", {"order": -1}, timeout_s=HANG_S))
     assert end.status == "aborted"
@@ -235,9 +231,7 @@ async def answered(node: Node, service: str, fields: dict[str, Any]) -> dict[str
 @pytest.mark.skipif(
     importlib.util.find_spec("zenoh_ros2_sdk") is None, reason="needs the package zenoh-ros2-sdk"
 )
-async def test_an_independent_implementation_understands_us_and_we_it(
-    endpoint: str, robot: Node, tmp_path: Path
-):
+async def test_an_independent_implementation_understands_us_and_we_it(endpoint: str, robot: Node, tmp_path):
     robot.serve("/aos/add_two_ints", ADD, add)
     received: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
     robot.subscribe("/from_sdk", STRING, received.put_nowait)

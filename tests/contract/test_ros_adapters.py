@@ -152,9 +152,7 @@ async def robot_of(kind: str, request: pytest.FixtureRequest, endpoint: str) -> 
 
 
 @pytest_asyncio.fixture(params=KINDS)
-async def lab(
-    request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
-) -> AsyncIterator[Lab]:
+async def lab(request, bus: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[Lab]:
     robot, options = await robot_of(request.param, request, endpoint)
     lab = Lab(bus, keys, endpoint, tmp_path, robot)
     await lab.start(
@@ -288,7 +286,7 @@ async def test_documents_name_the_paths_and_topics(lab: Lab):
 @pytest.mark.parametrize("kind", ["ros2", "ros1"])  # What a node of ROS 2 is asked is one function.
 @pytest.mark.parametrize("path", ["/lab/add", "/lab/count"])
 async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_add(
-    kind: str, path: str, request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+    kind, path, request, bus: Bus, keys: Keys, endpoint: str, tmp_path
 ):
     robot, options = await robot_of(kind, request, endpoint)
     lab = Lab(bus, keys, endpoint, tmp_path, robot)
@@ -306,7 +304,7 @@ async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_
 
 
 async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
-    request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+    request, bus: Bus, keys: Keys, endpoint: str, tmp_path
 ):
     robot, options = await robot_of("ros2", request, endpoint)
     lab = Lab(bus, keys, endpoint, tmp_path, robot)

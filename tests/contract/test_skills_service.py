@@ -75,7 +75,7 @@ class Robot(AdapterProcess):
 
 
 @pytest_asyncio.fixture
-async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
+async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[Robot]:
     """A robot that is not started yet; whatever a test starts is stopped."""
     (tmp_path / "pictures").mkdir()
     robot = Robot(bus, keys, endpoint, tmp_path, world_without_pictures(tmp_path))
@@ -160,7 +160,7 @@ async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(
     ],
 )
 async def test_what_cannot_be_bound_ends_the_service_with_one_message(
-    robot: Robot, settings: dict[str, Any], message: str
+    robot: Robot, settings: dict[str, Any], message
 ):
     child = await robot.launch(**settings)
     async with asyncio.timeout(HANG_S):

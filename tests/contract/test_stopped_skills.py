@@ -146,7 +146,7 @@ async def test_a_skill_is_not_called_where_it_would_be_stopped_at_once(system: S
     ],
 )  # fmt: skip
 async def test_what_cannot_be_told_is_an_error_at_its_place_and_the_service_goes_on(
-    system: System, mapping: str, status: str, code: str, text: str
+    system: System, mapping, status, code, text
 ):
     adapter = await driving(system, mapping)
     outcome = await outcome_of(adapter, 0.1, ends=code == "AOS401")

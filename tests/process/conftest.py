@@ -12,13 +12,13 @@ from aos_solver.building.build import BuiltModel
 
 
 @pytest.fixture
-def system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> System:
+def system(tmp_path, monkeypatch) -> System:
     monkeypatch.setenv("PYTHONPATH", str(TESTS))
     return System(tmp_path)
 
 
 @pytest.fixture(scope="module")
-def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Gateway, str]]:
+def past(tmp_path_factory) -> Iterator[tuple[Gateway, str]]:
     """A gateway, and a mission that has run to its end: one for all processes of a run of the tests."""
     base = tmp_path_factory.getbasetemp()
     shared = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "played"
@@ -29,7 +29,7 @@ def past(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Gateway, st
 
 
 @pytest.fixture
-def living(tmp_path: Path) -> Iterator[tuple[Gateway, Path]]:
+def living(tmp_path) -> Iterator[tuple[Gateway, Path]]:
     with slow_system(tmp_path) as run, gateway(tmp_path) as served:
         yield served, run
 

@@ -18,12 +18,12 @@ NOT_NEEDED = ("zenoh_ros2_sdk",)
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def wheel(tmp_path_factory) -> Path:
     return built_wheel(ROOT, tmp_path_factory.mktemp("wheel"), "protocol")
 
 
 @pytest.fixture(scope="module")
-def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def python(wheel: Path, tmp_path_factory) -> Path:
     """The interpreter of an environment with the package."""
     environment = tmp_path_factory.mktemp("robot") / "environment"
     install(wheel, environment, only=NEEDED, without=NOT_NEEDED)
@@ -31,7 +31,7 @@ def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def humble_python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def humble_python(wheel: Path, tmp_path_factory) -> Path:
     """The Python of ROS 2 Humble, version 3.10, used as `python` is."""
     versions = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"), "versions")
     found = [*map(str, versions.glob("3.10.*/bin/python3.10")), shutil.which("python3.10") or ""]
@@ -69,16 +69,14 @@ print(*sorted({name.split(".")[0] for name in sys.modules}))
 
 
 @pytest.mark.parametrize("which", ["python", "humble_python"])
-def test_every_module_of_it_can_be_imported(which: str, request: pytest.FixtureRequest):
+def test_every_module_of_it_can_be_imported(which, request):
     imported = said_by(request.getfixturevalue(which), IMPORT_ALL).split()
     assert {"aos_protocol", "aos_runtime", "zenoh", "msgspec"} <= set(imported)
     assert not {"tree_sitter", "numpy", "aos_deploy", "aos_solver"} & set(imported)
 
 
 @pytest.mark.parametrize("which", ["python", "humble_python"])
-def test_an_adapter_of_it_runs_a_mission(
-    which: str, request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_an_adapter_of_it_runs_a_mission(which, request, tmp_path, monkeypatch):
     python = request.getfixturevalue(which)
     monkeypatch.chdir(tmp_path)
     aos("new", "project", "fetch")
@@ -104,9 +102,7 @@ def test_an_adapter_of_it_runs_a_mission(
         (["arm:Arm"], {}, "AOS_ENDPOINT, AOS_ROBOT, AOS_ADAPTER is not in the environment"),
     ],
 )
-def test_a_command_that_is_wrong_is_told(
-    python: Path, words: list[str], environment: dict[str, str], said: str
-):
+def test_a_command_that_is_wrong_is_told(python: Path, words, environment, said):
     command = [python, "-m", "aos_runtime.adapters", *words]
     done = finished(*command, env=environment)
     assert done.returncode == 2
@@ -146,7 +142,7 @@ def size_of(python: Path) -> Callable[[str], int]:
     return size
 
 
-def test_it_is_small(size_of: Callable[[str], int], tmp_path: Path, python: Path):
+def test_it_is_small(size_of: Callable[[str], int], tmp_path, python: Path):
     ours = sum(map(size_of, ("aos_adapter", "aos_adapter-*.dist-info", "aos-adapter.pth")))
     assert ours < 1e6
     if shutil.which("strip") is None:

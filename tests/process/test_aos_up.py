@@ -25,7 +25,7 @@ ENDINGS = {"goal": 0, "failure": 4, "nothing_worthwhile": 5, "step_limit": 6}
 
 
 @pytest.fixture(scope="module")
-def deploy_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def deploy_file(tmp_path_factory) -> Path:
     """The shipped deploy file on a free port, with a small planning budget and runs of its own."""
     folder = tmp_path_factory.mktemp("deploy")
     text = (DEPLOY / "armadillo.yaml").read_text()
@@ -44,7 +44,7 @@ def deploy_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def scratch(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+def scratch(tmp_path_factory) -> Iterator[Path]:
     folder = tmp_path_factory.mktemp("scratch")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TMPDIR", str(folder))
@@ -237,7 +237,7 @@ def summary_of(deploy_file: Path) -> dict[str, Any]:
 
 
 def test_a_mission_goes_on_after_the_deaths_of_its_engine_and_of_services_and_ends_by_sigterm(
-    tmp_path: Path, scratch: Path
+    tmp_path, scratch: Path
 ):
     file = slow_deploy_file(tmp_path)
     victims = ("router", "registry", "middleware", "solver")
@@ -264,7 +264,7 @@ def test_a_mission_goes_on_after_the_deaths_of_its_engine_and_of_services_and_en
     assert [end["name"] for end in summary_of(file)["process_ends"] if end["name"] in victims] == [*victims]
 
 
-def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(tmp_path: Path):
+def test_a_mission_whose_output_nobody_reads_any_more_is_stopped_in_order(tmp_path):
     file = slow_deploy_file(tmp_path, step_limit=3)
     with up(file) as running:
         running.until("decision")
@@ -316,7 +316,7 @@ def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path
     ids=["of the compiler", "of the registry"],
 )
 def test_mistakes_in_documents_are_shown_at_their_places(
-    deploy_file: Path, tmp_path: Path, mistakes: list[tuple[str, str, str, str]]
+    deploy_file: Path, tmp_path, mistakes: list[tuple[str, str, str, str]]
 ):
     bundle = tmp_path / "bundle"
     bundle.mkdir()

@@ -30,12 +30,12 @@ def test_the_overview_names_every_command():
 
 
 @pytest.mark.parametrize("command", [["aos-up"], ["aos-up", "x.yaml", "--sed", "1"], ["aos", "decide"]])
-def test_wrong_usage_has_its_own_exit_code(command: list[str]):
+def test_wrong_usage_has_its_own_exit_code(command):
     assert run(*command).returncode == 2
 
 
 @pytest.mark.parametrize(("command", "meant"), [("status", "runs"), ("stop", "down"), ("start", "up")])
-def test_a_command_that_other_tools_have_is_answered_with_the_one_that_does_it(command: str, meant: str):
+def test_a_command_that_other_tools_have_is_answered_with_the_one_that_does_it(command, meant):
     assert f"Did you mean {meant!r}?" in run("aos", command).stderr
 
 
@@ -48,9 +48,7 @@ def test_a_command_that_other_tools_have_is_answered_with_the_one_that_does_it(c
         ("-c 0 && export LC_ALL=C PYTHONUTF8=0", "röbot".encode(), "Set LC_ALL=C.UTF-8, and no PYTHON"),
     ],
 )
-def test_what_no_mission_can_run_with_is_told_before_anything_starts(
-    limit: str, folder: bytes, told: str, tmp_path: Path
-):
+def test_what_no_mission_can_run_with_is_told_before_anything_starts(limit, folder, told, tmp_path):
     deploy = tmp_path / os.fsdecode(folder) / "errand.yaml"
     deploy.parent.mkdir()
     deploy.write_text((DEPLOY / "errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/"))
@@ -61,7 +59,7 @@ def test_what_no_mission_can_run_with_is_told_before_anything_starts(
     assert not (tmp_path / "runs").exists()
 
 
-def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_decisions_without_a_run_say_what_to_do(tmp_path, monkeypatch):
     monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path))
     result = run("aos", "decisions", folder=tmp_path)
     assert result.returncode == 3
@@ -69,7 +67,7 @@ def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pyt
     assert result.stderr.count("\n") == 1
 
 
-def test_decisions_of_a_folder_that_is_no_run_say_so(tmp_path: Path):
+def test_decisions_of_a_folder_that_is_no_run_say_so(tmp_path):
     result = run("aos", "decisions", "--run", str(tmp_path))
     assert result.returncode == 1
     assert "is not a run directory" in result.stderr
@@ -82,7 +80,7 @@ def test_the_doctor_says_what_is_there():
     assert "C++ compiler" in findings
 
 
-def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path):
+def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path):
     deploy = tmp_path / "room.yaml"
     deploy.write_text(
         f"aos: 1\nrobot: armadillo\nbundles: [{ROOT / 'deploy/bundles/armadillo-finer'}]\n"
@@ -97,9 +95,7 @@ def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path):
     assert f"there is no program ./nav in {tmp_path}" in findings["nav"]["found"]
 
 
-def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "file" / "aos"))
     (cache,) = [finding for finding in examine_machine() if finding.subject == "cache"]
@@ -108,7 +104,7 @@ def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
 
 
 @pytest.mark.parametrize("command", ["aos", "aos-up"])
-def test_every_program_tells_its_version_and_has_a_short_help(command: str):
+def test_every_program_tells_its_version_and_has_a_short_help(command):
     assert run(command, "--version").stdout == f"aos {__version__}\n"
     assert run(command, "-h").stdout == (told := run(command, "--help").stdout)
     assert "--install-completion" in told
@@ -126,9 +122,7 @@ def test_every_program_tells_its_version_and_has_a_short_help(command: str):
         ("aos experiment run arma", ["armadillo"]),
     ],
 )
-def test_a_shell_completes_commands_options_and_values(
-    line: str, completed: list[str], monkeypatch: pytest.MonkeyPatch
-):
+def test_a_shell_completes_commands_options_and_values(line, completed, monkeypatch):
     name = line.split()[0]
     monkeypatch.setenv(f"_{name.upper().replace('-', '_')}_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", line)

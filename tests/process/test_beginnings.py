@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import pytest
 from models import built_text, engine_of, engine_of_text
 from processes import kill_engine
@@ -79,7 +77,7 @@ def after_time(places: list[float], steps: int) -> list[float]:
 @pytest.mark.parametrize("idle", [0, 1, 3])
 @pytest.mark.parametrize("given", [(), ("state.place != 1",)])
 @pytest.mark.parametrize("is_kept", [False, True])
-async def test_a_beginning_is_the_belief_by_enumeration(idle: int, given: tuple[str, ...], is_kept: bool):
+async def test_a_beginning_is_the_belief_by_enumeration(idle, given, is_kept):
     built = await built_text(WALK)
     start = StartMission("keep" if is_kept else "initial", given, idle)
 
@@ -157,7 +155,7 @@ async def test_a_condition_of_probability_0_leaves_the_belief_also_to_the_next_p
         ('state.place == "x"', "AOS201", "--given:1:13"),
     ],
 )
-async def test_a_condition_that_cannot_be_used_is_told_with_its_column(text: str, code: str, place: str):
+async def test_a_condition_that_cannot_be_used_is_told_with_its_column(text, code, place):
     with pytest.raises(AosError, match="what is given has errors") as refused:
         await built_with_conditions(project(), [text], cache_dir())
     (found, *_) = refused.value.diagnostics
@@ -171,7 +169,7 @@ async def test_a_condition_that_faults_is_told_at_its_place():
             await engine.condition(0.01)
 
 
-async def test_a_belief_is_kept_from_a_mission_before(tmp_path: Path):
+async def test_a_belief_is_kept_from_a_mission_before(tmp_path):
     def terms(name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
         return Terms(name=name, epoch=epoch, search=Search(simulations=1, seed=seed))
 

@@ -41,7 +41,7 @@ async def kill(engine: Engine):
 
 
 @pytest.mark.parametrize("start", [DRAWN_START, LISTED_START], ids=["drawn", "exact"])
-async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_asked_other_things(start: str):
+async def test_a_belief_has_the_digest_of_its_twin_whose_engine_was_killed_and_asked_other_things(start):
     built = await drifting(start)
     async with engine_of(built, seed=3) as engine, engine_of(built, seed=3) as disturbed:
         assert (await engine.summary()).is_exact == (start == LISTED_START)

@@ -18,7 +18,7 @@ NORMAL = ("laser-normal", "lightdark-normal")
 
 
 @pytest.mark.parametrize("problem", MODELS)
-async def test_rewards_observations_and_beliefs_are_the_literatures(problem: str):
+async def test_rewards_observations_and_beliefs_are_the_literatures(problem):
     model = MODELS[problem]
     draws = random.Random(f"walks of {problem}")
     async with engine_of_bundle(BUNDLES / "bench" / problem) as engine:
@@ -70,7 +70,7 @@ def test_the_kept_rocksample_is_as_its_layout_says():
 
 
 @pytest.mark.parametrize("problem", [*MODELS, "rocksample-11-11", "rocksample-15-15", "pocman", *NORMAL])
-def test_the_benchmark_bundles_have_no_mistakes(problem: str):
+def test_the_benchmark_bundles_have_no_mistakes(problem):
     (known,) = problems_named([problem])
     loaded = load_bundle(known.bundle)
     assert loaded.project is not None

@@ -45,13 +45,13 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
     assert ours["return, pomcp", ""]["unit"] == "2 runs"
 
 
-def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_path: Path):
+def test_a_folder_that_is_no_bundle_is_not_measured_and_that_is_no_success(tmp_path):
     done = run_bench(str(tmp_path), "--quick")
     assert done.returncode == 1
     assert f"not measured: {tmp_path.name}: AOS104" in done.stdout
 
 
-def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(tmp_path: Path):
+def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_policy(tmp_path):
     folder = shutil.copytree(BUNDLES / "bench" / "tiger", tmp_path / "tiger")
     listen = folder / "listen.sd"
     policy = "rollout_policy:\n__heuristicValue = 2;\n"
@@ -66,7 +66,7 @@ def test_a_return_of_a_bundle_of_ones_own_is_told_with_and_without_its_rollout_p
 
 
 @pytest.mark.parametrize("name", ["lion", "no/such/bundle"])
-def test_an_unknown_benchmark_is_refused_with_the_known_ones(name: str):
+def test_an_unknown_benchmark_is_refused_with_the_known_ones(name):
     done = run_bench(name)
     assert done.returncode == 2
     assert f"{name} is no folder of a bundle, and none of tiger, tag," in " ".join(done.stderr.split())

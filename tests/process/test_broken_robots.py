@@ -48,7 +48,7 @@ bind:
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Path:
+def project(tmp_path) -> Path:
     """The tutorial's project with its skill `ask`."""
     with contextlib.chdir(tmp_path):
         aos("new", "project", "fetch")

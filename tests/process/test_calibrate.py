@@ -70,7 +70,7 @@ def recorded(folder: Path, deploy_file: str, first_seed: int, missions: int) -> 
 
 
 @pytest.fixture(scope="module")
-def missions_of_finer(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def missions_of_finer(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("finer")
     recorded(folder, "armadillo.yaml", 1, 40)
     return folder
@@ -97,7 +97,7 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_f
     assert held.count(False) <= 1
 
 
-def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path):
+def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path):
     blind = [DEPLOY / "bundles" / f"armadillo-{pick}-blind" for pick in ("finer", "rough")]
     recorded_missions = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
     unseen = tuple(
@@ -116,7 +116,7 @@ def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path:
     assert all(covered(results[1]))
 
 
-def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Path, tmp_path: Path):
+def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Path, tmp_path):
     shutil.copytree(FINER, tmp_path / "bundle")
     pick = tmp_path / "bundle" / "pick.sd"
     wrong = pick.read_text().replace("{0.727, 0.181, 0.09, 0.0}", "{0.2, 0.181, 0.619, 0.0}")
@@ -150,14 +150,14 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(missions_of_finer: Pa
     assert result["patch"] == ""
 
 
-def test_a_folder_without_missions_is_refused(tmp_path: Path):
+def test_a_folder_without_missions_is_refused(tmp_path):
     run = finished(AOS, "calibrate", tmp_path, FINER)
     assert run.returncode == 1
     assert "AOS801" in run.stderr
     assert "holds no recorded missions" in run.stderr
 
 
-def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initial_one(tmp_path: Path):
+def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initial_one(tmp_path):
     starts = [StartMission(), StartMission(belief="keep"), StartMission(idle=2), None]
     for number, start in enumerate(starts, 1):
         make_mission_folder(tmp_path, number)
@@ -184,7 +184,7 @@ def test_the_draws_of_documents_are_found_with_their_numbers():
     ]
 
 
-def test_missions_are_explained_with_the_values_that_they_had(tmp_path: Path):
+def test_missions_are_explained_with_the_values_that_they_had(tmp_path):
     missions: list[RecordedMission] = []
     for person in ("alice", "bob"):
         setting = Setting(deploy="errand.yaml", simulations=500, set={"target": person})

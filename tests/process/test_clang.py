@@ -29,7 +29,7 @@ STATE = "-DAOS_STATE_BYTES=64"
 
 
 @pytest.fixture
-def clang(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Compiler:
+def clang(cache_dir: Path, monkeypatch) -> Compiler:
     """The Clang of the wheel that set-up installs for development, or else that of the machine."""
     if asyncio.run(find_compiler()).family != "gcc":
         pytest.skip("all tests compile with Clang here")
@@ -42,7 +42,7 @@ def clang(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Compiler:
 
 
 @pytest.mark.parametrize("bundle", ["armadillo-finer", "tictactoe", "bench/lightdark-normal"])
-def test_clang_compiles_a_model(bundle: str, clang: Compiler, cache_dir: Path):
+def test_clang_compiles_a_model(bundle, clang: Compiler, cache_dir: Path):
     compile_model(bundle_project(BUNDLES / bundle), clang, cache_dir)
 
 
@@ -54,7 +54,7 @@ def test_clang_compiles_a_model_with_a_costly_constraint(clang: Compiler, cache_
 
 
 @pytest.mark.parametrize("part", [ENGINE, NUMBERS, FUNCTIONS])
-def test_clang_compiles_what_all_models_share(part: str, clang: Compiler, cache_dir: Path):
+def test_clang_compiles_what_all_models_share(part, clang: Compiler, cache_dir: Path):
     command = clang.compilation(str(SOURCES / f"{part}.cpp"), "part.o", str(SOURCES), "-O0", STATE)
     once([part], clang, cache_dir, lambda folder: run(command, folder))
 

@@ -56,7 +56,7 @@ async def commands_of(executable: list[Path]) -> list[str]:
     return [*Recorded.asked, command_line("restore_belief", change=1)]
 
 
-async def test_the_engine_names_each_field_that_a_command_lacks(tmp_path: Path):
+async def test_the_engine_names_each_field_that_a_command_lacks(tmp_path):
     executable: list[Path] = []
     lines: list[str] = []
     lacking: list[tuple[str, str]] = []

@@ -1,13 +1,9 @@
 import json
-from pathlib import Path
 
-import pytest
 from gateway import gateway, slow_system
 
 
-def test_a_system_at_an_endpoint_is_shown_followed_and_steered(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_system_at_an_endpoint_is_shown_followed_and_steered(tmp_path, monkeypatch):
     there, here = tmp_path / "there", tmp_path / "here"
     there.mkdir()
     here.mkdir()

@@ -32,7 +32,7 @@ def test_a_plan_for_which_nothing_is_allowed_is_an_error(bundle: Path):
     assert "the least risk is 1" in done.exception.message
 
 
-def test_a_policy_file_keeps_to_constraints_that_came_after_it(bundle: Path, tmp_path: Path):
+def test_a_policy_file_keeps_to_constraints_that_came_after_it(bundle: Path, tmp_path):
     policy = tmp_path / "tiger.policy"
     aos("solve", bundle, "--time", "2", "--precision", "1", "--out", policy)
     options = ["--policy", str(policy), "--runs", "20", "--step-limit", "8", "--json"]

@@ -33,7 +33,7 @@ if (is_real && state.charge && state.place && !state.is_ready) __reward = 7;
 
 
 @pytest.mark.parametrize("code", [NUMBERS_TEXTS_AND_POINTERS, A_CONSTANT_EXPRESSION])
-async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(code: str):
+async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(code):
     writer = BundleWriter("counted", ENVIRONMENT)
     end = "state__.doors[2] = 1;\nstate__.is_ready = true;\n__moduleResponse = ok;\n"
     writer.skill("close", ["ok"], code + end)

@@ -1,7 +1,6 @@
 import base64
 import json
 import shutil
-from pathlib import Path
 
 import pytest
 from commands import aos
@@ -73,7 +72,7 @@ async def test_a_picture_is_an_svg_or_a_png_of_state_belief_and_step():
         ("    import socket; socket.socket()", 2, "PermissionError"),
     ],
 )
-async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(body: str, line: int, said: str):
+async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(body, line, said):
     with pytest.raises(DocumentError) as caught:
         await draw(HEAD + body + "\n", BELIEF, STEP)
     (found,) = caught.value.diagnostics
@@ -90,7 +89,7 @@ async def test_code_that_draws_nothing_is_told_at_its_line_and_harms_nobody(body
         ("\ndef draw(state): pass\n", "2:1", "does not take a state, a belief and a step"),
     ],
 )
-def test_a_picture_that_is_no_python_is_a_warning_of_lint(text: str, place: str, said: str):
+def test_a_picture_that_is_no_python_is_a_warning_of_lint(text, place, said):
     files = {**read_bundle_files(BUNDLES / "errand")[0], "picture.py": text.encode()}
     loaded = load_files(files)
     assert loaded.project is not None
@@ -99,7 +98,7 @@ def test_a_picture_that_is_no_python_is_a_warning_of_lint(text: str, place: str,
     assert said in found.message
 
 
-def test_lint_tells_once_what_is_wrong_with_a_picture(tmp_path: Path):
+def test_lint_tells_once_what_is_wrong_with_a_picture(tmp_path):
     shutil.copytree(BUNDLES / "errand", tmp_path / "errand")
     (tmp_path / "errand" / "picture.py").write_text("def draw(state, belief, step):\n    return (\n")
     told = aos("lint", tmp_path / "errand", "--format", "json")

@@ -59,14 +59,14 @@ async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same():
 
 
 @pytest.mark.parametrize("kind", ["rough", "finer"])
-async def test_exact_values_of_our_armadillo_are_the_published_ones(kind: str):
+async def test_exact_values_of_our_armadillo_are_the_published_ones(kind):
     values = await _exact(BUNDLES, kind)
     assert EXACT_AT_8[kind] == pytest.approx({name: values[name] for name in EXACT_AT_8[kind]}, abs=5e-4)
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("kind", ["rough", "finer"])
-async def test_each_action_of_the_original_armadillo_is_worth_what_ours_is(kind: str, corpus: Path):
+async def test_each_action_of_the_original_armadillo_is_worth_what_ours_is(kind, corpus: Path):
     ours, theirs = [await _exact(folder, kind) for folder in (BUNDLES, corpus)]
     renamed = {CORPUS_NAMES[name]: value for name, value in ours.items()}
     assert theirs == pytest.approx(renamed, abs=1e-9)
@@ -81,7 +81,7 @@ async def test_an_impossible_observation_is_an_event_and_leaves_a_belief():
     assert update.summary.states == 1
 
 
-async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(monkeypatch: pytest.MonkeyPatch):
+async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(monkeypatch):
     monkeypatch.setattr(engine_child, "FROZEN_S", 0.1)
     async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
@@ -93,9 +93,7 @@ async def test_a_frozen_engine_is_killed_and_comes_back_with_its_belief(monkeypa
         await until_ended(children)
 
 
-async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_well(
-    monkeypatch: pytest.MonkeyPatch,
-):
+async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_well(monkeypatch):
     async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         start, killed = EngineChild.start, []
@@ -115,7 +113,7 @@ async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_w
         assert len(killed) == 3
 
 
-async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(monkeypatch: pytest.MonkeyPatch):
+async def test_an_engine_that_is_killed_while_it_is_started_is_started_again(monkeypatch):
     launch, killed = EngineChild.launch, []
 
     async def launch_and_kill(built: BuiltModel, beginning: EngineStart) -> EngineChild:

@@ -73,7 +73,7 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
     ],
 )
 async def test_documents_whose_code_would_end_a_running_mission_are_refused(
-    code: str, fault: str, file: str, cache_dir: Path
+    code, fault, file, cache_dir: Path
 ):
     refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
     assert (refusal.code, refusal.span.file) == (fault, file)
@@ -113,7 +113,7 @@ async def test_of_slow_code_in_many_places_the_environment_document_is_told(cach
     assert "no one place" in refusal.message
 
 
-async def test_an_engine_that_does_not_understand_says_so(tmp_path: Path):
+async def test_an_engine_that_does_not_understand_says_so(tmp_path):
     built = await built_text(LAMP)
     command = [str(built.executable), "-1", "-1", "1", "widen", "12"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
@@ -133,7 +133,7 @@ async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_wha
         await child.close()
 
 
-async def test_a_model_that_prints_without_end_fills_no_log(capfd: pytest.CaptureFixture[str]):
+async def test_a_model_that_prints_without_end_fills_no_log(capfd):
     shouting = LAMP["press.sd"] + "printf(\"%s\\n\", string(4000, 'x').c_str());\n"
     built = await built_text(LAMP | {"press.sd": shouting})
     async with engine_of(built) as engine:

@@ -24,6 +24,6 @@ def results(cache_dir: Path) -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("sentence", sentences)
-def test_in_cpp(sentence: str, results: dict[str, list[str]]):
+def test_in_cpp(sentence, results: dict[str, list[str]]):
     assert sentence in results, "the tests ended before this one"
     assert not results[sentence], "\n".join(results[sentence])

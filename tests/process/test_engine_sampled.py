@@ -116,7 +116,7 @@ __moduleResponse = high;
 
 
 @pytest.mark.parametrize(("leap", "best"), [("-3", "read"), ("-1", "leap")])
-async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(leap: str, best: str):
+async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(leap, best):
     files = PREJUDICED | {"leap.sd": PREJUDICED["leap.sd"].format(leap=leap)}
     async with engine_of_text(files) as engine:
         plan = await engine.plan(simulations=10_000, seed=1, planner="pomcp")

@@ -54,7 +54,7 @@ async def test_values_are_those_of_the_same_model_with_flags():
 
 
 @pytest.mark.parametrize("planner", ["auto", "pomcp", "despot", "sarsop"])
-async def test_no_planner_tells_bounds_of_it(planner: str):
+async def test_no_planner_tells_bounds_of_it(planner):
     plan = await _plan(shelf(), planner)
     assert all(action.at_least is None and action.at_most is None for action in plan.actions)
     assert "proven" not in plan.why

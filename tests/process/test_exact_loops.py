@@ -1,6 +1,5 @@
 import json
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
 from commands import aos
@@ -246,7 +245,7 @@ __moduleResponse = yes;
 """
 
 
-def test_the_command_plans_exactly_after_a_loop(tmp_path: Path):
+def test_the_command_plans_exactly_after_a_loop(tmp_path):
     loop = f"int x = 1;\n{DEEP[0]}\nstate.side = spot;"
     mean = sum((spot * odds for spot, odds in DEEP[1](1).items()), Fraction())
     files = {"loops.ef": ISSUE.format(loop=loop), "turn.sd": TURN}

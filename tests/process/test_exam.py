@@ -33,7 +33,7 @@ def truth(executable: Path) -> Iterator[Driver]:
 
 
 @pytest.mark.parametrize("name", ["dense/3", "doors/2", "endings/5", "heaven/1", "late/4"])
-def test_the_truth_is_what_all_histories_add_up_to(name: str, truth: Driver):
+def test_the_truth_is_what_all_histories_add_up_to(name, truth: Driver):
     problem = named_problem(name, 200)
     decisions = 3
     brackets = truth.report(problem.with_horizon(decisions))["values"]
@@ -85,9 +85,7 @@ def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(exec
         ("despot", ("counter/8", "doors/106", "hallway/21")),
     ],
 )
-def test_the_first_decision_of_a_tree_tells_what_missions_return(
-    planner: str, names: tuple[str, ...], executable: Path
-):
+def test_the_first_decision_of_a_tree_tells_what_missions_return(planner, names, executable: Path):
     """Trees alone promise too much in `counter/8`, and too little in the others."""
     found = Values()
     options = {"simulations": 500, "missions": 10, "planners": planner, "truth": 0.5}
@@ -124,7 +122,7 @@ def test_no_variable_is_left_out_that_matters():
 @pytest.mark.parametrize(("planner", "simulations"), [("auto", 500), ("pomcp", 100_000)])
 @pytest.mark.parametrize("seed", range(4))
 async def test_compiled_documents_mean_what_they_say(
-    seed: int, planner: str, simulations: int, truth: Driver, cache_dir: Path
+    seed, planner, simulations, truth: Driver, cache_dir: Path
 ):
     found = await examined(documents(seed), truth, cache_dir, planner, simulations=simulations)
     assert not found.false

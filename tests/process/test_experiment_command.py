@@ -24,7 +24,7 @@ parts:
 """
 
 
-def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(tmp_path: Path):
+def test_an_experiment_goes_on_where_it_was_and_judges_changed_claims_anew(tmp_path):
     experiment, out = tmp_path / "mine.yaml", tmp_path / "out"
 
     def run(seeds: int, check: str) -> dict[str, Any]:

@@ -110,7 +110,7 @@ FAULTS = {
 
 
 @pytest.fixture(autouse=True)
-def _has_time(monkeypatch: pytest.MonkeyPatch):
+def _has_time(monkeypatch):
     """A busy machine takes longer to meet the fault again, which says nothing of the statement."""
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
 
@@ -154,7 +154,7 @@ async def fault_of(built: BuiltModel, skill: str, name: str) -> ModelError:
     ("name", "document"),
     [*((name, "slip.sd") for name in FAULTS), ("eLambda", "trip.json"), ("eResponse", "trip.json")],
 )
-async def test_a_fault_is_told_at_its_statement(name: str, document: str):
+async def test_a_fault_is_told_at_its_statement(name, document):
     fault = await fault_of(await built_text(BUNDLE), document.partition(".")[0], name)
     (diagnostic,) = fault.diagnostics
     code, message = FAULTS[name]

@@ -68,7 +68,7 @@ def test_a_past_decision_is_explained_and_made_anew_under_other_circumstances(pa
     assert (unknown.status, unknown.json["code"]) == (404, "AOS501")
 
 
-def test_a_run_that_somebody_has_sent_is_shown(past: tuple[Gateway, str], tmp_path: Path):
+def test_a_run_that_somebody_has_sent_is_shown(past: tuple[Gateway, str], tmp_path):
     served, name = past
     file = tmp_path / "sent.aosrun"
     write_bundle([served.folder / "runs" / name], file)
@@ -79,7 +79,7 @@ def test_a_run_that_somebody_has_sent_is_shown(past: tuple[Gateway, str], tmp_pa
         assert other.ask(path).json == served.ask(path).json
 
 
-def test_a_mission_tells_the_address_of_its_page(tmp_path: Path):
+def test_a_mission_tells_the_address_of_its_page(tmp_path):
     said = tmp_path / "said"
     run = played(tmp_path, "--page", said=said)
     note = json.loads((tmp_path / "gateway/gateway.json").read_text())
@@ -98,7 +98,7 @@ def test_a_mission_tells_the_address_of_its_page(tmp_path: Path):
         os.kill(note["pid"], signal.SIGTERM)
 
 
-def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path: Path):
+def test_a_gateway_of_another_folder_shows_a_run_that_asks_for_its_page(tmp_path):
     with gateway(tmp_path, "--runs", str(tmp_path / "others")) as served:
         run = played(tmp_path, "--page")
         assert served.ask(f"/v1/missions/{run.name}").json["state"]["ending"] == "goal"
@@ -183,7 +183,7 @@ def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]):
         ("/v1/nothing", 404, "AOS902"),
     ],
 )
-def test_what_cannot_be_answered_is_a_problem(past: tuple[Gateway, str], path: str, status: int, code: str):
+def test_what_cannot_be_answered_is_a_problem(past: tuple[Gateway, str], path, status, code):
     served, name = past
     answer = served.ask(path.format(name=name))
     assert answer.headers["content-type"] == "application/problem+json"
@@ -300,7 +300,7 @@ def test_a_mission_is_started_from_an_uploaded_bundle_and_ends_as_one_from_a_ter
     assert end["ending"] == "goal"
 
 
-def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(past: tuple[Gateway, str], tmp_path: Path):
+def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(past: tuple[Gateway, str], tmp_path):
     served, _ = past
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text("aos: 1\nrobot: r\nbundles: [nothing]\n")
@@ -348,7 +348,7 @@ def test_whoever_views_a_living_mission_is_told_what_happens_steers_it_and_can_s
     assert end["ending"] == "cancelled"
 
 
-def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(tmp_path: Path):
+def test_the_next_mission_of_a_system_that_stays_begins_with_what_is_asked_for(tmp_path):
     with worn_system(tmp_path) as run, gateway(tmp_path) as served:
         path = f"/v1/runs/{run.name}/missions"
         assert served.ask(f"/v1/missions/{run.name}-1").json["parameters"] == {"room": "hall"}

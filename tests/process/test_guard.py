@@ -20,12 +20,12 @@ async def start(script: str, limits: Limits | None = None) -> Child:
     ("script", "status"),
     [("exit 0", 0), ("exit 3", 3), ("kill -SEGV $$", -signal.SIGSEGV), ("kill -KILL $$", -signal.SIGKILL)],
 )
-async def test_the_guard_ends_as_its_command_ends(script: str, status: int):
+async def test_the_guard_ends_as_its_command_ends(script, status):
     child = await start(script)
     assert await child.wait() == status
 
 
-async def test_input_and_output_are_the_commands(tmp_path: Path):
+async def test_input_and_output_are_the_commands(tmp_path):
     child = await start("read line; echo got $line; echo oops >&2")
     child.stdin.write(b"hello\n")
     assert (await child.stdout.readline(), await child.stderr.readline()) == (b"got hello\n", b"oops\n")
@@ -127,7 +127,7 @@ async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed()
     ],
     ids=["memory", "processor time", "file size"],
 )
-async def test_limits_hold(limits: Limits, code: str, status: int, written: dict[str, int], tmp_path: Path):
+async def test_limits_hold(limits: Limits, code, status, written, tmp_path):
     child = await Child.start(guarded([sys.executable, "-c", code], limits), cwd=tmp_path, stderr=PIPE)
     assert await child.wait() == status
     assert sizes(tmp_path) == written

@@ -52,7 +52,7 @@ for (int i = 1; i < 3; i++) __observed.echoes.push_back(AOS.SampleUniform(i, i +
 
 
 @pytest.fixture
-def kettle(tmp_path: Path) -> Path:
+def kettle(tmp_path) -> Path:
     write_texts(KETTLE, tmp_path)
     return tmp_path
 
@@ -149,7 +149,7 @@ def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path):
     subprocess.run([sys.executable, "-c", program], check=True, timeout=COMMAND_S)
 
 
-def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(tmp_path: Path):
+def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(tmp_path):
     deploy, bundle = tmp_path / "errand.yaml", BUNDLES / "errand"
     deploy.write_text(f"aos: 1\nrobot: errand\nbundles: [{bundle}]\nmission: {{set: {{target: bob}}}}\n")
     for environment in (AosEnv(bundle, mission_values={"target": "bob"}), AosEnv(deploy)):
@@ -162,7 +162,7 @@ def test_a_world_has_the_values_that_are_given_and_those_of_a_deploy_file(tmp_pa
     ("action", "message"),
     [(-1, "no action -1: they are numbered from 0 to 0"), (1, "no action 1"), (0.5, "1 whole numbers")],
 )
-def test_an_action_that_there_is_not_is_refused(kettle: Path, action: float, message: str):
+def test_an_action_that_there_is_not_is_refused(kettle: Path, action, message):
     world = AosEnv(kettle)
     world.reset(seed=1)
     with pytest.raises(InvalidAction, match=message):

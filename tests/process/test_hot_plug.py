@@ -35,13 +35,13 @@ class Patient:
 
 
 @pytest.fixture
-def picked(tmp_path: Path) -> Path:
+def picked(tmp_path) -> Path:
     """The file that lets the pick end."""
     return tmp_path / "picked"
 
 
 @pytest.fixture
-def deploy_file(tmp_path: Path, picked: Path) -> Path:
+def deploy_file(tmp_path, picked: Path) -> Path:
     """The shipped hot-plug deploy file on a free port, with runs of its own and the patient pick."""
     (tmp_path / "patient.py").write_text(PATIENT_PICK)
     text = (DEPLOY / "armadillo-hotplug.yaml").read_text()
@@ -65,7 +65,7 @@ def _push(bundle: Path, runs: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.physics
 def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
-    deploy_file: Path, tmp_path: Path, picked: Path
+    deploy_file: Path, tmp_path, picked: Path
 ):
     runs = tmp_path / "runs"
     broken = tmp_path / "broken"

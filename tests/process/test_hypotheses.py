@@ -145,9 +145,7 @@ async def test_hypotheses_move_to_another_engine():
 
 
 @pytest.mark.parametrize("cautious", [False, True])
-async def test_a_search_may_do_without_a_skill_and_start_from_the_cautious_belief(
-    lamps: Engine, cautious: bool
-):
+async def test_a_search_may_do_without_a_skill_and_start_from_the_cautious_belief(lamps: Engine, cautious):
     await lamps.update("blue", "done")
     await lost(lamps, "red", ran=0.9)
     everything = await lamps.plan(seed=1, simulations=2000, planner="pomcp")

@@ -22,7 +22,7 @@ from aos_lab.trials.trial import Trial
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
 
-def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(monkeypatch: pytest.MonkeyPatch):
+def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(monkeypatch):
     async def third_interrupted(*arguments: Any, **options: Any) -> SimulatedRun:
         if arguments[1].seed == 3:
             os.kill(os.getpid(), signal.SIGINT)
@@ -38,7 +38,7 @@ def test_ctrl_c_tells_of_the_simulated_missions_that_have_ended(monkeypatch: pyt
 
 
 @pytest.mark.parametrize("program", ["aos", "aos-up"])
-def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path: Path, program: str):
+def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path, program):
     (tmp_path / "typer.py").write_text("import sys\nprint('imports', flush=True)\nsys.stdin.read()\n")
     with subprocess.Popen(
         [Path(sys.executable).parent / program, "--help"],
@@ -56,9 +56,7 @@ def test_ctrl_c_before_a_command_is_known_is_no_traceback(tmp_path: Path, progra
 
 
 @pytest.mark.parametrize("keeps", [False, True], ids=["passing", "kept"])
-def test_ctrl_c_tells_after_how_many_missions_of_a_test(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, keeps: bool
-):
+def test_ctrl_c_tells_after_how_many_missions_of_a_test(tmp_path, monkeypatch, keeps):
     play = ModelPlayer.play
 
     async def third_interrupted(player: ModelPlayer, seed: int) -> Trial:
@@ -77,7 +75,7 @@ def test_ctrl_c_tells_after_how_many_missions_of_a_test(
     assert done.stderr == f"aos: stopped in finer after 2 of its 5 missions; {after} from there\n"
 
 
-def test_ctrl_c_ends_a_calibration_while_it_computes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_ctrl_c_ends_a_calibration_while_it_computes(tmp_path, monkeypatch):
     has_gone_on = False
 
     def interrupted(*arguments: Any) -> tuple[()]:

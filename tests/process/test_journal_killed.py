@@ -1,7 +1,6 @@
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import msgspec
 
@@ -20,7 +19,7 @@ while True:
 """
 
 
-def test_every_row_that_was_acknowledged_survives_sigkill(tmp_path: Path):
+def test_every_row_that_was_acknowledged_survives_sigkill(tmp_path):
     path = tmp_path / "journal.db"
     acknowledged = 0
     for kill_after in (1, 7, 30):

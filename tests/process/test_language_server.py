@@ -80,7 +80,7 @@ class Editor(LanguageClient):
 
 
 @pytest.fixture
-def bundle(tmp_path: Path) -> Path:
+def bundle(tmp_path) -> Path:
     folder = tmp_path / "lamp"
     folder.mkdir()
     for name, text in (("lamp.ef", ENVIRONMENT), ("press.sd", SKILL), ("press.am", MAPPING)):
@@ -285,7 +285,7 @@ async def test_a_hint_that_knows_the_mend_is_a_quick_fix(editor: Editor, bundle:
     assert [*action.edit.changes[skill.as_uri()]] == [types.TextEdit(found.range, "is_lit")]
 
 
-async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: Path, tmp_path: Path):
+async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: Path, tmp_path):
     stray = tmp_path / "package.json"
     stray.write_text("{}")
     editor.open(stray)

@@ -15,7 +15,7 @@ def marginal(belief: BeliefSummary, name: str) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("files", [many_variables(VARIABLES), long_array(ELEMENTS)], ids=["many", "long"])
-def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]):
+def test_nothing_is_wrong_with_a_large_bundle(files):
     found = load_files(encoded(files)).diagnostics
     assert {finding.code for finding in found} <= {"AOS139"}  # There is no goal.
 

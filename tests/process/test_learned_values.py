@@ -1,5 +1,3 @@
-from pathlib import Path
-
 from exam.bundles import told_of_bundle
 from models import built_text, engine_of
 from texts import write_texts
@@ -158,7 +156,7 @@ async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much():
     assert "learned" not in await _why(BERRIES)
 
 
-async def test_what_missions_return_is_told_where_values_are_learned(tmp_path: Path):
+async def test_what_missions_return_is_told_where_values_are_learned(tmp_path):
     """The tree promises that all is seen, some 20 more than a robot earns that has to open box after box."""
     write_texts(COINS, tmp_path)
     told = await told_of_bundle(tmp_path, "pomcp", missions=1, seed=1, seconds=None, simulations=300)
@@ -167,7 +165,7 @@ async def test_what_missions_return_is_told_where_values_are_learned(tmp_path: P
     assert abs(told.value - told.returned) < 2 * told.error
 
 
-async def test_played_missions_never_take_what_everybody_knows_not_to_be_possible(tmp_path: Path):
+async def test_played_missions_never_take_what_everybody_knows_not_to_be_possible(tmp_path):
     """A state that is left without others to choose for it takes an action whose precondition holds."""
     assert "what states are worth is learned" in await _why(JAMMING_COINS)
     write_texts(JAMMING_COINS, tmp_path)

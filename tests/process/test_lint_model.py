@@ -58,7 +58,7 @@ srv: {skill}
 
 
 @pytest.fixture
-def hall(tmp_path: Path) -> Callable[..., Path]:
+def hall(tmp_path) -> Callable[..., Path]:
     """Writes a bundle with this code of the walk, this goal and this door."""
 
     def write(code: str, *, goal: str = "3", door: str = "2") -> Path:
@@ -89,9 +89,7 @@ def _place(span: dict[str, Any]) -> str:
     return f"{span['file']}:{span['line']}"
 
 
-def test_a_fault_of_model_code_names_its_document_line(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-):
+def test_a_fault_of_model_code_names_its_document_line(hall: Callable[..., Path], monkeypatch):
     """A compiler that does not check divisions derives that `left` is 1; others: test_fault_statements."""
     code = "int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;"
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
@@ -117,16 +115,14 @@ REACHED = [
     ("code", "error_code"), REACHED, ids=["exception", "loop", "behind the goal", "draws", "drawn"]
 )
 def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, code: str, error_code: str
+    hall: Callable[..., Path], monkeypatch, code, error_code
 ):
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", COMMAND_S)
     severity, place, _ = linted(hall(code), exit_code=1)[error_code]
     assert (severity, place) == ("error", "walk.sd:5")
 
 
-def test_steps_that_take_long_and_end_are_a_warning(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-):
+def test_steps_that_take_long_and_end_are_a_warning(hall: Callable[..., Path], monkeypatch):
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     # Each turn needs the one before, so that no compiler makes several at once.
     slow = "int s = 0; for (int i = 0; i < 200000000; i++) s = (5 * s + (i ^ state.place)) % 7;\n"
@@ -135,16 +131,14 @@ def test_steps_that_take_long_and_end_are_a_warning(
     assert hint.startswith("Make steps cheaper")
 
 
-def test_steps_that_wait_for_a_processor_are_not_slow(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-):
+def test_steps_that_wait_for_a_processor_are_not_slow(hall: Callable[..., Path], monkeypatch):
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     waiting = "timespec pause{0, 300'000'000}; nanosleep(&pause, nullptr);\n"
     assert linted(hall(waiting + STEP)) == {}
 
 
 @pytest.mark.parametrize("draw", ["", "state__.place += AOS.SampleUniform(0, 1) > 2;\n"])
-def test_a_loop_that_no_draw_ends_is_a_warning(hall: Callable[..., Path], draw: str):
+def test_a_loop_that_no_draw_ends_is_a_warning(hall: Callable[..., Path], draw):
     loop = "while (state.place > 0) { if (AOS.Bernoulli(0.5) && state.place > 1) break; }"
     severity, place, hint = linted(hall(draw + STEP + loop))["AOS211"]
     assert (severity, place) == ("warning", f"walk.sd:{5 + bool(draw)}")
@@ -197,9 +191,7 @@ def test_a_skill_with_a_mistake_has_no_second_one_where_the_environment_looks_at
     assert [(one["code"], _place(one["span"])) for one in errors] == [("AOS106", "walk.sd:4")]
 
 
-def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-):
+def test_code_that_computes_too_long_while_it_is_compiled_is_refused(hall: Callable[..., Path], monkeypatch):
     monkeypatch.setattr(building, "MODEL_CPU_S", 1.0)
     monkeypatch.setattr(building, "ENGINE_SHARE", 0.0)
     folder = hall(BRANCHING)
@@ -207,7 +199,7 @@ def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
 
 
 def test_a_model_whose_goal_and_doors_can_be_reached_is_clean_and_its_documents_are_lowered_once(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+    hall: Callable[..., Path], monkeypatch
 ):
     calls: Counter[str] = Counter()
 
@@ -247,9 +239,7 @@ def test_a_goal_beyond_what_could_be_looked_at_is_not_remarked_on(hall: Callable
     assert linted(hall(widens, goal="64000000", door="-1")) == {}
 
 
-def test_a_search_that_ends_for_its_time_is_told_wherever_it_was(
-    hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-):
+def test_a_search_that_ends_for_its_time_is_told_wherever_it_was(hall: Callable[..., Path], monkeypatch):
     """Some of the searches end in code of the documents, and the others between two pieces of it."""
     monkeypatch.setattr(reachability, "MAX_CPU_S", 0.05)
     widens = "state__.place = state.place * 300 + AOS.SampleDiscrete(vector<double>(300, 1.0 / 300));"

@@ -4,7 +4,6 @@ import signal
 import subprocess
 import sys
 from collections.abc import AsyncIterator, Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -33,7 +32,7 @@ Start = Callable[..., Evaluator]
 
 
 @pytest_asyncio.fixture
-async def evaluator(tmp_path: Path) -> AsyncIterator[Start]:
+async def evaluator(tmp_path) -> AsyncIterator[Start]:
     """Makes evaluators of documents' texts; their workers end with the test."""
     made: list[Evaluator] = []
 
@@ -102,7 +101,7 @@ async def test_an_exception_names_the_documents_line_and_the_worker_goes_on(eval
 
 
 @pytest.mark.parametrize("code", ["while True:\n    pass", "len(str(7 ** 10 ** 8))"])
-async def test_code_that_does_not_finish_is_stopped_at_its_line(evaluator: Start, code: str):
+async def test_code_that_does_not_finish_is_stopped_at_its_line(evaluator: Start, code):
     mapping = evaluator(RESULT + f"{code}\nvalue = 1\n", evaluation_s=1.0)
     fault = await fault_of(mapping)
     assert fault.code == "AOS403"
@@ -134,7 +133,7 @@ async def test_a_crash_names_the_documents_line(evaluator: Start):
 
 
 @pytest.mark.parametrize("code", ["os._exit(0)", "os.kill(os.getpid(), 9)", "os.closerange(3, 64)"])
-async def test_code_that_ends_its_process_is_a_fault_and_a_new_worker_is_started(evaluator: Start, code: str):
+async def test_code_that_ends_its_process_is_a_fault_and_a_new_worker_is_started(evaluator: Start, code):
     mapping = evaluator(RESULT + f"import os\n{code}\nvalue = 1\n")
     fault = await fault_of(mapping)
     assert fault.code == "AOS401"
@@ -189,7 +188,7 @@ async def test_what_cannot_be_sent_is_refused_with_its_type(evaluator: Start):
     assert (await fault_of(mapping)).code == "AOS401"
 
 
-async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(evaluator: Start, tmp_path: Path):
+async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(evaluator: Start, tmp_path):
     code = "import os, sys\nprint('from print')\nsys.stdout.write('from write ')\n"
     code += "os.write(1, b'from descriptor')\nvalue = sys.stdin.read()\n"
     mapping = evaluator(RESULT + code)
@@ -199,7 +198,7 @@ async def test_prints_go_to_the_mappings_log_and_not_into_the_answers(evaluator:
     assert printed == "from print\nfrom write from descriptor"
 
 
-async def test_a_flood_of_prints_is_cut_off_and_harms_nothing(evaluator: Start, tmp_path: Path):
+async def test_a_flood_of_prints_is_cut_off_and_harms_nothing(evaluator: Start, tmp_path):
     mapping = evaluator(RESULT + "print('x' * 700_000)\nprint('y' * 700_000)\nprint('z')\nvalue = 1\n")
     await mapping.begin({})
     assert (await mapping.finish({})).response == "done"
@@ -218,7 +217,7 @@ async def test_a_cancelled_evaluation_leaves_no_answer_for_the_next(evaluator: S
     assert (await mapping.finish({"s": 0})).response == "done"
 
 
-async def test_mapping_code_starts_no_process(evaluator: Start, tmp_path: Path):
+async def test_mapping_code_starts_no_process(evaluator: Start, tmp_path):
     code = "import subprocess\nvalue = subprocess.Popen(['sleep', '600'], start_new_session=True).pid\n"
     mapping = evaluator(RESULT + code)
     await mapping.begin({})
@@ -249,7 +248,7 @@ def test_a_worker_whose_middleware_was_killed_ends_without_a_word():
     ],
 )
 async def test_code_that_answers_in_the_place_of_its_worker_is_a_fault_of_the_mapping(
-    evaluator: Start, answer: str
+    evaluator: Start, answer
 ):
     code = f"""import os
 frame = {answer}

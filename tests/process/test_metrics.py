@@ -27,7 +27,7 @@ def resumed(run: Path) -> Iterator[None]:
         yield
 
 
-def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path):
+def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path):
     write_long_run(tmp_path / "runs", 2)
     with gateway(tmp_path) as served:
         assert served.ask("/metrics").status == 404
@@ -61,9 +61,7 @@ def test_a_mission_is_counted_while_it_runs_and_when_it_ends(tmp_path: Path):
         assert 'aos_missions_running{robot="tiger"}' not in over
 
 
-def test_a_run_that_was_killed_and_taken_up_is_counted_once_also_by_who_was_not_asked_meanwhile(
-    tmp_path: Path,
-):
+def test_a_run_that_was_killed_and_taken_up_is_counted_once_also_by_who_was_not_asked_meanwhile(tmp_path):
     running, killed, cancelled = (
         f"aos_missions_{what}}}"
         for what in (

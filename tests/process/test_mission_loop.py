@@ -226,7 +226,7 @@ async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_
 
 @pytest.mark.parametrize("changes_every_s", [0.125, 0.5])
 async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for_any_more(
-    field: BuiltModel, changes_every_s: float
+    field: BuiltModel, changes_every_s
 ):
     def wait():
         waits.append(len(around.decisions))
@@ -286,9 +286,7 @@ async def test_an_adapter_that_is_expected_back_is_not_waited_for_for_ever(field
     assert (state.ending, clock.now_s) == ("goal", 900.0)
 
 
-async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(
-    field: BuiltModel, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(field: BuiltModel, monkeypatch):
     async def until_changed(timeout_s: float):
         around.mission.steer(Steer("stop", by="ana"))
         await asyncio.Event().wait()  # Only a stop ends it.

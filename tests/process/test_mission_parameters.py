@@ -120,7 +120,7 @@ if (state.dock.near == soda) __reward += 1000;
         (["far_m=7", "word=ßo", "dock.near=soda"], 10 + 7 + 200 + 1000),
     ],
 )
-async def test_defaults_and_initial_values_follow_from_what_is_set(options: list[str], value: float):
+async def test_defaults_and_initial_values_follow_from_what_is_set(options, value):
     values = tuple(map(mission_value_of_option, options))
     project = msgspec.structs.replace(text_project(PARTS), mission_values=values)
     built = await built_project(project)
@@ -213,7 +213,7 @@ async def test_values_are_for_all_bundles_of_a_start_together(cache_dir: Path):
         await shelf.close()
 
 
-def test_commands_take_values_and_a_policy_is_for_its_own(tmp_path: Path):
+def test_commands_take_values_and_a_policy_is_for_its_own(tmp_path):
     bundle, policy = str(BUNDLES / "errand"), str(tmp_path / "bob.policy")
 
     def run(*arguments: str) -> object:
@@ -254,8 +254,8 @@ tests:
     (("--set", "target=alice"), "bob", 4),
 ])  # fmt: skip
 def test_missions_of_a_test_file_have_its_values_or_the_commands(
-    tmp_path: Path,
-    options: tuple[str, ...], person: str, status: int,
+    tmp_path,
+    options, person, status,
 ):  # fmt: skip
     file = tmp_path / "missions.yaml"
     file.write_text(MISSIONS.format(deploy=DEPLOY / "errand.yaml", person=person))
@@ -273,7 +273,7 @@ def give(call, to):
 """
 
 
-def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_its_command(tmp_path: Path):
+def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was_with_the_values_of_its_command(tmp_path):
     (tmp_path / "robot.py").write_text(SLOW_GIVE)
     text = (DEPLOY / "errand.yaml").read_text()
     text = text.replace("[bundles/errand]", f"[{ROOT}/deploy/bundles/errand]")

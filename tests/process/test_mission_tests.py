@@ -25,7 +25,7 @@ tests:
 """
 
 
-def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path):
+def test_claims_that_fail_are_told_with_their_missions(tmp_path):
     missions, junit = tmp_path / "missions.yaml", tmp_path / "junit.xml"
     missions.write_text(MISSIONS)
 
@@ -47,7 +47,7 @@ def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path):
     assert [verdict["held"] for verdict in again["finer"]["verdicts"]] == [2, 0]
 
 
-def test_a_mission_that_the_model_plays_returns_what_the_simulated_one_returns(tmp_path: Path):
+def test_a_mission_that_the_model_plays_returns_what_the_simulated_one_returns(tmp_path):
     bundle = f"{DEPLOY}/bundles/armadillo-finer"
     deploy = tmp_path / "played.yaml"
     deploy.write_text(
@@ -91,7 +91,7 @@ LOSSY_CLAIMS = {
 }
 
 
-def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(tmp_path: Path):
+def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(tmp_path):
     (tmp_path / "robot.yaml").write_text(LOSSY_ROBOT)
     tests = [
         LOSSY_TEST.format(name=fault.replace(".", "-"), fault=fault, claim=claim)

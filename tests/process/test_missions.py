@@ -131,7 +131,7 @@ bind: {{"*": model}}
 
 
 @pytest.fixture
-def stays(tmp_path: Path) -> Iterator[System]:
+def stays(tmp_path) -> Iterator[System]:
     with up(tmp_path) as system:
         yield system
 
@@ -249,7 +249,7 @@ def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays
     assert stays.interrupt() == 0
 
 
-async def test_the_next_mission_has_other_parameters_and_newer_documents(tmp_path: Path):
+async def test_the_next_mission_has_other_parameters_and_newer_documents(tmp_path):
     files = {path.name: path.read_bytes() for path in (BUNDLES / "errand").iterdir()}
     files["look.sd"] = files["look.sd"].replace(b"__reward = -1;", b"__reward = -2;")
     with up(tmp_path, "errand.yaml") as system:

@@ -16,7 +16,7 @@ from aos_language.load import load_bundle
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
@@ -60,7 +60,7 @@ def test_nothing_is_overwritten():
 
 
 @pytest.mark.parametrize("name", ["Fetch", "../fetch", "2do", "a-b", 65 * "n"])
-def test_a_name_that_documents_cannot_have_is_refused(name: str):
+def test_a_name_that_documents_cannot_have_is_refused(name):
     assert "is no name for a project" in str(run(f"new project {name}").exception)
     assert not list(Path().iterdir())
 
@@ -71,7 +71,7 @@ def test_a_skill_has_no_name_of_cpp():
     assert not Path("fetch/double.sd").exists()
 
 
-def test_a_reader_that_has_gone_leaves_a_whole_project(monkeypatch: pytest.MonkeyPatch):
+def test_a_reader_that_has_gone_leaves_a_whole_project(monkeypatch):
     monkeypatch.setattr(typer, "echo", lambda text: 1 / 0)
     run("new project fetch")
     assert len(list(Path("fetch").iterdir())) == 5
@@ -88,7 +88,7 @@ def test_a_new_skill_belongs_to_the_bundles_project():
 
 
 @pytest.mark.parametrize("name", deploy_files())
-def test_every_example_is_whole_where_it_is_written(name: str):
+def test_every_example_is_whole_where_it_is_written(name):
     written = run(f"new example {name}")
     assert written.exit_code == 0, written.output
     assert f"aos plan {name}/{name}.yaml --exact" in written.output  # A bundle may be a part of the whole.
@@ -108,7 +108,7 @@ def test_an_unknown_example_is_told_with_the_nearest():
 
 
 @pytest.mark.parametrize(("kind", "plans_in_time"), [("class", True), ("command", True), ("model", False)])
-def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_time: bool):
+def test_a_robot_plans_in_time_and_its_model_in_simulations(kind, plans_in_time):
     run("new project fetch")
     written = run(f"new adapter {kind} --in fetch")
     assert written.exit_code == 0, written.output
@@ -117,9 +117,7 @@ def test_a_robot_plans_in_time_and_its_model_in_simulations(kind: str, plans_in_
     assert (solver.simulations is not None) != plans_in_time
 
 
-def test_a_written_program_tells_a_late_skill_and_a_result_that_cannot_be_sent_from_a_failure(
-    monkeypatch: pytest.MonkeyPatch,
-):
+def test_a_written_program_tells_a_late_skill_and_a_result_that_cannot_be_sent_from_a_failure(monkeypatch):
     run("new project fetch")
     run("new adapter command --in fetch")
     monkeypatch.setenv("AOS_ROBOT", "fetch")

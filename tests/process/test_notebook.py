@@ -3,7 +3,6 @@
 import json
 import re
 import sys
-from pathlib import Path
 
 import pytest
 from gateway import environment
@@ -35,7 +34,7 @@ print(json.dumps([len(names["behind_left"]), names["state"].held_by != "", names
 """Runs each cell as a task of its own in one loop, as IPython does."""
 
 
-def test_the_notebook_starts_follows_steers_studies_and_plots(tmp_path: Path):
+def test_the_notebook_starts_follows_steers_studies_and_plots(tmp_path):
     (tmp_path / "deploy").symlink_to(DEPLOY)
     (tmp_path / "docs").mkdir()
     done = finished(
@@ -58,7 +57,7 @@ def test_the_notebook_starts_follows_steers_studies_and_plots(tmp_path: Path):
     assert json.loads(summary.read_text())["ending"] == "cancelled"
 
 
-async def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(tmp_path: Path):
+async def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(tmp_path):
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text("aos: 1\nrobot: r\nbundles: [nothing]\n")
     with pytest.raises(DeployError, match=r"wrong\.yaml:3:") as raised:

@@ -140,7 +140,7 @@ async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule()
 
 
 @pytest.mark.parametrize(("kind", "beeps"), [(0, True), (1, False), (-1, None)])
-async def test_several_numbers_and_a_response_count_together(kind: int, beeps: bool | None):
+async def test_several_numbers_and_a_response_count_together(kind, beeps):
     """Discrete draws by their probability; also whether a number is reported tells something."""
     likelihood = {}
     for level in range(3):
@@ -289,7 +289,7 @@ FAULTY = gauge(
 
 
 @pytest.mark.parametrize("skill", FAULTS)
-async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill: str):
+async def test_a_report_without_a_density_is_a_fault_at_its_statement(skill):
     _, why, line = FAULTS[skill]
     async with engine_of_text(FAULTY) as engine:
         with pytest.raises(ModelError, match=why) as raised:

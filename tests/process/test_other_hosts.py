@@ -14,7 +14,7 @@ FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_
 
 
 @pytest.fixture(autouse=True)
-def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def project(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     aos("new", "project", "fetch")
     aos("new", "adapter", "command", "--in", "fetch")
@@ -23,7 +23,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
 
 
 @pytest.fixture
-def ssh(tmp_path: Path) -> Iterator[str]:
+def ssh(tmp_path) -> Iterator[str]:
     """The folder of an `ssh` that reaches robot@arm.
 
     It is the real one where OpenSSH's server is there and may be started, by root alone; else a stand-in.
@@ -64,25 +64,25 @@ def left_behind(folder: Path) -> list[str]:
     return [command for command in found if "fetch_robot" in command or "sleep 1000" in command]
 
 
-def test_our_services_may_be_ready_before_it_is_known_how_to_dial_the_other_host(tmp_path: Path):
+def test_our_services_may_be_ready_before_it_is_known_how_to_dial_the_other_host(tmp_path):
     status, said = up(slow_stand_in(tmp_path), f"[{sys.executable}, fetch_robot.py]", tmp_path)
     assert status == 0, said
 
 
-def test_a_program_that_ends_over_there_is_started_again(tmp_path: Path):
+def test_a_program_that_ends_over_there_is_started_again(tmp_path):
     script = FIRST_TIME_BAD.replace("python3", sys.executable)
     status, said = up(stand_in(tmp_path), f'[sh, -c, "{script}"]', tmp_path)
     assert status == 0, said
     assert "robot starting: start 2" in said
 
 
-def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path: Path):
+def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path):
     status, said = up(ssh, "[arm_driver]", tmp_path)
     assert status == 3
     assert f"robot on robot@arm: there is no program arm_driver in {tmp_path} or on the PATH" in said
 
 
-def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path):
+def test_a_host_that_is_not_reached_ends_the_start(tmp_path):
     text = "ssh: connect to host arm port 22: Connection refused"
     status, said = up(refusing_ssh(tmp_path, text), "[arm_driver]", tmp_path)
     assert status == 3
@@ -91,7 +91,7 @@ def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path):
 
 
 def test_programs_on_another_host_run_a_mission_are_ready_by_what_they_print_and_end_with_the_run(
-    ssh: str, tmp_path: Path
+    ssh: str, tmp_path
 ):
     (tmp_path / "fetch_robot_sim.sh").write_text("echo over there is $AOS_ROBOT; sleep 1000 & wait\n")
     with Path("fetch.yaml").open("a") as deploy:

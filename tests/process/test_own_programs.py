@@ -140,9 +140,7 @@ async def test_a_program_that_goes_into_the_background_is_told_to_stay(system: S
     ("on_exit", "then"),
     [("fault", "the run ends"), ("restart", "it is started again"), ("ignore", "ignored")],
 )
-async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
-    system: System, on_exit: str, then: str
-):
+async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(system: System, on_exit, then):
     endless = ("sh", "-c", "echo up; sleep 1000")
     nav = own(*endless, ready=ReadyPart(line="up"), on_exit=on_exit, is_restarted=on_exit == "restart")
 
@@ -196,7 +194,7 @@ PROGRAMS = """programs:
 
 
 @pytest.fixture(scope="module")
-def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def template(tmp_path_factory) -> Path:
     """A robot that is a command, with a simulator that it can only be started after."""
     folder = tmp_path_factory.mktemp("template")
     with contextlib.chdir(folder):
@@ -214,7 +212,7 @@ def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def project(template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def project(template: Path, tmp_path, monkeypatch) -> Path:
     monkeypatch.chdir(tmp_path)
     shutil.copytree(template, tmp_path, dirs_exist_ok=True)
     return tmp_path
@@ -341,7 +339,7 @@ def test_a_closed_terminal_ends_the_mission_in_order(project: Path):
     assert json.loads(Path("runs/latest/summary.json").read_text())["ending"] == "cancelled"
 
 
-def test_on_a_full_disk_not_everything_is_said_to_be_kept(project: Path, monkeypatch: pytest.MonkeyPatch):
+def test_on_a_full_disk_not_everything_is_said_to_be_kept(project: Path, monkeypatch):
     monkeypatch.setenv("AOS_FAILPOINT", "journal.decision.before:full:1")
     done = up("--model")
     assert done.returncode == 3, done.stdout + done.stderr

@@ -94,7 +94,7 @@ def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
 
 
 @pytest.fixture(scope="module")
-def worn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Gateway, str]]:
+def worn(tmp_path_factory) -> Iterator[tuple[Gateway, str]]:
     """A gateway, and a mission of a system that stays, which has ended with an alarm."""
     folder = tmp_path_factory.mktemp("worn")
     with worn_system(folder) as run, gateway(folder) as served:
@@ -178,7 +178,7 @@ def test_whoever_joins_late_sees_each_step_live_and_can_hold_act_and_stop(
 
 
 def test_a_lost_connection_is_told_what_was_missed_comes_when_it_is_back_and_a_killed_run_is_told(
-    browser: Browser, living: tuple[Gateway, Path], tmp_path: Path
+    browser: Browser, living: tuple[Gateway, Path], tmp_path
 ):
     served, run = living
     page = opened(browser, served)
@@ -326,7 +326,7 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
 
 
 def test_long_names_are_told_whole_and_widen_no_screen(
-    browser: Browser, past: tuple[Gateway, str], monkeypatch: pytest.MonkeyPatch
+    browser: Browser, past: tuple[Gateway, str], monkeypatch
 ):
     served, _ = past
     long = "where_the_robot_that_carries_the_longest_of_all_names_stands_at_the_moment"
@@ -370,7 +370,7 @@ def test_a_thousand_steps_are_loaded_with_little(browser: Browser, past: tuple[G
 
 
 def test_a_mission_whose_model_is_compiled_says_so_everywhere_and_another_follows_where_it_is_stopped(
-    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    browser: Browser, tmp_path, monkeypatch
 ):
     compiler = tmp_path / "c++"
     compiler.write_text('#!/bin/sh\ncase "$*" in *version*) exec c++ "$@";; esac\nexec sleep 1000\n')

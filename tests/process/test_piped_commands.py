@@ -22,7 +22,7 @@ COMMANDS = (
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_piped_command_says_nothing_beside_its_result(command: tuple[str, ...], cache_dir: Path):
+def test_a_piped_command_says_nothing_beside_its_result(command, cache_dir: Path):
     bundle = BUNDLES / "bench" / "tiger"
     asyncio.run(built_bundle(bundle))
     asyncio.run(build_solver(cache_dir))
@@ -42,7 +42,7 @@ def test_an_output_that_cannot_be_written_is_told_in_one_line():
 
 
 @pytest.mark.parametrize("command", [("schema", "deploy"), ("doctor",)])
-def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str, ...]):
+def test_a_command_whose_reader_has_gone_ends_without_a_word(command):
     with subprocess.Popen([AOS, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as done:
         assert done.stdout is not None
         done.stdout.close()
@@ -50,7 +50,7 @@ def test_a_command_whose_reader_has_gone_ends_without_a_word(command: tuple[str,
     assert (done.returncode, said) == (-signal.SIGPIPE, b"")
 
 
-def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path):
+def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path):
     (tmp_path / "file").touch()
     command = [AOS, "experiment", "run", "armadillo", "--out", tmp_path / "file" / "out"]
     done = finished(*command)
@@ -61,7 +61,7 @@ def test_a_folder_that_cannot_be_used_is_told_in_one_line(tmp_path: Path):
 @pytest.mark.parametrize(
     "command", [("calibrate", ".", ".", "--write"), ("test", "missions.yaml", "--junit")]
 )
-def test_a_file_in_no_folder_is_told_before_the_work_begins(command: tuple[str, ...], tmp_path: Path):
+def test_a_file_in_no_folder_is_told_before_the_work_begins(command, tmp_path):
     target = tmp_path / "none" / "it.pomdp"
     done = finished(AOS, *command, target)
     assert (done.returncode, done.stdout) == (2, "")

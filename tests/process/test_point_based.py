@@ -72,9 +72,7 @@ async def _decide(engine: Engine, simulations: int = 20_000, seed: int = 1) -> P
 
 
 @pytest.mark.parametrize("heard", [(), ("tiger_left",), ("tiger_left", "tiger_left")])
-async def test_what_is_proven_of_values_is_true_and_tight_for_the_best_one(
-    heard: tuple[str, ...], tiger: BuiltModel
-):
+async def test_what_is_proven_of_values_is_true_and_tight_for_the_best_one(heard, tiger: BuiltModel):
     async with engine_of(tiger) as engine:
         for sound in heard:
             await engine.update("listen", sound)
@@ -150,9 +148,7 @@ async def test_without_a_discount_the_horizon_bounds_what_is_earned():
         (800, 500, "sarsop", "too many states to list; the 11476 states that 100 decisions can lead to"),
     ],
 )
-async def test_auto_goes_by_whether_the_states_can_be_listed(
-    length: int, simulations: int, planner: str, why: str
-):
+async def test_auto_goes_by_whether_the_states_can_be_listed(length, simulations, planner, why):
     larger = {name: text.replace("150", str(length)) for name, text in FIELD.items()}
     async with engine_of_text(larger) as engine:
         plan = await engine.plan(simulations=simulations, seed=1, planner="auto")
@@ -165,7 +161,7 @@ async def test_auto_goes_by_whether_the_states_can_be_listed(
     # Behind two doors, and on 49 cells with 8 rocks: what the rover has learnt does not count.
     [("bench/tiger", "exact", "2 states"), ("bench/rocksample-7-8", "sarsop", f"{49 * 2**8} states")],
 )
-async def test_auto_chooses_by_states_and_budget_and_says_so(problem: str, planner: str, why: str):
+async def test_auto_chooses_by_states_and_budget_and_says_so(problem, planner, why):
     async with engine_of_bundle(BUNDLES / problem) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
@@ -187,7 +183,7 @@ async def test_few_missions_make_no_value_less_certain_than_what_is_proven():
 
 
 @pytest.mark.parametrize(("price", "choice"), [(10, "check"), (30, "sell")])
-async def test_what_ends_a_mission_leaves_nothing_for_after_the_horizon(price: int, choice: str):
+async def test_what_ends_a_mission_leaves_nothing_for_after_the_horizon(price, choice):
     """Else a value may be less than bounds without a horizon, and the record says by how much."""
     files = _forty(0.98)
     files["ticket.ef"] += (

@@ -17,7 +17,7 @@ from aos_solver.child.engine import Engine
 
 
 async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(
-    cache_dir: Path, tmp_path: Path
+    cache_dir: Path, tmp_path
 ):
     emitted, _ = lowered(bundle_project(BUNDLES / "armadillo-finer"))
     found: list[BuiltModel] = []
@@ -36,9 +36,7 @@ async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_i
     assert await mean_reward(quick) == pytest.approx(await mean_reward(thorough), abs=0.3)
 
 
-async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+async def test_only_the_deadline_counts_before_the_speed_of_the_machine_is_known(tmp_path, monkeypatch):
     limits: list[int | None] = []
 
     async def compiled(*_: object, cpu_s: int | None = None, **__: object) -> tuple[str, int]:

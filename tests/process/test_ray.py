@@ -45,7 +45,7 @@ def play(out: Path, seeds: range, on: str, report: list[str] | None = None) -> l
 
 
 @needs_ray
-def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(tmp_path: Path):
+def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(tmp_path):
     here = play(tmp_path / "here", range(1, 7), HERE)
     there = play(tmp_path / "there", range(1, 5), ray_cluster.OWN)
     assert there == here[:4]
@@ -59,14 +59,14 @@ def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_tw
 
 
 @needs_ray
-def test_a_machine_with_another_aos_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_machine_with_another_aos_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(ray_cluster, "_sources_of", lambda folders: ("9.9", "f" * 64))
     with pytest.raises(DeployError, match=r"has another AOS: .* there, 9\.9 with sources ffffffff here"):
         play(tmp_path, range(1, 2), ray_cluster.OWN)
 
 
 @needs_ray
-def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(tmp_path: Path):
+def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(tmp_path):
     with pytest.raises(DeployError) as caught:
         play(tmp_path, range(1, 2), "ray://127.0.0.1:9")
     assert caught.value.code == "AOS809"
@@ -92,7 +92,7 @@ def test_a_head_whose_process_for_this_client_did_not_come_up_is_asked_once_more
     assert caught.value.message.endswith("Initialization failure from server: no process came up")
 
 
-def test_without_ray_the_command_says_how_to_install_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_without_ray_the_command_says_how_to_install_it(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(DeployError, match=r"aos-autonomy\[ray\]") as caught:
         play(tmp_path, range(1, 2), "ray://127.0.0.1:9")
@@ -106,7 +106,7 @@ def test_without_ray_the_command_says_how_to_install_it(tmp_path: Path, monkeypa
         (["--on", "ray", "--system-seeds", "1"], "missions of the whole system are run here"),
     ],
 )
-def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(options: list[str], text: str):
+def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(options, text):
     done = aos("experiment", "run", "armadillo", *options)
     assert done.exit_code == 2
     assert text in " ".join(done.stderr.split())

@@ -44,7 +44,7 @@ async def kill_at_step_2(engine: Engine, step: int):
     ],
     ids=["exact", "three threads", "particles"],
 )
-async def test_decisions_repeat_in_values_counts_and_beliefs(bundle: str, budget: dict[str, object]):
+async def test_decisions_repeat_in_values_counts_and_beliefs(bundle, budget: dict[str, object]):
     played = await play(files_of(BUNDLES / bundle), steps=4, **budget)
     found = await comparisons(played)
     assert [row.difference for row in found if row.difference] == []
@@ -71,9 +71,7 @@ async def test_a_killed_engine_and_other_documents_are_replayed_where_they_happe
     assert [row.difference for row in found if row.difference] == []
 
 
-async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_need(
-    monkeypatch: pytest.MonkeyPatch,
-):
+async def test_a_search_that_was_given_up_leaves_nothing_that_a_replay_would_need(monkeypatch):
     """The hold comes when the third search has begun; without a grace it is given up."""
     monkeypatch.setattr(abandoning, "GRACE_S", 0.0)
 

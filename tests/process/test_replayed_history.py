@@ -78,14 +78,14 @@ def with_another_belief(record: DecisionRecord) -> DecisionRecord:
     return replace(record, belief=replace(record.belief, digest="0123456789abcdef"))
 
 
-async def test_a_replay_gives_each_belief_again(tiger: BuiltModel, tmp_path: Path):
+async def test_a_replay_gives_each_belief_again(tiger: BuiltModel, tmp_path):
     replay = await replay_of(await played(tiger), tmp_path)
     assert (replay.violations, replay.compared, replay.remark) == ([], 2 * STEPS, "")
 
 
 @pytest.mark.parametrize("spoil", [with_another_response, with_another_belief])
 async def test_a_history_with_another_belief_is_caught_at_its_row(
-    spoil: Callable[[DecisionRecord], DecisionRecord], tiger: BuiltModel, tmp_path: Path
+    spoil: Callable[[DecisionRecord], DecisionRecord], tiger: BuiltModel, tmp_path
 ):
     rows = await played(tiger)
     number, record = next(
@@ -100,7 +100,7 @@ async def test_a_history_with_another_belief_is_caught_at_its_row(
     assert f"step {record.step} is observed as the belief" in replay.violations[0].text
 
 
-async def test_a_run_of_another_seed_or_start_is_caught(tiger: BuiltModel, tmp_path: Path):
+async def test_a_run_of_another_seed_or_start_is_caught(tiger: BuiltModel, tmp_path):
     rows = await played(tiger)
     first = records(rows)[0][0]
     rows[first] = (rows[first][0], with_another_belief(records(rows)[0][1]))
@@ -108,7 +108,7 @@ async def test_a_run_of_another_seed_or_start_is_caught(tiger: BuiltModel, tmp_p
     assert [violation.row for violation in replay.violations] == [first + 1]
 
 
-async def test_what_cannot_be_replayed_is_said(tiger: BuiltModel, tmp_path: Path):
+async def test_what_cannot_be_replayed_is_said(tiger: BuiltModel, tmp_path):
     rows = await played(tiger)
     third = records(rows)[2][0]
     changed: Rows = [*rows[:third], ("adopted", ModelAdopted(2, "other", 1)), *rows[third:]]

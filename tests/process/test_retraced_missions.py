@@ -128,7 +128,7 @@ def write_run(rows: Rows, run: Path, cache_dir: Path):
 
 
 async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbed_twin(
-    cache_dir: Path, tmp_path: Path
+    cache_dir: Path, tmp_path
 ):
     rows = await whole()
     adopted = [said for _, said in rows if isinstance(said, ModelAdopted)]
@@ -145,7 +145,7 @@ async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbe
 
 
 async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_ones(
-    cache_dir: Path, tmp_path: Path
+    cache_dir: Path, tmp_path
 ):
     rows = await whole()
     first = next(number for number, (_, said) in enumerate(rows) if isinstance(said, ModelAdopted))
@@ -154,7 +154,7 @@ async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_
     assert memory_of(journal).stretches[-1].by == "import"
 
 
-async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(cache_dir: Path, tmp_path: Path):
+async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(cache_dir: Path, tmp_path):
     async def gone(_: int) -> Project:
         raise StorageError("the catalogue has no revision 1", code="AOS702")
 
@@ -184,5 +184,5 @@ def test_a_replay_needs_no_model_before_it():
 
 
 @pytest.mark.parametrize("digest", ["a", "b"])
-def test_a_mission_without_a_model_before_has_nothing_to_retrace(digest: str):
+def test_a_mission_without_a_model_before_has_nothing_to_retrace(digest):
     assert models_before((), digest, 0) == ()

@@ -57,7 +57,7 @@ runs: runs
 
 
 @pytest.fixture
-def master(tmp_path: Path) -> Iterator[str]:
+def master(tmp_path) -> Iterator[str]:
     skip_without_ros1()
     (tmp_path / "ros").mkdir()
     with roscore(tmp_path / "ros") as uri:
@@ -79,7 +79,7 @@ def up(arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
 
 @pytest.mark.corpus
 def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
-    master: str, corpus: Path, tmp_path: Path
+    master: str, corpus: Path, tmp_path
 ):
     for name, text in ORIGINAL_INTERFACES.items():
         path = tmp_path / "interfaces" / name
@@ -102,9 +102,7 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
 
 
 @pytest.mark.corpus
-def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(
-    corpus: Path, tmp_path: Path
-):
+def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(corpus: Path, tmp_path):
     (tmp_path / "deploy.yaml").write_text(original_on_our_robot(corpus, tmp_path))
     with up([str(tmp_path / "deploy.yaml")]) as mission:
         events = list(events_of(mission))
@@ -134,9 +132,7 @@ def assert_whole_mission(events: list[dict[str, Any]], run: Path):
     assert summary["ending"] in ("goal", "failure", "nothing_worthwhile", "step_limit")
 
 
-def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a_program_of_others(
-    tmp_path: Path,
-):
+def test_the_page_about_ros_can_be_followed_to_the_first_activation_and_serves_a_program_of_others(tmp_path):
     pytest.importorskip("zenoh_ros2_sdk", reason="needs the package zenoh-ros2-sdk")
     page = (ROOT / "docs" / "ros.md").read_text(encoding="utf-8")
     serve, drive = re.findall(r"^\.venv/bin/aos-up (.*)$", page, re.MULTILINE)

@@ -119,7 +119,7 @@ def free_port() -> int:
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Place:
+def place(tmp_path_factory) -> Place:
     endpoint, running = f"tcp/127.0.0.1:{free_port()}", tmp_path_factory.mktemp("running")
     return Place(tmp_path_factory.mktemp("place"), endpoint, running)
 
@@ -142,7 +142,7 @@ def test_a_second_start_is_refused_and_latest_stays(place: Place, mission: Path)
 
 
 @pytest.mark.parametrize("is_elsewhere", [False, True], ids=["here", "elsewhere"])
-def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path: Path, is_elsewhere: bool):
+def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path, is_elsewhere):
     folder = tmp_path if is_elsewhere else place.folder
     decided = place.run("decisions", "--no-follow", "--json", folder=folder)
     assert json.loads(decided.stdout.splitlines()[0])["step"] == 1, decided.stderr
@@ -159,7 +159,7 @@ def test_a_living_mission_is_never_pruned(place: Place, mission: Path):
     assert mission.is_dir()
 
 
-def test_of_two_living_missions_one_has_to_be_named(place: Place, mission: Path, tmp_path: Path):
+def test_of_two_living_missions_one_has_to_be_named(place: Place, mission: Path, tmp_path):
     (tmp_path / "other").mkdir()
     running = Path(place.environment["AOS_RUNNING_DIR"])
     other = Place(tmp_path / "other", "tcp/127.0.0.1:0", running)
@@ -174,9 +174,7 @@ def test_of_two_living_missions_one_has_to_be_named(place: Place, mission: Path,
         assert up.end() == (130, "")
 
 
-def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads_them_to_the_end(
-    tmp_path: Path,
-):
+def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads_them_to_the_end(tmp_path):
     place = Place(tmp_path, "tcp/127.0.0.1:0", tmp_path / "running")
     with place.up() as up:
         assert up.has_decided()
@@ -198,7 +196,7 @@ def test_a_system_is_ended_by_its_deploy_file_and_whoever_follows_its_logs_reads
     assert "Did you mean `router`?" in place.run("logs", "ruter").stderr
 
 
-def test_of_two_starts_at_once_one_runs(tmp_path: Path):
+def test_of_two_starts_at_once_one_runs(tmp_path):
     place = Place(tmp_path, f"tcp/127.0.0.1:{free_port()}", tmp_path)
     with place.up() as one, place.up() as other:
         decided = {start: start.has_decided() for start in (one, other)}
@@ -207,7 +205,7 @@ def test_of_two_starts_at_once_one_runs(tmp_path: Path):
 
 
 def test_a_run_that_was_killed_does_not_run_and_before_its_mission_began_has_not_started(
-    place: Place, tmp_path: Path
+    place: Place, tmp_path
 ):
     killed = RunDirectory(tmp_path / "20260101T000000Z-tiger")
     killed.path.mkdir()

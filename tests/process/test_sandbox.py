@@ -42,7 +42,7 @@ def reaching() -> dict[str, str]:
 
 @needs_sandbox
 @pytest.mark.parametrize("skill", REACHING)
-async def test_a_model_that_reaches_out_ends_and_its_line_is_told(skill: str, reaching: dict[str, str]):
+async def test_a_model_that_reaches_out_ends_and_its_line_is_told(skill, reaching: dict[str, str]):
     built = await built_text(reaching)
     async with engine_of(built) as engine:
         actions = [action.name for action in engine.description.actions]
@@ -54,7 +54,7 @@ async def test_a_model_that_reaches_out_ends_and_its_line_is_told(skill: str, re
 
 
 @needs_sandbox
-async def test_a_secret_does_not_come_into_a_program(tmp_path: Path):
+async def test_a_secret_does_not_come_into_a_program(tmp_path):
     secret = tmp_path / "secret"
     secret.write_text("canary")
     with pytest.raises(ModelError) as caught:
@@ -68,7 +68,7 @@ def test_the_trial_of_the_sandbox_finds_nothing_that_a_confined_program_can_do()
     assert what_a_confined_program_can() == ""
 
 
-def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Path):
+def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path):
     write_texts(lamp(""), tmp_path)
     script = Path(__file__).parents[1] / "without_landlock.py"
     aos = str(Path(sys.executable).with_name("aos"))

@@ -1,5 +1,4 @@
 import json
-from pathlib import Path
 
 import pytest
 from commands import aos
@@ -76,7 +75,7 @@ async def test_a_mission_can_be_over_without_a_goal_or_a_failure():
     assert run.total == -1
 
 
-def test_goals_are_counted_by_the_world(tmp_path: Path):
+def test_goals_are_counted_by_the_world(tmp_path):
     write_texts(TABLE, tmp_path)
     command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]
     done = aos(*command, "--json")

@@ -57,7 +57,7 @@ class Running:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch) -> Path:
     monkeypatch.chdir(tmp_path)
     aos("new", "project", "fetch")
     look = tmp_path / "fetch" / "look.am"

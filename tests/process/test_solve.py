@@ -112,7 +112,7 @@ def value_on_a_grid(model: ExplicitModel) -> float:
 
 
 @pytest.mark.parametrize("seed", range(5))
-async def test_random_models_have_the_value_that_value_iteration_finds(seed: int):
+async def test_random_models_have_the_value_that_value_iteration_finds(seed):
     """Observations here depend on the state that is left, too. A grid over-estimates a little."""
     model = random_model(seed)
     bounds = (await solved(model)).bounds
@@ -125,9 +125,7 @@ async def test_random_models_have_the_value_that_value_iteration_finds(seed: int
     ("name", "cpu_s", "lower"),
     [("Tiger", 0.2, 19.371), ("TagAvoid", 2.0, -6.106), ("RockSample_7_8", 6.0, 20.2)],
 )
-async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
-    published: Path, name: str, cpu_s: float, lower: float
-):
+async def test_lower_bounds_are_no_worse_than_the_reference_program_s(published: Path, name, cpu_s, lower):
     """The time of computing is four times as long, since machines differ. What is reached ends it."""
     model = read_problem(published / f"{name}.pomdpx")
     stop = asyncio.Event()
@@ -149,7 +147,7 @@ async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path):
     assert solution.bounds.lower - 0.05 <= graph.value <= solution.bounds.upper
 
 
-async def test_variables_that_change_nothing_are_left_out(tmp_path: Path):
+async def test_variables_that_change_nothing_are_left_out(tmp_path):
     folder = DATA / "bundles" / "tiger"
     files = {path.name: path.read_text() for path in folder.iterdir()}
     files["tiger.ef"] += "\nstate_variable: int listened\n\nstate_variable: bool heard []\n"
@@ -174,7 +172,7 @@ async def test_variables_that_change_nothing_are_left_out(tmp_path: Path):
     assert decided[0].q == pytest.approx(solution.bounds.lower, abs=1e-3)
 
 
-async def test_a_policy_decides_online_and_returns_what_it_promises(tmp_path: Path):
+async def test_a_policy_decides_online_and_returns_what_it_promises(tmp_path):
     built = await built_bundle(BUNDLES / "armadillo-finer")
     async with engine_of(built) as engine:
         found = await enumerate_model(engine)
@@ -194,7 +192,7 @@ async def test_a_policy_decides_online_and_returns_what_it_promises(tmp_path: Pa
     assert sum(response.probability for response in first.predicted) == pytest.approx(1)
 
 
-async def test_a_policy_for_other_documents_is_refused(tmp_path: Path):
+async def test_a_policy_for_other_documents_is_refused(tmp_path):
     folder = DATA / "bundles" / "tiger"
     found = await enumerated(folder)
     solution = await solved(found.model)
@@ -209,14 +207,14 @@ async def test_a_policy_for_other_documents_is_refused(tmp_path: Path):
     assert plan.planner != "policy"
 
 
-def test_a_file_that_is_no_policy_is_refused(tmp_path: Path):
+def test_a_file_that_is_no_policy_is_refused(tmp_path):
     (tmp_path / "x.policy").write_text("{}\n")
     with pytest.raises(PlanningError, match="is no policy of this version") as caught:
         Policy.load(tmp_path / "x.policy")
     assert caught.value.code == "AOS321"
 
 
-def test_a_policy_with_a_flipped_bit_is_refused(tmp_path: Path):
+def test_a_policy_with_a_flipped_bit_is_refused(tmp_path):
     path = tmp_path / "x.policy"
     header = PolicyHeader(
         model="m", model_digest="d", discount=0.5, lower=1.0, upper=2.0, actions=("go",), states=("here",)
@@ -279,7 +277,7 @@ async def test_without_a_precision_small_rewards_have_near_bounds():
 
 
 @pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
-async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(value: float, actions: set[int]):
+async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(value, actions: set[int]):
     model = with_stopping(read_problem(PROBLEMS / "tiger.pomdp"), value)
     solution = await solved(model)
     graph = policy_graph(model, solution.vectors)
@@ -328,7 +326,7 @@ int main(void) {
 """
 
 
-def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(tiger_graph: PolicyGraph, tmp_path: Path):
+def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(tiger_graph: PolicyGraph, tmp_path):
     header = c_header(tiger_graph, "Tiger")
     assert re.findall(r"#include .*", header) == ["#include <stdint.h>"]
     (tmp_path / "tiger.h").write_text(header)

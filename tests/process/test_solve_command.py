@@ -22,7 +22,7 @@ def bundle() -> Path:
     return DATA / "bundles" / "tiger"
 
 
-def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_path: Path):
+def test_a_problem_file_is_solved_and_everything_is_written(tiger: Path, tmp_path):
     names = [tmp_path / name for name in ("t.pomdpx", "t.policy", "t.dot", "t.h")]
     options = ["--export", "--out", "--graph", "--c-header"]
     wanted = [part for pair in zip(options, names, strict=True) for part in pair]
@@ -48,7 +48,7 @@ def test_people_see_the_bounds_come_nearer(tiger: Path):
     assert lines[-1].startswith("the policy gives at least 19.371")
 
 
-def test_small_rewards_have_bounds_in_digits_of_their_size(tmp_path: Path):
+def test_small_rewards_have_bounds_in_digits_of_their_size(tmp_path):
     problem = tmp_path / "small.pomdp"
     problem.write_text(
         "discount: 0.5\nvalues: reward\nstates: 1\nactions: 1\nT: * identity\nR: * : * : * 0.000003\n"
@@ -57,7 +57,7 @@ def test_small_rewards_have_bounds_in_digits_of_their_size(tmp_path: Path):
     assert "none more than 0.0000060" in lines[-1]
 
 
-def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path):
+def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path):
     saved = tmp_path / "tiger.policy"
     assert aos("solve", bundle, "--out", saved).exit_code == 0
     decided = json.loads(aos("plan", bundle, "--policy", saved, "--json").stdout)
@@ -69,7 +69,7 @@ def test_a_policy_of_a_bundle_plans_and_simulates(bundle: Path, tmp_path: Path):
     assert all(run["actions"][0] == "listen" for run in campaign["runs"])
 
 
-def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path: Path):
+def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path):
     result = aos("solve", tiger, "--export", tmp_path / "tiger.txt")
     assert result.exit_code == 2
     assert "needs to end in .pomdp or .pomdpx" in result.output
@@ -85,9 +85,7 @@ def test_mistakes_are_told_before_the_work_begins(tiger: Path, tmp_path: Path):
     assert "has 2 states, more than 1" in str(few)
 
 
-def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
-    tiger: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(tiger: Path, tmp_path, monkeypatch):
     assert "/dev/full cannot be written: No space" in aos("solve", tiger, "--out", "/dev/full").output
     reading, writing = os.pipe()
     with os.fdopen(reading), os.fdopen(writing, "w"):
@@ -99,9 +97,7 @@ def test_a_file_that_cannot_be_written_is_told_before_the_work_begins(
 
 
 @pytest.mark.parametrize(("problem", "runs"), [("tiger.pomdp", 100), ("rover.pomdpx", 500)])
-def test_missions_of_a_problem_file_return_what_its_policy_promises(
-    tiger: Path, tmp_path: Path, problem: str, runs: int
-):
+def test_missions_of_a_problem_file_return_what_its_policy_promises(tiger: Path, tmp_path, problem, runs):
     policy, path = tmp_path / "a.policy", tiger.with_name(problem)
     bounds = json.loads(aos("solve", path, "--out", policy, "--json").stdout)
     simulated = aos("simulate", path, "--policy", policy, "--runs", str(runs), "--json")
@@ -110,7 +106,7 @@ def test_missions_of_a_problem_file_return_what_its_policy_promises(
     assert bounds["lower"] - room < summary["mean_discounted_return"] < bounds["upper"] + room
 
 
-def test_missions_of_a_problem_file_need_a_policy_of_that_file(tiger: Path, tmp_path: Path):
+def test_missions_of_a_problem_file_need_a_policy_of_that_file(tiger: Path, tmp_path):
     assert "aos solve" in aos("simulate", tiger).output
     policy = tmp_path / "a.policy"
     aos("solve", tiger.with_name("costs.pomdp"), "--out", policy)
@@ -130,7 +126,7 @@ def test_a_discount_of_one_is_refused_before_states_are_listed_and_anything_is_p
         assert (refused.exception.code, refused.stdout) == ("AOS320", "")
 
 
-def test_a_deploy_file_names_a_policy(tmp_path: Path):
+def test_a_deploy_file_names_a_policy(tmp_path):
     (tmp_path / "rover").mkdir()
     head = "aos: 1\nrobot: rover\nbundles: [rover]\n"
     (tmp_path / "a.policy").write_text("")

@@ -22,7 +22,7 @@ def large_file(path: Path) -> Path:
     return path
 
 
-async def test_time_ends_solving_and_more_of_it_does_more(tmp_path: Path, cache_dir: Path):
+async def test_time_ends_solving_and_more_of_it_does_more(tmp_path, cache_dir: Path):
     """The short one is over before the first trial."""
     model = read_problem(large_file(tmp_path / "large.pomdp"))
     solved = [await solve(model, SolvingLimits(cpu_s=time), cache_dir=cache_dir) for time in (0.02, 1)]

@@ -1,5 +1,4 @@
 import subprocess
-from pathlib import Path
 
 from collector import collector
 from gateway import environment
@@ -9,7 +8,7 @@ from processes import COMMAND_S
 from aos_deploy.export.kept_missions import kept_missions
 
 
-def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_its_end(tmp_path: Path):
+def test_the_spans_of_a_mission_that_the_deploy_file_asks_for_are_all_there_at_its_end(tmp_path):
     text = (DEPLOY / "errand.yaml").read_text().replace("bundles/", f"{ROOT}/deploy/bundles/")
     with collector() as got:
         (tmp_path / "errand.yaml").write_text(f"{text}\nspans: {{otlp: '{got.address}'}}\n")

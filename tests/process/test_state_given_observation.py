@@ -208,7 +208,7 @@ async def test_a_skill_without_such_code_is_updated_by_its_response_alone(engine
     ],
 )
 async def test_a_value_that_is_not_there_or_of_another_type_leaves_the_belief_to_the_response(
-    engine: Engine, name: str, text: str, reason: str
+    engine: Engine, name, text, reason
 ):
     update = await engine.update("drive", "arrived", {**SEEN, name: text})
     assert update.remark == f"the local variables of drive do not correct the belief: {reason}"
@@ -222,9 +222,7 @@ async def test_a_fault_of_the_code_is_told_at_its_place_and_leaves_the_belief_to
     assert values(update.summary, "at") == pytest.approx({"Hill": 0.5, "Lake": 0.5})
 
 
-async def test_the_statement_of_the_same_fault_is_looked_for_once(
-    engine: Engine, monkeypatch: pytest.MonkeyPatch
-):
+async def test_the_statement_of_the_same_fault_is_looked_for_once(engine: Engine, monkeypatch):
     faulty = {**SEEN, "distances": "[1,2,3]"}
     first = await engine.update("drive", "arrived", faulty)
     monkeypatch.delattr("aos_solver.child.questions.asking.at_its_statement")

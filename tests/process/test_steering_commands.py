@@ -23,9 +23,7 @@ def followed(run: Path) -> subprocess.CompletedProcess[str]:
     return finished(*example)
 
 
-async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(
-    tmp_path: Path,
-):
+async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(tmp_path):
     with up(ROOT, tmp_path) as system:
         system.be_slow(True)
         name = system.until("mission", phase="acting")["mission"]
@@ -68,7 +66,7 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
         assert len({row["by"] for row in rows}) == 1
 
 
-async def test_a_program_steers_and_stop_cancels_motion_at_once(tmp_path: Path):
+async def test_a_program_steers_and_stop_cancels_motion_at_once(tmp_path):
     with up(ROOT, tmp_path) as system:
         system.be_slow(True)
         system.until("mission", phase="acting")

@@ -74,7 +74,7 @@ async def test_a_search_by_the_table_finds_the_exact_value():
     ],
     ids=["a draw without end", "states without end", "a fault that hardly ever happens"],
 )
-async def test_there_is_no_table_of(move: str):
+async def test_there_is_no_table_of(move):
     async with engine_of_text(documents(move)) as engine:
         assert (await engine.rate(0.05, seed=1, stepping="table")).samples == 0
         assert (await engine.rate(0.05, seed=1)).samples > 0

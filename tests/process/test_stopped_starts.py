@@ -1,5 +1,4 @@
 import json
-from pathlib import Path
 
 import pytest
 from kept_cache import kept_cache, link_engines
@@ -10,13 +9,13 @@ from aos_deploy.history_check.files import check_run
 
 
 @pytest.fixture(autouse=True)
-def compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def compiles(tmp_path, monkeypatch):
     """No model is compiled yet, but the engine may be."""
     link_engines(kept_cache(), tmp_path / "cache")
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 
 
-def test_the_only_mission_is_cancelled_while_its_model_compiles(tmp_path: Path):
+def test_the_only_mission_is_cancelled_while_its_model_compiles(tmp_path):
     with up(ROOT, tmp_path, "tiger.yaml") as system:
         system.until("mission", phase="compiling")
         answer = json.loads(system.aos("mission", "stop", "--json")[1])
@@ -30,7 +29,7 @@ def test_the_only_mission_is_cancelled_while_its_model_compiles(tmp_path: Path):
         assert check_run(system.run).violations == []
 
 
-def test_the_first_mission_of_a_system_that_stays_does_not_begin_and_the_next_one_may(tmp_path: Path):
+def test_the_first_mission_of_a_system_that_stays_does_not_begin_and_the_next_one_may(tmp_path):
     with up(ROOT, tmp_path) as system:
         system.until("mission", phase="compiling")
         code, said, _ = system.aos("mission", "stop")

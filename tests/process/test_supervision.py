@@ -4,7 +4,6 @@ import re
 import signal
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import msgspec
 import pytest
@@ -170,7 +169,7 @@ async def test_a_command_that_starts_again_is_ready_again(system: System, death:
 
 
 async def test_a_frozen_command_on_another_host_starts_again_and_its_silence_is_told(
-    system: System, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    system: System, tmp_path, monkeypatch
 ):
     monkeypatch.setenv("PATH", stand_in(tmp_path) + os.pathsep + os.environ["PATH"])
     script = f"echo $$ > {tmp_path}/pid; exec {sys.executable} small_command.py"

@@ -8,7 +8,7 @@ from walk import Walk, steps_of
 
 
 @pytest.fixture(scope="module")
-def walk(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Walk:
+def walk(cache_dir: Path, tmp_path_factory) -> Walk:
     with Walk(Path(sys.executable).parent, tmp_path_factory.mktemp("empty"), cache_dir) as walk:
         for step in steps_of():
             walk.do(step)

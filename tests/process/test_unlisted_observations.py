@@ -99,7 +99,7 @@ def _chance(reading: int, mean: float) -> float:
 
 
 @pytest.mark.parametrize("readings", [(7, -4, 7), (4, 6, 0), (-12, -3, 10), (10, 10, -10), (-1, 0, 1)])
-async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(readings: tuple[int, ...]):
+async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(readings):
     left, right = (math.prod(_chance(reading, mean) for reading in readings) for mean in (-1, 1))
     async with engine_of_text(DOORS) as engine:
         update = await engine.update("listen", "".join(f"{reading};" for reading in readings))

@@ -9,12 +9,12 @@ ANY_PORT = ("--listen", "tcp/127.0.0.1:0")
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def wheel(tmp_path_factory) -> Path:
     return built_wheel(ROOT, tmp_path_factory.mktemp("wheel"))
 
 
 @pytest.fixture(scope="module")
-def aos_without_sim(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
+def aos_without_sim(wheel: Path, cache_dir: Path, tmp_path_factory) -> Installation:
     place = tmp_path_factory.mktemp("without-sim")
     install(wheel, place / "environment", without=SIMULATOR)
     (place / "empty").mkdir()
@@ -22,7 +22,7 @@ def aos_without_sim(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempP
 
 
 @pytest.fixture
-def aos(aos_without_sim: Installation, tmp_path: Path, cache_dir: Path) -> Iterator[Installation]:
+def aos(aos_without_sim: Installation, tmp_path, cache_dir: Path) -> Iterator[Installation]:
     """The installation with the extra `sim`, for one test."""
     environment = aos_without_sim.commands.parent
     links = link_packages(environment, only=SIMULATOR)

@@ -9,7 +9,7 @@ from test_missions import up
 LINES = 8
 
 
-def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(tmp_path: Path):
+def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(tmp_path):
     with up(ROOT, tmp_path, "tiger.yaml") as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
@@ -69,7 +69,7 @@ def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(tmp_path: Pa
         assert "simulations: 200 in A, 100 in B" in out
 
 
-def test_a_plan_may_begin_with_another_belief(tmp_path: Path):
+def test_a_plan_may_begin_with_another_belief(tmp_path):
     bundle, supposed = BUNDLES / "bench" / "tiger", tmp_path / "belief.txt"
     supposed.write_text("tiger_behind=Left:0.999\n")
     for belief in ("tiger_behind=Left:0.999", supposed):

@@ -30,9 +30,7 @@ TO_EASY_TABLE = "navigate(destination=easy_table)"
         (("armadillo-finer-enhanced",), TO_EASY_TABLE),
     ],
 )
-async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
-    names: tuple[str, ...], first: str
-):
+async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(names, first):
     async with engine_of(await built_bundles([BUNDLES / name for name in names])) as engine:
         values = sorted((await engine.exact_values()).actions, key=lambda value: -value.q)
     assert values[0].action == first

@@ -4,7 +4,7 @@ import pytest
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path) -> Path:
     (tmp_path / "bundle").mkdir()
     for name in ("rover.ef", "drive.sd", "drive.am", "look.sd", "look.am"):
         (tmp_path / "bundle" / name).write_text("")

@@ -34,7 +34,7 @@ BEING_BUILT = f"*.{os.getpid()}.*.building"
 
 
 @pytest.fixture(scope="module")
-def cache_dir(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache_dir(cache_dir: Path, tmp_path_factory) -> Path:
     """A cache without a model, and with the engines of all tests."""
     asyncio.run(build_engine(cache_dir))
     fresh = tmp_path_factory.mktemp("cache")
@@ -189,9 +189,7 @@ OTHER_KEYS = "the keys of this map variable are {Side, (0,3,1)}, and these are o
         ),
     ],
 )
-async def test_a_mistake_with_a_map_names_its_keys(
-    code: str, column: int, by_gcc: str, by_clang: str, cache_dir: Path
-):
+async def test_a_mistake_with_a_map_names_its_keys(code, column, by_gcc, by_clang, cache_dir: Path):
     declared = (
         "define_type: Side\nenum_members: Left, Right\n\nstate_variable: int load\nkey_types: Side, (0,3,1)\n"
     )
@@ -237,9 +235,7 @@ async def test_a_mistake_with_a_map_names_its_keys(
         ),
     ],
 )
-async def test_types_are_told_by_their_names_in_documents(
-    code: str, by_gcc: str, by_clang: str, cache_dir: Path
-):
+async def test_types_are_told_by_their_names_in_documents(code, by_gcc, by_clang, cache_dir: Path):
     side = "define_type: Side\nenum_members: Left, Right\n\n"
     variables = "state_variable: int at [Side]\n\nstate_variable: int row []\ncode:\nstate.row = {1, 2};\n"
     error = await build_error(emitted_skill(code, f"{HOME}\n{side}{variables}"), cache_dir)
@@ -255,9 +251,7 @@ async def test_types_are_told_by_their_names_in_documents(
 
 
 @pytest.mark.parametrize(("values", "types"), [("1", "int"), ("2.5, 1", "double, int")])
-async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(
-    values: str, types: str, cache_dir: Path
-):
+async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(values, types, cache_dir: Path):
     listed = f"__possibleParameters.push_back(std::make_tuple({values}));"
     code = (
         f"state__.total = 1;\n\nparameter: int a\nparameter: string b\n\navailable_parameters_code:\n{listed}"

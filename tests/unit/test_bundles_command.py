@@ -10,7 +10,7 @@ from aos_protocol.errors import DocumentError
 
 
 @pytest.fixture
-def broken(tmp_path: Path) -> Path:
+def broken(tmp_path) -> Path:
     folder = shutil.copytree(BUNDLES / "armadillo-finer", tmp_path / "broken")
     path = folder / "serve.sd"
     path.write_text(path.read_text().replace("delivered : not_delivered", "deliverd : not_delivered"))
@@ -57,7 +57,7 @@ def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(tmp_path):
     ],
 )
 def test_a_path_that_leads_nowhere_is_told_with_the_one_beside_it_that_was_meant(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, meant: str
+    tmp_path, monkeypatch, command, meant
 ):
     monkeypatch.chdir(tmp_path)
     assert aos("new", "project", "fetch").exit_code == 0

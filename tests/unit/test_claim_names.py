@@ -8,7 +8,7 @@ from aos_protocol.errors import DeployError
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path) -> Path:
     bundle = DATA / "bundles" / "fetch"
     deploy = f"aos: 1\nrobot: fetch\nbundles: [{bundle}]\nleave_out: [look]\nbind: {{'*': model}}\n"
     (tmp_path / "fetch.yaml").write_text(deploy)

@@ -82,7 +82,7 @@ def test_the_help_of_all_commands_imports_none_of_them():
 
 
 @pytest.mark.parametrize("arguments", [["--", "schema", "deploy"], ["schema", "deploy"]])
-def test_a_command_is_found_behind_two_dashes(arguments: list[str]):
+def test_a_command_is_found_behind_two_dashes(arguments):
     assert '"$schema"' in CliRunner().invoke(aos_app(arguments), arguments).stdout
 
 
@@ -104,7 +104,7 @@ def test_a_command_is_found_behind_two_dashes(arguments: list[str]):
         ("up x --seed z", f"'--seed': 'z' is not a whole number from 0 to {2**63 - 1}, such as 1"),
     ],
 )
-def test_a_number_that_is_not_taken_is_told_with_those_that_are(words: str, said: str):
+def test_a_number_that_is_not_taken_is_told_with_those_that_are(words, said):
     assert (
         CliRunner().invoke(aos_app(), words.split()).stderr.splitlines()[-1]
         == f"Error: Invalid value for {said}"

@@ -15,12 +15,12 @@ def fake(directory: Path, name: str, text: str, status: int = 0):
 
 
 @pytest.fixture
-def no_wheel(monkeypatch: pytest.MonkeyPatch):
+def no_wheel(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
 
 
 @pytest.fixture
-def tools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def tools(tmp_path, monkeypatch) -> Path:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CXX", raising=False)
     return tmp_path

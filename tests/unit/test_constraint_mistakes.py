@@ -15,7 +15,7 @@ HEAD = "aos: 1\nrobot: armadillo\nbundles: [{bundle}]\nmission:\n  constraints:\
 
 
 @pytest.fixture
-def write(tmp_path: Path) -> Path:
+def write(tmp_path) -> Path:
     path = tmp_path / "deploy.yaml"
     path.write_text(HEAD.format(bundle=BUNDLES / "armadillo-finer"))
     return path

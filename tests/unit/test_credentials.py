@@ -25,7 +25,7 @@ ARM = Party(name="arm", role=ADAPTER, paths=("/pick",))
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> RunDirectory:
+def run(tmp_path) -> RunDirectory:
     return RunDirectory.create(tmp_path, "r", 0)
 
 
@@ -161,9 +161,7 @@ def test_the_folder_of_a_socket_whose_owner_was_killed_is_removed_and_no_other(
     assert (folders["filled"] / "else").exists()
 
 
-def test_a_folder_that_is_being_made_is_not_taken_for_one_that_was_left(
-    short_folder: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_folder_that_is_being_made_is_not_taken_for_one_that_was_left(short_folder: Path, monkeypatch):
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(short_folder))
     run = short_folder / ("long" * 30)
     stopping = threading.Event()

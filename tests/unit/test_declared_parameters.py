@@ -187,7 +187,7 @@ bind: {"*": model}
 
 
 @pytest.fixture
-def deploy_file(tmp_path: Path) -> Path:
+def deploy_file(tmp_path) -> Path:
     (tmp_path / "home").mkdir()
     write_texts(FILES, tmp_path / "home")
     path = tmp_path / "home.yaml"

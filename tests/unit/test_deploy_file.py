@@ -27,7 +27,7 @@ def test_what_is_not_said_has_its_default(folder: Path):
 
 
 @pytest.mark.parametrize("seed", [1, MAX_SEED])
-def test_every_seed_of_a_deploy_file_gives_decisions_seeds_of_64_bits(seed: int):
+def test_every_seed_of_a_deploy_file_gives_decisions_seeds_of_64_bits(seed):
     of_steps = [Search(simulations=1, seed=seed).seed_of(step) for step in (1, 2)]
     assert len(set(of_steps)) == 2
     assert all(0 < each < 2**64 for each in of_steps)

@@ -104,12 +104,12 @@ def make_run(folder: Path) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Path:
+def run(tmp_path) -> Path:
     return make_run(tmp_path)
 
 

@@ -102,7 +102,7 @@ def test_what_a_compiler_says_of_one_line_or_one_name_is_told_once():
 
 
 @pytest.mark.parametrize("name", ["at", "door", "closed"])
-def test_a_variable_of_a_json_document_that_lacks_its_name_is_one_error(name: str):
+def test_a_variable_of_a_json_document_that_lacks_its_name_is_one_error(name):
     nameless = JSON["room.json"].replace(f'"Name": "{name}"', '"Name": ""', 1)
     (only,) = told_once(load_files(encoded(JSON | {"room.json": nameless})).diagnostics)
     assert (only.span.file, only.code) == ("room.json", "AOS105")

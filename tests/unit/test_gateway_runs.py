@@ -3,7 +3,6 @@ import sys
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -73,7 +72,7 @@ async def test_a_system_that_stays_names_its_first_mission_before_that_begins(tm
     assert entry.missions == (f"{run.path.name}-1",)
 
 
-def test_a_folder_that_is_not_there_is_told_before_anything_is_served(tmp_path: Path):
+def test_a_folder_that_is_not_there_is_told_before_anything_is_served(tmp_path):
     told = aos("serve", "--runs", tmp_path / "runs", "--projects", tmp_path, "--listen", "nowhere").stderr
     assert told.startswith(f"{tmp_path}/runs is no folder yet")
     assert told.count("no folder yet") == 1

@@ -24,7 +24,7 @@ def opened(place: Path, *entries: str) -> list[Path]:
 
 
 @pytest.fixture(autouse=True)
-def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def _own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
 
 

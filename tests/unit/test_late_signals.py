@@ -59,7 +59,7 @@ asyncio.run(interruption.run_until_interrupted(Goes(), is_unread))
 @pytest.mark.parametrize(
     ("first", "echo_s"), [("os.kill(os.getpid(), signal.SIGTERM)", HANG_S), ("is_unread.set()", -1.0)]
 )
-def test_a_signal_that_comes_twice_at_once_or_after_the_reader_has_gone_is_one(first: str, echo_s: float):
+def test_a_signal_that_comes_twice_at_once_or_after_the_reader_has_gone_is_one(first, echo_s):
     script = TWICE.format(first=first, echo_s=echo_s)
     ended = subprocess.run(
         [sys.executable, "-c", script], timeout=HANG_S, capture_output=True, check=False, text=True

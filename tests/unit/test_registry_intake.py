@@ -1,5 +1,4 @@
 from collections import Counter
-from pathlib import Path
 
 import pytest
 from places import DATA
@@ -20,7 +19,7 @@ def files() -> dict[str, bytes]:
 
 
 @pytest.fixture
-def catalogue(tmp_path: Path) -> Catalogue:
+def catalogue(tmp_path) -> Catalogue:
     return Catalogue.open(tmp_path / "catalogue.db")
 
 

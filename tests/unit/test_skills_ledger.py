@@ -11,7 +11,7 @@ CALL = SkillCall(ID, "/pick", {}, 10.0)
 
 
 @pytest.fixture
-def path(tmp_path: Path) -> Path:
+def path(tmp_path) -> Path:
     return tmp_path / "skills.db"
 
 

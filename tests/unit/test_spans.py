@@ -156,7 +156,7 @@ HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
 
 
 @pytest.fixture
-def deploy_file(tmp_path: Path) -> Path:
+def deploy_file(tmp_path) -> Path:
     (tmp_path / "bundle").mkdir()
     (tmp_path / "bundle" / "rover.ef").write_text("")
     path = tmp_path / "rover.yaml"

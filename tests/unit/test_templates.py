@@ -9,7 +9,7 @@ from aos_language.templates import templates_in
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch) -> Path:
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     (tmp_path / "greeting.jinja").write_text("Hello {{ name }}\n")
     return tmp_path

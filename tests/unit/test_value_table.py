@@ -83,7 +83,7 @@ def test_the_summary_of_missions_says_how_the_others_ended(capsys, monkeypatch):
     ("probability", "text"),
     [(0.0, "0.000"), (1e-7, "<0.001"), (0.5, "0.500"), (0.9999, ">0.999"), (1 - 1e-15, "1.000")],
 )
-def test_what_is_not_certain_is_never_shown_as_certain(probability: float, text: str):
+def test_what_is_not_certain_is_never_shown_as_certain(probability, text):
     assert chance_text(probability) == text
 
 

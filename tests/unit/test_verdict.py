@@ -39,7 +39,7 @@ def ended(ending: str, remark: str = "") -> MissionState:
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Path:
+def run(tmp_path) -> Path:
     path = tmp_path / MISSION
     path.mkdir()
     return path

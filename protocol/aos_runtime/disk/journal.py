@@ -12,6 +12,7 @@ from __future__ import annotations
 import sqlite3
 import zlib
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -97,23 +98,13 @@ class Journal:
         a millisecond. It never waits for the disk; nor does the checkpoint that comes every hundred appends.
         """
         path = Path(path)
-        try:
-            connection = sqlite3.connect(path, isolation_level=None)
-        except _REFUSALS as error:
-            raise _fault("AOS701", path, error) from error
-        try:
+        with _prepared(path, "AOS701") as connection:
             _check_version(connection, path, is_to_write=True)
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute(f"PRAGMA synchronous = {'FULL' if survives_power_loss else 'OFF'}")
             if not survives_power_loss:
                 connection.execute(f"PRAGMA wal_autocheckpoint = {_PAGES_IN_A_CHECKPOINT}")
             connection.executescript(_SCHEMA)
-        except _REFUSALS as error:
-            connection.close()
-            raise _fault("AOS701", path, error) from error
-        except StorageError:
-            connection.close()
-            raise
         return cls(connection, path, clock or SystemClock())
 
     @classmethod
@@ -122,16 +113,9 @@ class Journal:
         path = Path(path)
         if not path.is_file():
             raise StorageError(f"there is no journal at {path}", code="AOS702")
-        connection = sqlite3.connect(path, isolation_level=None)
-        try:
+        with _prepared(path, "AOS702") as connection:
             connection.execute("PRAGMA query_only = ON")
             _check_version(connection, path, is_to_write=False)
-        except _REFUSALS as error:
-            connection.close()
-            raise _fault("AOS702", path, error) from error
-        except StorageError:
-            connection.close()
-            raise
         return cls(connection, path, SystemClock())
 
     def __enter__(self) -> Self:
@@ -226,6 +210,19 @@ def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: b
     if version != _SCHEMA_VERSION and not (is_to_write and is_empty):
         hint = f"Its schema is {version}, this program reads {_SCHEMA_VERSION}"
         raise StorageError(f"{path} is not a journal of this version", code="AOS702", hint=hint)
+
+
+@contextmanager
+def _prepared(path: Path, code: str) -> Iterator[sqlite3.Connection]:
+    """A new connection, closed again where the block raises; what SQLite refuses is a StorageError."""
+    with ExitStack() as unless_whole:
+        try:
+            connection = sqlite3.connect(path, isolation_level=None)
+            unless_whole.callback(connection.close)
+            yield connection
+        except _REFUSALS as error:
+            raise _fault(code, path, error) from error
+        unless_whole.pop_all()
 
 
 def _fault(code: str, path: Path, error: Exception) -> StorageError:

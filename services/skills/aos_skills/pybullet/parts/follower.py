@@ -1,7 +1,5 @@
 """Following a way with two wheels: turn towards a point a little ahead on it, and drive."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable
