@@ -39,11 +39,8 @@ async def engine_of(
 
 
 @asynccontextmanager
-async def engine_of_text(
-    files: Mapping[str, str], *, seed: int = 1, impossible_observation: ImpossiblePolicy = "widen"
-) -> AsyncIterator[Engine]:
-    built = await built_text(files)
-    async with engine_of(built, seed=seed, impossible_observation=impossible_observation) as engine:
+async def engine_of_text(files: Mapping[str, str], *, seed: int = 1) -> AsyncIterator[Engine]:
+    async with engine_of(await built_text(files), seed=seed) as engine:
         yield engine
 
 

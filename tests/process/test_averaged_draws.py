@@ -1,5 +1,5 @@
 import pytest
-from models import built_text, engine_of
+from models import engine_of_text
 
 EXIT = {
     "ward.ef": """project: ward
@@ -30,8 +30,7 @@ LEAVE = 0
 
 
 async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off():
-    built = await built_text(EXIT)
-    async with engine_of(built) as engine:
+    async with engine_of_text(EXIT) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
         assert plan.planner == "exact"
         leave, wait = plan.actions
@@ -43,8 +42,7 @@ async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off():
 
 
 async def test_the_world_still_draws_the_reward():
-    built = await built_text(EXIT)
-    async with engine_of(built) as engine:
+    async with engine_of_text(EXIT) as engine:
         rewards = []
         for seed in range(200):
             await engine.reset_world(seed)

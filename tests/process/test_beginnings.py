@@ -104,8 +104,7 @@ async def test_a_beginning_is_the_belief_by_enumeration(idle, given, is_kept):
 
 async def test_a_state_that_had_ended_goes_on_in_the_next_mission():
     files = WALK | {"walk.ef": WALK["walk.ef"].replace("state.place == 9", "state.place == 1")}
-    built = await built_text(files)
-    async with engine_of(built) as engine:
+    async with engine_of_text(files) as engine:
         assert (await engine.summary()).goal_probability == pytest.approx(0.3)
         places = [0.5, 0.3, 0.2]
         began = await engine.begin_mission(idle=2)
@@ -113,13 +112,12 @@ async def test_a_state_that_had_ended_goes_on_in_the_next_mission():
 
 
 async def test_what_is_impossible_begins_nothing():
-    built = await built_text(WALK)
     given = ("state.place == 7",)
 
     async def conditioned() -> Engine:
         return await Engine.start(await built_with_conditions(project(), given, cache_dir()), seed=1)
 
-    async with engine_of(built) as engine:
+    async with engine_of_text(WALK) as engine:
         before = await distribution(engine)
         with pytest.raises(PlanningError, match=r"`state\.place == 7` has probability 0") as refused:
             await begin_with(engine, StartMission(given=given), None, conditioned, 0.01)

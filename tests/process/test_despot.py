@@ -1,4 +1,4 @@
-from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from models import engine_of_bundle, engine_of_text
 from places import BUNDLES
 
 from aos_solver.child.engine import Restriction
@@ -64,10 +64,9 @@ __moduleResponse = done;
 
 
 async def test_the_same_seed_and_simulations_give_the_same_decision():
-    built = await built_bundle(BUNDLES / "bench" / "tag")
     plans = []
     for _ in range(2):
-        async with engine_of(built) as engine:
+        async with engine_of_bundle(BUNDLES / "bench" / "tag") as engine:
             plans.append(await engine.plan(simulations=1_000, seed=3, planner="despot"))
     assert plans[0].actions == plans[1].actions
     assert plans[0].planner == "despot"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hostile.counters import counting
 from lamp import LAMP
-from models import built_text, engine_of, engine_of_text
+from models import built_text, engine_of_text
 from processes import HANG_S
 from projects import text_project
 
@@ -54,11 +54,10 @@ async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line():
 
 
 async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path):
-    built = await built_text(LAMP)
     shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
     wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
     project = text_project(wider)
-    async with engine_of(built) as engine:
+    async with engine_of_text(LAMP) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
     assert (refusal.code, refusal.span.file) == ("AOS112", "lamp.ef")
@@ -135,8 +134,7 @@ async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_wha
 
 async def test_a_model_that_prints_without_end_fills_no_log(capfd):
     shouting = LAMP["press.sd"] + "printf(\"%s\\n\", string(4000, 'x').c_str());\n"
-    built = await built_text(LAMP | {"press.sd": shouting})
-    async with engine_of(built) as engine:
+    async with engine_of_text(LAMP | {"press.sd": shouting}) as engine:
         await engine.rate(0.3, seed=1)
     printed = capfd.readouterr().err
     assert "the rest is left out" in printed

@@ -2,7 +2,7 @@ import json
 
 import pytest
 from mappings import mapping_text
-from models import built_text, engine_of
+from models import built_text, engine_of, engine_of_text
 from processes import COMMAND_S
 
 from aos_protocol.errors import ModelError
@@ -196,8 +196,7 @@ __moduleResponse = drawn;
 
 async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot():
     drawing = ANSWERING.replace("ward", "board").replace("response: ok", "response: drawn")
-    built = await built_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing})
-    async with engine_of(built) as running:
+    async with engine_of_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing}) as running:
         await running.reset_world(1)
         await running.step_world(0)  # Theirs, then ours; with their second mark the board is full.
         await running.step_world(0)

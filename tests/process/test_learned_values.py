@@ -1,5 +1,5 @@
 from exam.bundles import told_of_bundle
-from models import built_text, engine_of
+from models import engine_of_text
 from texts import write_texts
 
 OPEN = """project: boxes
@@ -132,8 +132,7 @@ state__.full[state.at] = false;
 
 
 async def _why(documents: dict[str, str]) -> str:
-    built = await built_text(documents)
-    async with engine_of(built) as engine:
+    async with engine_of_text(documents) as engine:
         return (await engine.plan(simulations=500, seed=3, planner="pomcp")).why
 
 
@@ -143,10 +142,9 @@ async def test_values_of_a_million_states_are_computed():
 
 
 async def test_values_are_learned_where_tables_of_few_variables_hold_them_and_with_the_same_seed_the_same():
-    built = await built_text(COINS)
     plans = []
     for _ in range(2):
-        async with engine_of(built) as engine:
+        async with engine_of_text(COINS) as engine:
             plans.append(await engine.plan(simulations=500, seed=3, planner="pomcp"))
     assert "what states are worth is learned" in plans[0].why
     assert plans[0].actions == plans[1].actions

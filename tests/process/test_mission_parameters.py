@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 from commands import aos
-from models import built_bundle, built_project, built_text, engine_of
+from models import built_bundle, built_project, built_text, engine_of, engine_of_bundle
 from places import BIN, BUNDLES, DEPLOY, ROOT
 from processes import COMMAND_S, HANG_S, finished
 from projects import files_project, text_project
@@ -43,8 +43,7 @@ def with_constant(bundle: Path, person: str) -> dict[str, str]:
 
 
 async def test_one_compiled_model_has_the_exact_values_of_each_value():
-    built = await built_bundle(BUNDLES / "errand")
-    async with engine_of(built) as engine:
+    async with engine_of_bundle(BUNDLES / "errand") as engine:
         pids = set()
         for person in ("alice", "bob", "alice"):
             await engine.start_with({"target": person})

@@ -1,5 +1,5 @@
 import pytest
-from models import built_bundle, built_text, engine_of, engine_of_text
+from models import built_text, engine_of, engine_of_bundle, engine_of_text
 from places import BUNDLES
 
 from aos_solver.building.build import BuiltModel
@@ -91,8 +91,7 @@ async def decide(engine: Engine, horizon: int) -> Plan:
 
 
 async def test_a_count_that_matters_to_nothing_moves_no_bound(counted_tiger: BuiltModel):
-    plain = await built_bundle(BUNDLES / "bench" / "tiger")
-    async with engine_of(plain) as engine, engine_of(counted_tiger) as counted:
+    async with engine_of_bundle(BUNDLES / "bench" / "tiger") as engine, engine_of(counted_tiger) as counted:
         exact = {value.action: value.q for value in (await engine.exact_values(6)).actions}
         plan = await decide(counted, 6)
         assert "that 12 decisions can lead to are listed" in plan.why
@@ -115,9 +114,8 @@ async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: Bui
 
 
 async def test_a_robot_with_a_battery_without_bounds_comes_home():
-    built = await built_text(VACUUM)
     search = Search(simulations=3_000, seed=1)
-    async with engine_of(built) as engine:
+    async with engine_of_text(VACUUM) as engine:
         runs = [
             await simulate_mission(engine, search, MissionLimits(goal_probability=1.0, step_limit=40))
             for _ in range(2)

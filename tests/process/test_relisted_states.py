@@ -1,5 +1,5 @@
 import pytest
-from models import built_text, engine_of
+from models import engine_of_text
 
 from aos_solver.child.engine import Planner
 
@@ -50,8 +50,7 @@ WORTH = {"7 full": 100 * 0.99**CELLS, "8 empty": 0.0, "9 full": 100 * 0.99**CELL
 
 @pytest.mark.parametrize("planner", ["sarsop", "pomcp"])
 async def test_a_listing_of_as_many_other_states_is_not_taken_for_the_last_one(planner: Planner):
-    built = await built_text(VAULT)
-    async with engine_of(built) as engine:
+    async with engine_of_text(VAULT) as engine:
         for response, worth in WORTH.items():
             # A million states are too many to list. After a look they are 61, every time others.
             await engine.reset_belief()

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 from hostile.cases import MODELS
 from hostile.counters import counting
-from models import built_text, engine_of
+from models import built_text, engine_of_text
 from processes import finished
 from texts import write_texts
 
@@ -43,8 +43,7 @@ def reaching() -> dict[str, str]:
 @needs_sandbox
 @pytest.mark.parametrize("skill", REACHING)
 async def test_a_model_that_reaches_out_ends_and_its_line_is_told(skill, reaching: dict[str, str]):
-    built = await built_text(reaching)
-    async with engine_of(built) as engine:
+    async with engine_of_text(reaching) as engine:
         actions = [action.name for action in engine.description.actions]
         await engine.reset_world(1)
         with pytest.raises(CodeFaultError, match="reaches for what models may not") as caught:

@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from models import engine_of_bundle, engine_of_text
 from places import BUNDLES, DATA, PROBLEMS, ROOT
 from processes import COMMAND_S
 
@@ -173,8 +173,7 @@ async def test_variables_that_change_nothing_are_left_out(tmp_path):
 
 
 async def test_a_policy_decides_online_and_returns_what_it_promises(tmp_path):
-    built = await built_bundle(BUNDLES / "armadillo-finer")
-    async with engine_of(built) as engine:
+    async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
         found = await enumerate_model(engine)
         solution = await solved(found.model)
         saved(found, engine.model_digest, solution).save(tmp_path / "a.policy")

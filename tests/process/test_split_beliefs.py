@@ -2,7 +2,7 @@ import random
 
 import numpy as np
 import pytest
-from models import built_text, engine_of, engine_of_text
+from models import engine_of_text
 from numpy.typing import NDArray
 from processes import kill_engine
 
@@ -82,10 +82,9 @@ async def test_marginals_of_many_machines_stay_close_to_the_exact_ones():
 
 async def test_such_a_belief_is_the_same_after_a_kill():
     digests = []
-    built = await built_text(FILES)
     for is_killed in (False, True):
         workshop = Workshop(2)
-        async with engine_of(built) as engine:
+        async with engine_of_text(FILES) as engine:
             for _ in range(3):
                 before = (await engine.update(*workshop.inspection())).summary
             if is_killed:

@@ -1,4 +1,4 @@
-from models import built_text, engine_of, engine_of_text
+from models import engine_of_text
 
 BOXES = """project: boxes
 horizon: 20
@@ -120,8 +120,7 @@ async def test_an_exit_of_certain_worth_is_taken_though_few_simulations_try_it()
 
 
 async def test_one_draw_of_many_outcomes_leaves_many_effective_states():
-    built = await built_text(ALARMS)
-    async with engine_of(built) as engine:
+    async with engine_of_text(ALARMS) as engine:
         await engine.reset_world(1)
         effective = []
         for step in range(12):

@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from models import built_text, engine_of, engine_of_text
+from models import engine_of_text
 
 CORRIDOR = {
     "corridor.ef": """project: corridor
@@ -39,8 +39,7 @@ def fully_observable_value(cell: int) -> float:
 
 
 async def test_states_are_listed_without_what_is_observed_and_values_follow_from_them():
-    built = await built_text(CORRIDOR)
-    async with engine_of(built) as engine:
+    async with engine_of_text(CORRIDOR) as engine:
         plan = await engine.plan(simulations=300, seed=1, planner="auto")
     assert plan.planner == "belief-tree"
     assert "all 7 states can be listed, but not what is observed: a draw is continuous" in plan.why
@@ -144,8 +143,7 @@ async def test_pomcp_that_was_asked_for_stays_pomcp():
 
 
 async def test_sarsop_is_told_why_it_cannot_be_used():
-    built = await built_text(CORRIDOR)
-    async with engine_of(built) as engine:
+    async with engine_of_text(CORRIDOR) as engine:
         plan = await engine.plan(simulations=50, seed=1, planner="sarsop")
     assert plan.planner == "pomcp"
     assert plan.why == "SARSOP cannot be used: a draw is continuous"
@@ -153,7 +151,6 @@ async def test_sarsop_is_told_why_it_cannot_be_used():
 
 async def test_a_state_that_is_the_only_one_is_told_as_that():
     wait = "project: still\ndynamic_model:\n__moduleResponse = waited;\n"
-    built = await built_text({"still.ef": "project: still\nhorizon: 2\n", "wait.sd": wait})
-    async with engine_of(built) as engine:
+    async with engine_of_text({"still.ef": "project: still\nhorizon: 2\n", "wait.sd": wait}) as engine:
         plan = await engine.plan(simulations=10, seed=1, planner="auto")
     assert plan.why.startswith("the only state can be listed")

@@ -7,7 +7,7 @@ import random
 from functools import cache
 
 import pytest
-from models import built_bundle, built_bundles, engine_of, engine_of_bundle
+from models import built_bundles, engine_of, engine_of_bundle
 from places import BUNDLES, DEPLOY
 from tictactoe_games import game
 
@@ -106,10 +106,9 @@ async def test_the_person_of_the_other_documents_makes_no_mistake():
 
 
 async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world():
-    own = await built_bundle(BUNDLES / "tictactoe")
     other = await built_bundles([BUNDLES / name for name in ("tictactoe", "tictactoe-perfect-person")])
     limits = MissionLimits(goal_probability=0.9, step_limit=30)
-    async with engine_of(own) as engine, engine_of(other) as world:
+    async with engine_of_bundle(BUNDLES / "tictactoe") as engine, engine_of(other) as world:
         search = Search(simulations=1000, seed=1)
         alone = await simulate_mission(engine, search, limits, with_states=True)
         run = await simulate_mission(engine, search, limits, with_states=True, world=world)
