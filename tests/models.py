@@ -1,6 +1,7 @@
 from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 from projects import bundle_project, text_project
 
@@ -8,7 +9,10 @@ from aos_deploy.places import cache_dir
 from aos_protocol.documents import Project
 from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
-from aos_solver.child.engine import Engine, ImpossiblePolicy
+from aos_solver.child.engine import Engine, ImpossiblePolicy, Planner
+from aos_solver.child.search import Search
+from aos_solver.mission.rules.endings import MissionLimits
+from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
 
 async def built_project(project: Project) -> BuiltModel:
@@ -48,3 +52,11 @@ async def engine_of_text(files: Mapping[str, str], *, seed: int = 1) -> AsyncIte
 async def engine_of_bundle(bundle: Path, *, seed: int = 1) -> AsyncIterator[Engine]:
     async with engine_of(await built_bundle(bundle), seed=seed) as engine:
         yield engine
+
+
+async def simulated(
+    engine: Engine, simulations: int, *, seed: int = 1, planner: Planner = "auto", **limits: Any
+) -> SimulatedRun:
+    """A mission against the documents' own model; `limits` are those of `MissionLimits`."""
+    search = Search(simulations=simulations, seed=seed, planner=planner)
+    return await simulate_mission(engine, search, MissionLimits(**limits))

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import msgspec
 import pytest
-from models import built_project, engine_of
+from models import built_project, engine_of, simulated
 from places import BUNDLES
 from projects import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
@@ -23,9 +23,9 @@ from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.models.takeover import RunningModel
-from aos_solver.mission.rules.endings import Ending, MissionLimits
+from aos_solver.mission.rules.endings import Ending
 from aos_solver.mission.rules.terms import Terms
-from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+from aos_solver.mission.simulation import SimulatedRun
 
 HOB = {
     "hob.ef": """project: test
@@ -127,12 +127,7 @@ async def play(
     model: BuiltModel, seeds: range, planner: Planner = "auto", steps: int = 30
 ) -> list[SimulatedRun]:
     async with engine_of(model) as engine:
-        return [
-            await simulate_mission(
-                engine, Search(simulations=500, seed=seed, planner=planner), MissionLimits(step_limit=steps)
-            )
-            for seed in seeds
-        ]
+        return [await simulated(engine, 500, seed=seed, planner=planner, step_limit=steps) for seed in seeds]
 
 
 async def test_the_risk_of_an_action_is_its_probability_under_the_belief():

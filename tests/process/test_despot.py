@@ -1,10 +1,7 @@
-from models import engine_of_bundle, engine_of_text
+from models import engine_of_bundle, engine_of_text, simulated
 from places import BUNDLES
 
 from aos_solver.child.engine import Restriction
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 COUNTER = {
     "counter.ef": """project: counter
@@ -85,9 +82,7 @@ async def test_the_tiger_is_listened_for_and_not_flattered():
 
 async def test_an_opponent_that_flees_is_tagged():
     async with engine_of_bundle(BUNDLES / "bench" / "tag") as engine:
-        search = Search(simulations=500, seed=1, planner="despot")
-        limits = MissionLimits(goal_probability=0.999, step_limit=90)
-        run = await simulate_mission(engine, search, limits)
+        run = await simulated(engine, 500, planner="despot", goal_probability=0.999, step_limit=90)
     assert run.ending == "goal"
     assert run.discounted_return > -16  # random actions end at some -50
 

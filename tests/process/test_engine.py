@@ -3,7 +3,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of, engine_of_bundle, engine_of_text
+from models import built_bundle, engine_of, engine_of_bundle, engine_of_text, simulated
 from places import BUNDLES, DATA
 from processes import descendants, kill_engine, until_ended
 
@@ -11,9 +11,6 @@ from aos_protocol.errors import ModelError
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.process import engine_child
 from aos_solver.child.process.engine_child import EngineChild, EngineStart
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 EXACT_AT_8 = {
     "rough": {
@@ -162,10 +159,9 @@ async def test_model_code_that_crashes_is_named_by_its_document_line():
 
 async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve():
     async with engine_of_bundle(BUNDLES / "armadillo-finer") as engine:
-        limits = MissionLimits(stop_below_value=0.0)
         served = 0
         for seed in range(1, 6):
-            run = await simulate_mission(engine, Search(simulations=100_000, seed=seed), limits)
+            run = await simulated(engine, 100_000, seed=seed, stop_below_value=0.0)
             assert run.actions[0] == "navigate(destination=easy_table)"
             for serving in (i for i, action in enumerate(run.actions) if action == "serve"):
                 picked = max(i for i, action in enumerate(run.actions[:serving]) if action == "pick")

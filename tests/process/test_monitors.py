@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator, Mapping
 
 import msgspec
 import pytest
-from models import built_bundle, engine_of
+from models import built_bundle, engine_of, simulated
 from places import DATA
 from scripted_missions import run_mission
 
@@ -16,7 +16,6 @@ from aos_solver.child.search import Search
 from aos_solver.mission.models.past import Evidence, Past, replayed, updated
 from aos_solver.mission.records.memory import folded
 from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 State = tuple[str, bool]
 """The charge, and whether the robot is there."""
@@ -197,6 +196,6 @@ async def test_a_simulated_world_says_what_the_model_says_of_its_state(battery: 
             said.append((await engine.monitor_world())["battery"])
         # `charge` fills the battery, so that `low` is said by mistake: once in twenty.
         assert 1 <= said.count("low") <= 22
-        run = await simulate_mission(engine, Search(simulations=200, seed=3), MissionLimits(step_limit=10))
+        run = await simulated(engine, 200, seed=3, step_limit=10)
     assert len(run.monitors) == run.steps > 0
     assert {response for told in run.monitors for response in told.values()} <= {"low", "fine"}

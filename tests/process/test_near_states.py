@@ -1,13 +1,10 @@
 import pytest
-from models import built_text, engine_of, engine_of_bundle, engine_of_text
+from models import built_text, engine_of, engine_of_bundle, engine_of_text, simulated
 from places import BUNDLES
 
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers.models import Plan
 from aos_solver.child.engine import Engine
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 COUNT = """
 state_variable: int steps
@@ -114,12 +111,8 @@ async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: Bui
 
 
 async def test_a_robot_with_a_battery_without_bounds_comes_home():
-    search = Search(simulations=3_000, seed=1)
     async with engine_of_text(VACUUM) as engine:
-        runs = [
-            await simulate_mission(engine, search, MissionLimits(goal_probability=1.0, step_limit=40))
-            for _ in range(2)
-        ]
+        runs = [await simulated(engine, 3_000, goal_probability=1.0, step_limit=40) for _ in range(2)]
     assert runs[0] == runs[1]
     assert [run.world_ending for run in runs] == ["goal", "goal"]
 

@@ -4,14 +4,11 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 from mappings import mapping_text
-from models import engine_of_text
+from models import engine_of_text, simulated
 from numpy.typing import NDArray
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 ENVIRONMENT = """project: gauge
 horizon: 5
@@ -254,9 +251,8 @@ DEPTH_AND_BEAM = documents(
 
 async def test_simulated_worlds_give_numbers_that_their_belief_learns_from():
     async with engine_of_text(DEPTH_AND_BEAM) as engine:
-        limits = MissionLimits(goal_probability=0.9, step_limit=12)
-        run = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
-        again = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
+        limits = {"goal_probability": 0.9, "step_limit": 12}
+        run, again = [await simulated(engine, 100, seed=4, **limits) for _ in range(2)]
         assert run == again
         assert [sorted(numbers) for numbers in run.numbers] == [["beams", "depth"]] * 12
         assert max((await levels(engine)).values()) > 0.999

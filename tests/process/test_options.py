@@ -1,6 +1,6 @@
 from statistics import fmean
 
-from models import built_text, engine_of, engine_of_text
+from models import built_text, engine_of, engine_of_text, simulated
 from wide.delivery import delivery
 from wide.gauges import gauges
 from wide.leaving import questions, survey
@@ -10,9 +10,6 @@ from wide.towers import towers
 from wide.writing import BundleWriter
 
 from aos_solver.child.engine import Restriction
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 
 async def test_many_things_are_tested_before_they_are_sent_off():
@@ -27,15 +24,13 @@ async def test_many_things_are_tested_before_they_are_sent_off():
         within = Restriction(barred=[plan.index])
         barred = await other.plan(simulations=1000, seed=1, planner="auto", within=within)
         assert (barred.planner, barred.index == plan.index) == ("options", False)
-        limits = MissionLimits(goal_probability=1, step_limit=80)
-        run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
+        run = await simulated(engine, 1000, goal_probability=1, step_limit=80)
     assert run.discounted_return > 10
 
 
 async def test_a_robot_that_does_not_know_its_place_goes_where_it_can_measure_it():
     async with engine_of_text(open_field(9)) as engine:
-        search = Search(simulations=2000, seed=2)
-        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=60))
+        run = await simulated(engine, 2000, seed=2, goal_probability=1, step_limit=60)
     assert sum(action == "move(direction=0)" for action in run.actions) >= 3
     assert run.actions[-1] == "stop"
 
@@ -46,8 +41,7 @@ async def test_a_world_that_changes_by_itself_leaves_tests_what_they_are():
         plan = await engine.plan(simulations=4000, seed=1, planner="auto")
         assert plan.planner == "options"
         assert plan.simulations < 5000
-        search = Search(simulations=4000, seed=1)
-        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
+        run = await simulated(engine, 4000, goal_probability=1, step_limit=80)
     assert sum(action.startswith("hand") for action in run.actions) >= 4
     assert run.discounted_return > 10
 
@@ -92,8 +86,7 @@ state.x = AOS.SampleUniform(0, 4);
 async def test_a_reward_that_asks_for_many_conditions_at_once_is_found():
     """A lock opens when five dials are right, and nothing is earned before. Random actions return -24."""
     async with engine_of_text(lock(5)) as engine:
-        search = Search(simulations=2000, seed=1)
-        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=80))
+        run = await simulated(engine, 2000, goal_probability=1, step_limit=80)
     assert run.actions[-1] == "pull"
     assert run.discounted_return > 5
 
@@ -101,8 +94,7 @@ async def test_a_reward_that_asks_for_many_conditions_at_once_is_found():
 async def test_a_robot_leaves_where_promises_are_not_kept():
     """Twelve sites are hardly worth a probe. Without the rule the robot probes and drives for ever."""
     async with engine_of_text(survey(12)) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=60)
-        run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
+        run = await simulated(engine, 1000, goal_probability=1, step_limit=60)
     assert run.actions[-1] == "leave"
     assert run.discounted_return > -9
 
@@ -110,8 +102,7 @@ async def test_a_robot_leaves_where_promises_are_not_kept():
 async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads():
     """A robot without detours reads what it knows, up to the last step, since nothing else costs less."""
     async with engine_of_text(gauges(8)) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=60)
-        run = await simulate_mission(engine, Search(simulations=10_000, seed=302), limits)
+        run = await simulated(engine, 10_000, seed=302, goal_probability=1, step_limit=60)
     assert "wipe" in run.actions
     assert run.actions[-1].startswith("report")
     assert len(run.actions) < 60
@@ -120,17 +111,15 @@ async def test_a_camera_is_wiped_where_the_robot_goes_before_it_reads():
 async def test_questions_are_asked_of_which_none_pays_alone():
     """A robot that leaves at once returns 0, a rule by hand 6.4."""
     async with engine_of_text(questions(18)) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=30)
-        searches = (Search(simulations=1000, seed=seed) for seed in range(1, 13))
-        runs = [await simulate_mission(engine, search, limits) for search in searches]
+        limits = {"goal_probability": 1, "step_limit": 30}
+        runs = [await simulated(engine, 1000, seed=seed, **limits) for seed in range(1, 13)]
     assert fmean(run.discounted_return for run in runs) > 2
 
 
 async def test_blocks_in_each_others_way_are_taken_down_though_grips_slip():
     """A rule by hand returns 69, and whoever waits for 60 steps -18."""
     async with engine_of_text(towers(8)) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=60)
-        run = await simulate_mission(engine, Search(simulations=2000, seed=1), limits)
+        run = await simulated(engine, 2000, goal_probability=1, step_limit=60)
     assert run.discounted_return > 50
 
 
@@ -170,8 +159,7 @@ for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
     charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n"
     patrol.skill("charge", ["charged"], charge + "__moduleResponse = charged;")
     async with engine_of_text(patrol.files) as engine:
-        limits = MissionLimits(goal_probability=1, step_limit=30)
-        run = await simulate_mission(engine, Search(simulations=1000, seed=1), limits)
+        run = await simulated(engine, 1000, goal_probability=1, step_limit=30)
         plan = await engine.plan(simulations=100, seed=1, planner="auto")
     assert "what is neglected costs more than ways to rewards earn" in plan.why
     assert len(run.actions) == 30, "longer than a battery lasts"

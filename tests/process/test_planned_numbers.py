@@ -1,12 +1,10 @@
 import re
 
 import numpy as np
-from models import engine_of_text
+from models import engine_of_text, simulated
 
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import Ending, MissionLimits
-from aos_solver.mission.simulation import simulate_mission
+from aos_solver.mission.rules.endings import Ending
 
 DOORS = """project: doors
 horizon: 20
@@ -77,9 +75,8 @@ DOCUMENTS_OF_DOORS = {"doors.ef": DOORS, "listen.sd": LISTEN, "open.sd": OPEN}
 
 async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:
     """Plays 30 missions, all of which begin with listening: a door opened at once earns -45 on average."""
-    limits = MissionLimits(goal_probability=0.9, step_limit=20)
-    searches = [Search(planner=planner, simulations=2000, seed=k) for k in range(30)]
-    runs = [await simulate_mission(engine, search, limits) for search in searches]
+    limits = {"goal_probability": 0.9, "step_limit": 20}
+    runs = [await simulated(engine, 2000, seed=seed, planner=planner, **limits) for seed in range(30)]
     assert all(run.actions[0] == "listen" for run in runs)
     return [run.ending for run in runs]
 

@@ -1,11 +1,7 @@
 from statistics import fmean
 
-from models import engine_of_text
+from models import engine_of_text, simulated
 from wide.photo import photo
-
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 
 async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo():
@@ -14,9 +10,8 @@ async def test_a_drone_looks_for_a_cell_and_comes_home_with_a_photo():
         plan = await engine.plan(simulations=500, seed=1, planner="auto")
         assert plan.planner == "pomcp"
         assert "information has a price" in plan.why
-        limits = MissionLimits(goal_probability=1, step_limit=80)
-        searches = [Search(simulations=500, seed=seed) for seed in (101, 102)]
-        runs = [await simulate_mission(engine, search, limits) for search in searches]
+        limits = {"goal_probability": 1, "step_limit": 80}
+        runs = [await simulated(engine, 500, seed=seed, **limits) for seed in (101, 102)]
     assert plan.best.q < 30, "the tree alone promises 40"
     assert fmean(run.discounted_return for run in runs) > 15
     assert all("take" in run.actions for run in runs)

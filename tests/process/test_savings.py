@@ -1,12 +1,9 @@
-from models import built_text, engine_of, engine_of_text
+from models import built_text, engine_of, engine_of_text, simulated
 from wide.cleaning import cleaning
 from wide.greenhouse import greenhouse
 from wide.writing import BundleWriter
 
 from aos_solver.child.engine import Restriction
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import MissionLimits
-from aos_solver.mission.simulation import simulate_mission
 
 _SIMULATIONS = 500
 
@@ -23,8 +20,7 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
         within = Restriction(barred=[plan.index])
         barred = await third.plan(simulations=_SIMULATIONS, seed=1, planner="auto", within=within)
         assert (barred.planner, barred.index == plan.index) == ("savings", False)
-        limits = MissionLimits(goal_probability=1, step_limit=60)
-        run = await simulate_mission(engine, Search(simulations=_SIMULATIONS, seed=1), limits)
+        run = await simulated(engine, _SIMULATIONS, goal_probability=1, step_limit=60)
     assert sum(action.startswith("water") for action in run.actions) >= 12
     assert sum(action == "refill" for action in run.actions) >= 2
     told = plan.actions[plan.index]
@@ -34,8 +30,7 @@ async def test_plants_are_watered_the_tank_is_refilled_and_a_value_is_what_missi
 
 async def test_a_robot_charges_and_empties_its_bin_although_that_saves_nothing_at_once():
     async with engine_of_text(cleaning(7)) as engine:
-        search = Search(simulations=_SIMULATIONS, seed=1)
-        run = await simulate_mission(engine, search, MissionLimits(goal_probability=1, step_limit=15))
+        run = await simulated(engine, _SIMULATIONS, goal_probability=1, step_limit=15)
     assert sum(action == "clean" for action in run.actions) >= 4
     assert {"charge", "empty_bin"} <= set(run.actions)
 
@@ -92,8 +87,7 @@ async def test_an_order_counts_by_what_comes_of_it_later_and_rollouts_decide_whe
     """Over 50 steps rests return -65 on average; without rests after a way this mission returns -69.6."""
     built = await built_text(_pumps())
     async with engine_of(built) as engine, engine_of(built) as other:
-        limits = MissionLimits(goal_probability=1, step_limit=50)
-        run = await simulate_mission(engine, Search(simulations=_SIMULATIONS, seed=2), limits)
+        run = await simulated(engine, _SIMULATIONS, seed=2, goal_probability=1, step_limit=50)
         plan = await other.plan(simulations=_SIMULATIONS, seed=1, planner="auto")
     assert run.discounted_return > -55
     assert (plan.planner, "more by rollouts" in plan.why) == ("pomcp", True)

@@ -2,12 +2,10 @@ import json
 
 import pytest
 from commands import aos
-from models import engine_of_text
+from models import engine_of_text, simulated
 from texts import write_texts
 
-from aos_solver.child.search import Search
-from aos_solver.mission.rules.endings import Ending, MissionLimits
-from aos_solver.mission.simulation import simulate_mission
+from aos_solver.mission.rules.endings import Ending
 
 SERVED = 0.92
 """The belief holds the goal for this sure where nothing is seen: surer than the 0.9 that end a mission."""
@@ -39,15 +37,12 @@ state__.cup = Kept;
 __reward = -1;
 """,
 }
-LIMITS = MissionLimits(goal_probability=0.9, step_limit=3)
+LIMITS = {"goal_probability": 0.9, "step_limit": 3}
 
 
 async def test_a_failure_that_the_belief_takes_for_the_goal_is_told():
     async with engine_of_text(TABLE) as engine:
-        runs = [
-            await simulate_mission(engine, Search(simulations=200, seed=seed), LIMITS)
-            for seed in range(1, 121)
-        ]
+        runs = [await simulated(engine, 200, seed=seed, **LIMITS) for seed in range(1, 121)]
     assert {run.ending for run in runs} == {run.believed_ending for run in runs} == {Ending.GOAL}
     spilt = [run for run in runs if run.world_ending is Ending.FAILURE]
     assert all(run.world_ending in (Ending.GOAL, Ending.FAILURE) for run in runs)
@@ -70,7 +65,7 @@ async def test_a_belief_tells_each_ending_apart():
 async def test_a_mission_can_be_over_without_a_goal_or_a_failure():
     keep = {name: text for name, text in TABLE.items() if not name.startswith("serve")}
     async with engine_of_text(keep) as engine:
-        run = await simulate_mission(engine, Search(simulations=100, seed=1), LIMITS)
+        run = await simulated(engine, 100, **LIMITS)
     assert (run.ending, run.world_ending, run.believed_ending) == (Ending.OVER,) * 3
     assert run.total == -1
 
