@@ -188,14 +188,15 @@ class Asking(Closing):
 
     def variables_of(self, action: str) -> dict[str, str]:
         """The state variables that parameters of the action stand for; computed parameters stand for none."""
-        grounded = self.description.actions[self._index(action)]
+        grounded = self.description.actions[self.index_of(action)]
         return grounded.arguments if grounded.skill in self._built.emitted.choosing_skills else {}
 
     def has_action(self, action: str) -> bool:
         """Returns whether the model has a grounded action of this name."""
         return any(grounded.name == action for grounded in self.description.actions)
 
-    def _index(self, action: str) -> int:
+    def index_of(self, action: str) -> int:
+        """Returns the number of a grounded action; ModelError AOS501 where there is none of this name."""
         for index, grounded in enumerate(self.description.actions):
             if grounded.name == action:
                 return index

@@ -84,7 +84,7 @@ class BeliefQuestions(Asking):
         observed since it began is less probable in it by this factor. `step` is the mission's, without one
         the updates are counted: what an update draws depends on seed and step alone.
         """
-        index = self._index(action)
+        index = self.index_of(action)
         skill = self.description.actions[index].skill
         observed = self.observed.get(skill, ())
         question = {
@@ -130,7 +130,7 @@ class BeliefQuestions(Asking):
         self, action: str, question: Mapping[str, Any], local_variables: Mapping[str, str] | None
     ) -> BeliefUpdate:
         """The answer to an update, with the local variables where the skill's documents want them."""
-        wanted = self._built.emitted.locals.get(self.description.actions[self._index(action)].skill)
+        wanted = self._built.emitted.locals.get(self.description.actions[self.index_of(action)].skill)
         command = command_line("update", **question)
         if wanted is None or local_variables is None:
             return await self._change_belief(command, BeliefUpdate)
@@ -169,7 +169,7 @@ class BeliefQuestions(Asking):
         """
         command = command_line(
             "update_without_observation",
-            action=self._index(action),
+            action=self.index_of(action),
             ran_probability=ran_probability,
             draws=self._draws.of(step),
         )

@@ -1,6 +1,6 @@
 """The choice of a mission's next step: an action, an ending, or to hold, for what can be carried out now."""
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Mapping
 
 import msgspec
 
@@ -39,10 +39,6 @@ class _Without(msgspec.Struct, frozen=True):
 
 
 _IDLE_DECISIONS = 5  # in a row: one or two may be bad luck of a search
-_RETURN_S = 5.0
-"""An adapter whose start nobody tells, such as one that somebody else starts, may come within this time."""
-_LOOK_S = 0.5
-_LEAST_LOOK_S = 0.001  # Without a robot nothing is waited for, and the time stands still.
 _GIVES_UP = (Ending.SKILLS_FAILED, Ending.NOTHING_WORTHWHILE)
 
 
@@ -67,7 +63,7 @@ class Chooser:
         self._around = around
         self._budget = budget
         self._left_out = left_out
-        self._passed_over = PassedOver()
+        self._passed_over = PassedOver(around, terms.hold_s)
         self._searches = MadeSearches()
         self._idle = 0  # decisions in a row
         self._endless = EndlessLoops()
@@ -114,8 +110,7 @@ class Chooser:
         engine, reasons = model.engine, self._left_out()
         if not engine.has_action(asked.action):
             return Refused("the documents that run now have no such action")
-        names = [action.name for action in engine.description.actions]
-        index = names.index(asked.action)
+        index = engine.index_of(asked.action)
         skill = engine.description.actions[index].skill
         for name in (asked.action, skill):
             if name in reasons:
@@ -147,7 +142,7 @@ class Chooser:
                 if action.skill not in without.reasons and action.name not in without.reasons
             ]
             if not set(possible) - forbidden:
-                if await self._is_searched_anew():
+                if await self._passed_over.are_searched_anew():
                     continue
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(without.reasons))
             unavailable = self._around.unavailable
@@ -170,66 +165,28 @@ class Chooser:
             is_free = not barred and not without.reasons
             self._idle = self._idle + 1 if plan.is_idle and is_free else 0
             ended = await self._ending(engine, plan, belief, without)
-            if ended is not None and ended.ending in _GIVES_UP and await self._is_searched_anew():
+            gives_up = ended is not None and ended.ending in _GIVES_UP
+            if gives_up and await self._passed_over.are_searched_anew():
                 continue
             kept_back = _kept_back(plan, {actions[number].name: why for number, why in barred.items()})
             away = {actions[n].skill for n in barred if actions[n].name in kept_back} & unavailable.keys()
-            if ended is None and await self._is_waited_for(self._left(away)):
+            if ended is None and await self._passed_over.are_waited_for(away):
                 continue
             told = await self._endless.newly_found(engine)
             told += [f"{name} cannot be chosen now: {why}" for name, why in kept_back.items()]
             plan = _explained(plan, without.reasons, is_cautious, told)
             if ended is not None:
                 return ended
-            self._passed_over.count(away | self._left({actions[n].skill for n in barred}))
+            self._passed_over.count(away, {actions[n].skill for n in barred})
             chosen_by, searches = self.search.chosen_by, self._searches.told()
             return Choice(plan, risks, forbidden, without.reasons, is_cautious, chosen_by, searches)
-
-    async def _is_searched_anew(self) -> bool:
-        """Returns whether skills were passed over; they are not any more, as their adapters may come back.
-
-        That is waited for: decisions for want of them would use the mission's steps up in a moment.
-        """
-        away = self._passed_over.to_await(self._around.unavailable)
-        if not away:
-            return False
-        await self._come_back(away)
-        self._passed_over.lose(self._left(away))
-        self._passed_over.forget()
-        return True
-
-    def _left(self, skills: Set[str]) -> set[str]:
-        """Those of the skills that are away and were there before."""
-        away = skills & self._around.unavailable.keys()
-        return {skill for skill in away if self._around.announced.get(skill)}
-
-    async def _is_waited_for(self, left: set[str]) -> bool:
-        """Waits once per absence; returns whether a search is due, with those back or without those lost."""
-        awaited = self._passed_over.not_awaited(left)
-        await self._come_back(awaited)
-        self._passed_over.lose(self._left(awaited))
-        return bool(awaited)
-
-    async def _come_back(self, away: Set[str]) -> None:
-        """Waits for skills that are away, if any, until one of them has come back or the time is over.
-
-        While an adapter of theirs is expected back the time stands still, for as long as a mission may hold.
-        """
-        now_s = self._around.clock.monotonic_s
-        left_s, ends_at_s = _RETURN_S if away else 0.0, now_s() + self._terms.hold_s
-        while left_s > 0 and away <= self._around.unavailable.keys():
-            began_s = now_s()
-            await self._around.until_changed(_LOOK_S)
-            if not away & set(self._around.returning) or now_s() > ends_at_s:
-                left_s -= min(max(now_s() - began_s, _LEAST_LOOK_S), _LOOK_S)  # A pause is no waiting.
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
 
     def _without(self, engine: Engine) -> _Without:
         """The skills and actions of the model that are set aside or left out."""
-        passed_over = self._passed_over.reasons(self._around.unavailable)
-        wanted = {**passed_over, **self._set_aside(), **self._left_out()}
+        wanted = {**self._passed_over.reasons(), **self._set_aside(), **self._left_out()}
         actions = engine.description.actions
         skills = {action.skill for action in actions}
         numbers = [number for number, action in enumerate(actions) if action.name in wanted]
@@ -313,8 +270,7 @@ class Chooser:
         decision = self._failures.to_retry
         if decision is None or model.digest != decision.model_digest:
             return None
-        names = [action.name for action in model.engine.description.actions]
-        index = names.index(decision.action)
+        index = model.engine.index_of(decision.action)
         if index not in allowed:
             return None
         prediction = await model.engine.predict(index)
