@@ -1,8 +1,10 @@
 import asyncio
 import json
 import os
+import queue
 import signal
 import subprocess
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -104,3 +106,30 @@ def events_of(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
     assert process.stdout is not None
     for line in process.stdout:
         yield json.loads(line)
+
+
+class EventReader:
+    """Reads what a running `aos-up --json` prints all the time, since it would wait for a reader."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self._process = process
+        self._events: queue.Queue[dict[str, Any] | None] = queue.Queue()
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        for event in events_of(self._process):
+            self._events.put(event)
+        self._events.put(None)
+
+    def next(self, kind: str, **fields: Any) -> dict[str, Any] | None:
+        """The next event of a kind with these fields; None where the process ends before."""
+        while (event := self._events.get(timeout=HANG_S)) is not None:
+            if event["event"] == kind and fields.items() <= event.items():
+                return event
+        return None
+
+    def ended(self) -> int:
+        """The exit code, once all is read."""
+        self._reader.join(HANG_S)
+        return self._process.wait(HANG_S)

@@ -1,10 +1,8 @@
 import asyncio
 import json
 import os
-import queue
 import signal
 import subprocess
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,7 +11,7 @@ from typing import Any
 import pytest
 from gateway import write_slow_tiger
 from places import BIN, BUNDLES, ROOT
-from processes import HANG_S, finished, kill, until_taking_over
+from processes import HANG_S, EventReader, finished, kill, until_taking_over
 
 from aos_deploy.history_check.files import check_run
 from aos_protocol.access import OPERATOR
@@ -54,21 +52,13 @@ class System:
         self.folder = folder
         self.process = process
         self._environment = environment
-        self._said: queue.Queue[dict[str, Any]] = queue.Queue()
-        self._reader = threading.Thread(target=self._read)
-        self._reader.start()
-
-    def _read(self):
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self._said.put(json.loads(line))
-        self._said.put({"event": "end"})
+        self._events = EventReader(process)
+        self.ended = self._events.ended
 
     def until(self, kind: str, **fields: Any) -> dict[str, Any]:
-        while (event := self._said.get(timeout=HANG_S))["event"] != "end":
-            if event["event"] == kind and fields.items() <= event.items():
-                return event
-        raise AssertionError(f"aos-up ended before {kind} {fields}")
+        event = self._events.next(kind, **fields)
+        assert event is not None, f"aos-up ended before {kind} {fields}"
+        return event
 
     @property
     def run(self) -> Path:
@@ -89,10 +79,6 @@ class System:
     def interrupt(self) -> int:
         self.process.send_signal(signal.SIGINT)
         return self.ended()
-
-    def ended(self) -> int:
-        self._reader.join(HANG_S)
-        return self.process.wait(HANG_S)
 
     def beliefs(self, number: int) -> list[dict[str, Any]]:
         """The beliefs in a mission's decision records, as marginals."""

@@ -1,10 +1,8 @@
 import json
 import os
-import queue
 import signal
 import socket
 import subprocess
-import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -12,7 +10,7 @@ from typing import Any
 
 import pytest
 from places import BIN, ROOT
-from processes import HANG_S, finished
+from processes import HANG_S, EventReader, finished
 
 from aos_deploy.processes.endpoint import hold_endpoint
 from aos_deploy.runs.directory import RunDirectory
@@ -46,26 +44,15 @@ async def open_door(call, door):
 
 
 class Up:
-    """A running aos-up. What it prints is read all the time, since it would wait for a reader."""
+    """A running aos-up."""
 
     def __init__(self, process: subprocess.Popen[str]):
         self._process = process
-        self._said: queue.Queue[str] = queue.Queue()
-        self._reader = threading.Thread(target=self._read)
-        self._reader.start()
-
-    def _read(self):
-        assert self._process.stdout is not None
-        for line in self._process.stdout:
-            self._said.put(json.loads(line)["event"])
-        self._said.put("end")
+        self._events = EventReader(process)
 
     def has_decided(self) -> bool:
-        """Returns whether it came to a decision before its end; it hangs where it says nothing for too
-        long."""
-        while (event := self._said.get(timeout=HANG_S)) not in ("decision", "end"):
-            pass
-        return event == "decision"
+        """Returns whether it came to a decision before its end."""
+        return self._events.next("decision") is not None
 
     def end(self) -> tuple[int, str]:
         """Exit code and errors after Ctrl-C."""
@@ -75,8 +62,7 @@ class Up:
     def ended(self) -> tuple[int, str]:
         assert self._process.stderr is not None
         error = self._process.stderr.read()
-        self._reader.join(HANG_S)
-        return self._process.wait(HANG_S), error
+        return self._events.ended(), error
 
 
 class Place:

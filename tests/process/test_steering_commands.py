@@ -24,7 +24,7 @@ def followed(run: Path) -> subprocess.CompletedProcess[str]:
 
 
 async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_steered_as_before(tmp_path):
-    with up(ROOT, tmp_path) as system:
+    with up(tmp_path) as system:
         system.be_slow(True)
         name = system.until("mission", phase="acting")["mission"]
         code, said, _ = system.aos("mission", "hold")
@@ -67,7 +67,7 @@ async def test_an_operator_steers_a_mission_by_commands_and_after_a_kill_it_is_s
 
 
 async def test_a_program_steers_and_stop_cancels_motion_at_once(tmp_path):
-    with up(ROOT, tmp_path) as system:
+    with up(tmp_path) as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
         async with AosClient.of_run(system.run, OPERATOR, by="ana") as aos:

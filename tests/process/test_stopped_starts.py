@@ -2,7 +2,6 @@ import json
 
 import pytest
 from kept_cache import kept_cache, link_engines
-from places import ROOT
 from test_missions import up
 
 from aos_deploy.history_check.files import check_run
@@ -16,7 +15,7 @@ def compiles(tmp_path, monkeypatch):
 
 
 def test_the_only_mission_is_cancelled_while_its_model_compiles(tmp_path):
-    with up(ROOT, tmp_path, "tiger.yaml") as system:
+    with up(tmp_path, "tiger.yaml") as system:
         system.until("mission", phase="compiling")
         answer = json.loads(system.aos("mission", "stop", "--json")[1])
         assert (answer["phase"], answer["ending"]) == ("ended", "cancelled")
@@ -30,7 +29,7 @@ def test_the_only_mission_is_cancelled_while_its_model_compiles(tmp_path):
 
 
 def test_the_first_mission_of_a_system_that_stays_does_not_begin_and_the_next_one_may(tmp_path):
-    with up(ROOT, tmp_path) as system:
+    with up(tmp_path) as system:
         system.until("mission", phase="compiling")
         code, said, _ = system.aos("mission", "stop")
         assert (code, said) == (0, f"{system.run.name}-1 does not begin: stopped by hand\n")

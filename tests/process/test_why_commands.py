@@ -3,14 +3,14 @@ import shutil
 from pathlib import Path
 
 from commands import aos
-from places import BUNDLES, ROOT
+from places import BUNDLES
 from test_missions import up
 
 LINES = 8
 
 
 def test_a_mission_that_runs_is_explained_as_afterwards_and_goes_on(tmp_path):
-    with up(ROOT, tmp_path, "tiger.yaml") as system:
+    with up(tmp_path, "tiger.yaml") as system:
         system.be_slow(True)
         system.until("mission", phase="acting")
         code, out, error = system.aos("why", "1", "--json")
