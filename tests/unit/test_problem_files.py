@@ -210,8 +210,8 @@ def test_a_mistake_is_told_at_its_place(tmp_path, name, change, finding):
         ("0.85 0.15", "0,85 0.15", "16:1 0,85 is not a finite number. A decimal is written with a point"),
     ],
 )
-def test_one_mistake_of_a_whole_statement_is_told_once(problems: Path, tmp_path, before, after, told):
-    (tmp_path / "a.pomdp").write_text(replaced(before, after)((problems / "tiger.pomdp").read_text()))
+def test_one_mistake_of_a_whole_statement_is_told_once(tmp_path, before, after, told):
+    (tmp_path / "a.pomdp").write_text(replaced(before, after)((PROBLEMS / "tiger.pomdp").read_text()))
     with pytest.raises(DocumentError) as caught:
         read_problem(tmp_path / "a.pomdp")
     (only,) = caught.value.diagnostics
