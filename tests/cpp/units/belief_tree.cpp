@@ -124,8 +124,7 @@ TEST("A described distribution has the densities of the one that it describes, a
   for (const aos::Distribution* each : {static_cast<const aos::Distribution*>(&normal),
                                         static_cast<const aos::Distribution*>(&uniform),
                                         static_cast<const aos::Distribution*>(&discrete)}) {
-    aos::DescribedDistribution described;
-    each->describe(described);
+    const aos::DescribedDistribution described = each->described();
     for (const double value : {0.0, 1.0, 1.25, 2.0}) {
       if (each == &discrete && value == 1.25) continue;
       EXPECT_NEAR(std::exp(described.log_density(value)), std::exp(each->log_density(value)), 1e-12);

@@ -76,9 +76,9 @@ TEST("An action is worth its reward and what the next state is worth, and nothin
   TableModel::State next = state;
   TableModel::step(next, 0, learned.random);
   const double later = 0.95 * learned.values.value(next, horizon - 1);
-  EXPECT_NEAR(learned.values.action_value(state, 0, horizon, learned.random), later, 1e-12);
-  EXPECT_EQUAL(learned.values.action_value(state, 0, 1, learned.random), 0.0);
-  EXPECT_EQUAL(learned.values.action_value(next, 0, horizon, learned.random), 10.0);
+  EXPECT_NEAR(learned.values.stepped_value(state, 0, horizon, learned.random), later, 1e-12);
+  EXPECT_EQUAL(learned.values.stepped_value(state, 0, 1, learned.random), 0.0);
+  EXPECT_EQUAL(learned.values.stepped_value(next, 0, horizon, learned.random), 10.0);
 }
 
 TEST("The same seed learns the same values") {

@@ -51,8 +51,7 @@ struct OnlineSarsop::Solver {
   double below() const { return outlook.below(sarsop.graph().max_value()); }
 
   // `trial(is_enough)` returns whether there is more to find out. `is_enough` also cuts a trial short.
-  template <class Trial>
-  std::uint64_t repeat(std::uint64_t max_work, const IsOver& is_over, Trial&& trial) {
+  std::uint64_t repeat(std::uint64_t max_work, const IsOver& is_over, auto&& trial) {
     const std::uint64_t before = sarsop.graph().work();
     const auto is_enough = [&] { return (max_work > 0 && sarsop.graph().work() - before >= max_work) || is_over(); };
     while (trial(is_enough) && !is_enough()) {}
@@ -68,17 +67,20 @@ struct OnlineSarsop::Solver {
     };
   }
 
+  // Calls `play(ends, uniform)` with the end of the work or of the time, and with luck that is always the same. Adds the work.
+  auto played(std::uint64_t max_work, Asked is_over, std::uint64_t& work, auto&& play) {
+    const std::uint64_t before = sarsop.graph().work();
+    std::mt19937_64 bits{1};
+    const auto ends = [&] { return is_over() || (max_work > 0 && sarsop.graph().work() - before >= max_work); };
+    const auto found = play(ends, [&] { return static_cast<double>(bits()) * share_of_bits; });
+    work += sarsop.graph().work() - before;
+    return found;
+  }
+
   std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, std::uint64_t max_work, const IsOver& is_over,
                                          std::uint64_t& work) {
-    const std::uint64_t before = sarsop.graph().work();
-    const auto done = [&] { return sarsop.graph().work() - before; };
     auto is_late = seldom(is_over);
-    const auto ends = [&] { return is_late() || (max_work > 0 && done() >= max_work); };
-    std::mt19937_64 bits{1};
-    const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
-    const std::optional<PolicyValue> found = sarsop.best_policy(steps, decides_anew, ends, is_late, uniform);
-    work += done();
-    return found;
+    return played(max_work, is_late, work, [&](Asked ends, Uniform uniform) { return sarsop.best_policy(steps, decides_anew, ends, is_late, uniform); });
   }
 
   FlatModel model;
@@ -116,16 +118,10 @@ std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t 
   const bool is_endless = solver_->model.horizon == 0;
   if (!solver_->sarsop.has_start() || !(is_endless || solver_->is_nearly_closed())) return found;
   const double precision = std::max(solver_->gap(), 0.2 * solver_->nearly_closed_gap());
-  const std::uint64_t before = solver_->sarsop.graph().work();
-  const auto done = [&] { return solver_->sarsop.graph().work() - before; };
-  const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };
-  std::mt19937_64 bits{1};
-  const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
-  while (found.size() < missions && !ends()) {
-    found.push_back(solver_->sarsop.loss_of_mission(action, steps, precision, ends, is_over, uniform));
-  }
-  work += done();
-  return found;
+  return solver_->played(max_work, is_over, work, [&](Asked ends, Uniform uniform) {
+    while (found.size() < missions && !ends()) found.push_back(solver_->sarsop.loss_of_mission(action, steps, precision, ends, is_over, uniform));
+    return found;
+  });
 }
 
 std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,

@@ -5,33 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "aos/base/add_up.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "numbers/observable_values.hpp"
 
 namespace aos {
 
-namespace {
-
-void merge(std::vector<CompactModel::Outcome>& outcomes) {
-  if (outcomes.size() < 2) return;
-  std::sort(outcomes.begin(), outcomes.end(), [](const auto& left, const auto& right) { return left.next < right.next; });
-  std::size_t kept = 0;
-  for (std::size_t i = 1; i < outcomes.size(); ++i) {
-    if (outcomes[i].next == outcomes[kept].next) {
-      outcomes[kept].probability += outcomes[i].probability;
-    } else {
-      outcomes[++kept] = outcomes[i];
-    }
-  }
-  outcomes.resize(kept + 1);
-}
-
-}  // namespace
-
 void CompactModel::add_row(std::vector<Outcome>& outcomes, float reward) {
   constexpr double certain = 1 - 1e-9;
-  merge(outcomes);
+  if (outcomes.size() > 1) std::sort(outcomes.begin(), outcomes.end(), [](const Outcome& left, const Outcome& right) { return left.next < right.next; });
+  add_up_neighbours(outcomes, &Outcome::next, &Outcome::probability);
   const bool is_certain = outcomes.size() == 1 && outcomes[0].probability > certain;
   if (outcomes.size() > max_outcomes) throw NotEnumerable{"a step has too many outcomes"};
   row_.clear();

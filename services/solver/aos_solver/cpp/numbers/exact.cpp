@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "aos/base/progress.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/draws/enumerator.hpp"
 
 namespace aos {
@@ -17,6 +18,14 @@ constexpr std::uint64_t between_looks = 20'000;  // at the clock, in operations
 
 ExactValue scaled(ExactValue value, double by) { return {by * value.value, by * value.growth}; }
 
+// Makes weights sum to 1, where they are not all 0. Returns their sum before.
+double normalise(Weighted& belief) {
+  double total = 0;
+  for (const auto& part : belief) total += part.second;
+  for (auto& part : belief) part.second /= total > 0 ? total : 1;
+  return total;
+}
+
 }  // namespace
 
 std::vector<ExactValue> ExactEvaluation::action_values(const Weighted& belief, int horizon) {
@@ -29,10 +38,8 @@ std::vector<ExactValue> ExactEvaluation::action_values(const Weighted& belief, i
 std::vector<double> ExactEvaluation::losses(Weighted belief, std::size_t action, int horizon, ExactLimits limits) {
   constexpr std::size_t missions = 30;
   std::vector<double> found;
-  double total = 0;
-  for (const auto& part : belief) total += part.second;
+  const double total = normalise(belief);
   if (total <= 0) return found;
-  for (auto& part : belief) part.second /= total;
   limits_ = std::move(limits);
   if (limits_.work > 0) limits_.work += work_;
   limits_.beliefs += evaluated_;
@@ -53,10 +60,8 @@ std::map<std::pair<std::uint32_t, std::size_t>, double> ExactEvaluation::occupan
   std::map<std::pair<std::uint32_t, std::size_t>, double> found;
   std::unordered_map<BeliefKey, Visit, BeliefKey::Hash> level;
   const auto add = [](auto& visits, Weighted states, double weight) {
-    double total = 0;
-    for (const auto& part : states) total += part.second;
+    const double total = normalise(states);
     if (total <= 0) return;
-    for (auto& part : states) part.second /= total;
     Visit& visit = visits[key_of(states)];
     visit.weight += weight * total;
     if (visit.belief.empty()) visit.belief = std::move(states);
@@ -78,10 +83,8 @@ std::map<std::pair<std::uint32_t, std::size_t>, double> ExactEvaluation::occupan
 }
 
 double ExactEvaluation::error(int horizon) const {
-  double largest = 0;
-  for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
   const double once = 1e-12 * (4 + static_cast<double>(observable_.states()));
-  return once * largest * horizon * horizon;
+  return once * largest_size(rows_.rewards) * horizon * horizon;
 }
 
 // Posteriors are not normalised here: a weight is the probability of getting to that state.
@@ -129,14 +132,11 @@ double ExactEvaluation::loss_of_mission(Weighted belief, std::size_t action, int
     double place = random.uniform();
     Weighted next;
     for (const auto& [observation, states] : posteriors(belief, action)) {
-      double total = 0;
-      for (const auto& part : states) total += part.second;
-      if (place < total) {
-        next.assign(states.begin(), states.end());
-        for (auto& part : next) part.second /= total;
-        break;
-      }
+      next.assign(states.begin(), states.end());
+      const double total = normalise(next);
+      if (place < total) break;
       place -= total;
+      next.clear();
     }
     if (next.empty()) break;
     belief = std::move(next);
@@ -159,10 +159,8 @@ std::size_t ExactEvaluation::best_action(const Weighted& belief, int horizon) {
 }
 
 ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {
-  double total = 0;
-  for (const auto& part : belief) total += part.second;
+  const double total = normalise(belief);
   if (total <= 0) return {};
-  for (auto& part : belief) part.second /= total;
 
   auto& known = values_[static_cast<std::size_t>(horizon)];
   const BeliefKey key = key_of(belief);

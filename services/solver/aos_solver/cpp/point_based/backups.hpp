@@ -63,11 +63,8 @@ class Backups {
       has_moved = true;
       node.upper = best_upper;
       UpperBound& bound = graph_.upper_of(node.region, node.left);
-      if (node.point == nowhere) {
-        node.point = bound.add(node.belief, node.corner, node.upper);
-      } else {
-        bound.improve(node.point, node.corner, node.upper);
-      }
+      if (node.point == nowhere) node.point = bound.add(node.belief, node.corner, node.upper);
+      else bound.improve(node.point, node.corner, node.upper);
     }
     std::erase_if(node.branches, [&](const Branch& branch) { return branch.upper < node.lower; });
     return has_moved;
@@ -75,8 +72,7 @@ class Backups {
 
  private:
   // The branch's value from the values of its successors and of the rest, moved outwards by the rounding.
-  template <class ValueOf>
-  double backed_up(const Branch& branch, double rest, double direction, ValueOf value_of) {
+  double backed_up(const Branch& branch, double rest, double direction, auto value_of) {
     double sum = rest;
     double size = std::abs(branch.reward) + std::abs(rest);
     for (const Successor& successor : branch.successors) {
@@ -113,9 +109,7 @@ class Backups {
       graph_.count_work(2 * move.flows.elements.size());
       for (std::size_t state = 0; state < values.size(); ++state) {
         double sum = 0;
-        for (const auto& flow : move.flows[state]) {
-          sum += flow.probability * later_[flow.target];
-        }
+        for (const auto& flow : move.flows[state]) sum += flow.probability * later_[flow.target];
         values[state] += model_.discount * sum - 2 * graph_.rounding() * (size + std::abs(move.rewards[state]));
       }
     }

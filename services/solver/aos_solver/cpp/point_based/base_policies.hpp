@@ -9,7 +9,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -27,9 +26,7 @@ class BasePolicies {
  public:
   BasePolicies(const FlatModel& model, const Regions& regions, BeliefGraph& graph)
       : model_(model), regions_(regions), graph_(graph) {
-    std::size_t largest = 0;
-    for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
-    posterior_.reserve(largest);
+    posterior_.reserve(regions.largest());
     doubts_.resize(regions.all.size() * model.actions);
   }
 
@@ -37,9 +34,7 @@ class BasePolicies {
   // were played when `is_over()` came. `is_late()` also breaks off the last one. `uniform()` draws. Where it `decides_anew`, each
   // decision has the whole horizon to go. Else it must return more than the lower bound by a standard error, or by anything if
   // it was found last.
-  template <class IsOver, class IsLate, class Uniform>
-  std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, IsOver&& is_over, IsLate&& is_late,
-                                  Uniform&& uniform) {
+  std::optional<PolicyValue> best(const Node& node, std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
     decides_anew_ = decides_anew;
     const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
     std::vector<Candidate> candidates;
@@ -52,7 +47,7 @@ class BasePolicies {
         }
       }
       std::stable_sort(candidates.begin(), candidates.end(),
-                       [](const Candidate& one, const Candidate& other) { return one.returns.mean() > other.returns.mean(); });
+                       [](const Candidate& one, const Candidate& other) { return mean(one) > mean(other); });
       if (is_over() || missions == most_missions) {
         return decides_anew ? value_of(candidates.front()) : decider(candidates.front(), node.lower);
       }
@@ -76,10 +71,8 @@ class BasePolicies {
     double share;   // of what follows
     double weight;  // of a nat, in the worth of knowing all
   };
-  struct Returns {
-    double count = 0, sum = 0, squares = 0, within = 0;
-    double mean() const { return count > 0 ? sum / count : -std::numeric_limits<double>::infinity(); }
-    double error() const { return std::sqrt(std::max(squares / count - mean() * mean(), 0.0) / (count - 1)); }
+  struct Returns : SampleMean {
+    double within = 0;  // what missions earn within their steps, in all
   };
   struct Candidate {
     const Policy* policy;
@@ -90,10 +83,13 @@ class BasePolicies {
 
   static constexpr Policy policies_[] = {{1, 0}, {1, 0.1}, {0.9, 0.03}, {0.9, 0.1}, {0.9, 0.3}, {0.9, 1}};
 
+  static double mean(const Candidate& candidate) {
+    return candidate.returns.count() > 0 ? candidate.returns.mean() : -std::numeric_limits<double>::infinity();
+  }
   static std::optional<PolicyValue> value_of(const Candidate& candidate) {
     const Returns& returns = candidate.returns;
-    if (returns.count < static_cast<double>(fewest_missions)) return std::nullopt;
-    return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count, returns.error()};
+    if (returns.count() < static_cast<double>(fewest_missions)) return std::nullopt;
+    return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count(), returns.error()};
   }
 
   // As `value_of`, where it decides.
@@ -106,8 +102,7 @@ class BasePolicies {
 
   // Plays a mission, which counts if it ends before `is_late()`. What comes after its steps counts as the lower bound there, where
   // the search has no horizon.
-  template <class IsLate, class Uniform>
-  void play(const Node& start, Candidate& candidate, std::size_t steps, IsLate&& is_late, Uniform&& uniform) {
+  void play(const Node& start, Candidate& candidate, std::size_t steps, Asked is_late, Uniform uniform) {
     Belief belief = start.belief;
     std::uint32_t region = start.region;
     std::uint32_t action = candidate.first;
@@ -115,7 +110,7 @@ class BasePolicies {
     for (std::size_t step = 0; step < steps; ++step) {
       const std::uint32_t passed = graph_.is_endless() || decides_anew_ ? 0 : static_cast<std::uint32_t>(step);
       const std::uint32_t left = start.left - passed;
-      if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate, is_late);
+      if (step > 0 || candidate.returns.count() == 0) action = choice(belief, region, left, candidate, is_late);
       if (is_late()) return;
       if (step == 0) candidate.first = action;
       const Move& move = regions_.all[region].moves[action];
@@ -130,11 +125,8 @@ class BasePolicies {
       region = observed->region;
     }
     if (graph_.is_endless() && discount > 0) later = discount * graph_.lower_at(region, belief);
-    Returns& returns = candidate.returns;
-    returns.count += 1;
-    returns.within += earned;
-    returns.sum += earned + later;
-    returns.squares += (earned + later) * (earned + later);
+    candidate.returns.within += earned;
+    candidate.returns.add(earned + later);
   }
 
   // The observation at `place` in the distribution of all; null if the mission ends. The posterior has its prediction.
@@ -148,8 +140,7 @@ class BasePolicies {
   }
 
   // The action that a policy takes; any one if `is_late()` comes first.
-  template <class IsLate>
-  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, IsLate&& is_late) {
+  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Candidate& candidate, Asked is_late) {
     const std::vector<double> informed = graph_.informed_values(region, left, belief);
     graph_.count_work(model_.actions * belief.size());
     std::uint32_t best = 0;

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "numbers/belief_key.hpp"
 #include "point_based/belief_nodes.hpp"
@@ -34,19 +35,15 @@ class BeliefGraph {
       : model_(model), regions_(regions), rounding_(rounding_of(longest_sum())) {
     InitialBounds bounds{model, regions, rounding_};
     informed_ = std::move(bounds.informed);
-    for (const ActionValues& values : informed_) sizes_.push_back(size_of(values));
+    for (const ActionValues& values : informed_) sizes_.push_back(largest_size(values));
     tails_ = Tails{model, bounds.blind};
     for (const Region& region : regions.all) {
       lower_.push_back(blind_bound(model, region, bounds.blind, tails_));
-      for (std::uint32_t number = 0; number < lower_.back().size(); ++number) {
-        largest_value_ = std::max(largest_value_, lower_.back()[number].size);
-      }
+      for (std::uint32_t number = 0; number < lower_.back().size(); ++number) note_size(lower_.back()[number]);
     }
     if (switches::certainty_equivalent && is_endless()) add_certainty_equivalent(bounds.blind.front());
-    std::size_t largest = 0;
-    for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
-    posterior_.reserve(largest);
-    dense_.assign(largest, 0.0);
+    posterior_.reserve(regions.largest());
+    dense_.assign(regions.largest(), 0.0);
     upper_.resize(regions.all.size() * informed_.size());
     // Merging beliefs and leaving states out moves no bound by more than a harmless amount.
     const double decisions = lasting_decisions(model);
@@ -94,17 +91,14 @@ class BeliefGraph {
     std::unique_ptr<UpperBound>& bound = upper_[left * regions_.all.size() + region];
     if (!bound) {
       std::vector<double> corners;
-      for (const std::uint32_t state : regions_.all[region].states) {
-        const double* first = informed_[left].data() + model_.row(state, 0);
-        corners.push_back(*std::max_element(first, first + model_.actions));
-      }
+      for (const std::uint32_t state : regions_.all[region].states) corners.push_back(std::ranges::max(model_.of_actions(informed_[left], state)));
       bound = std::make_unique<UpperBound>(std::move(corners), rounding_, dense_);
     }
     return *bound;
   }
   void add_vector(std::uint32_t region, AlphaVector vector) {
     bytes_ += vector.values.size() * sizeof(double) + sizeof vector;
-    largest_value_ = std::max(largest_value_, vector.size);
+    note_size(vector);
     lower_[region].add(std::move(vector));
   }
   // No state is worth more. At least 0.
@@ -148,6 +142,7 @@ class BeliefGraph {
   Branch closed_branch(const Node& node, std::uint32_t action, double upper) const {
     return {action, expected(move(node, action).rewards, node.belief), upper};
   }
+  Branch closed_branch(const Node& node, std::uint32_t action) const { return closed_branch(node, action, informed_values(node)[action]); }
 
   // Keeps the initial bounds only.
   void start_over() {
@@ -175,13 +170,12 @@ class BeliefGraph {
   // An upper bound of each action's value: the value if the robot knew more.
   std::vector<double> informed_values(const Node& node) const { return informed_values(node.region, node.left, node.belief); }
   std::vector<double> informed_values(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
-    const double* const values = informed_[left].data();
     const std::vector<std::uint32_t>& states = regions_.all[region].states;
     std::vector<double> sums(model_.actions, rounding_ * sizes_[left]);
     for (std::size_t i = 0; i < belief.size(); ++i) {
-      const double* const row = values + model_.row(states[belief.states[i]], 0);
+      const auto values = model_.of_actions(informed_[left], states[belief.states[i]]);
       const double probability = belief.probabilities[i];
-      for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * row[action];
+      for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * values[action];
     }
     return sums;
   }
@@ -279,17 +273,11 @@ class BeliefGraph {
   static constexpr std::uint64_t per_normalised = 6;
   static constexpr std::uint64_t per_spread = 2;
 
-  static double size_of(const ActionValues& values) {
-    double size = 0;
-    for (const double value : values) size = std::max(size, std::abs(value));
-    return size;
-  }
-
   // The number of terms in the longest sum that is computed here.
   std::size_t longest_sum() const {
     std::size_t longest = longest_row(model_.outcomes) + longest_row(model_.likelihoods);
+    longest = std::max(longest, regions_.largest());
     for (const Region& region : regions_.all) {
-      longest = std::max(longest, region.states.size());
       for (const Move& move : region.moves) {
         longest = std::max(longest, move.observation_branches.size());
         for (const ObservationBranch& observation_branch : move.observation_branches) longest = std::max(longest, observation_branch.successors.size());
@@ -298,6 +286,7 @@ class BeliefGraph {
     return longest;
   }
 
+  void note_size(const AlphaVector& vector) { largest_value_ = std::max(largest_value_, vector.size); }
   const Move& move(const Node& node, std::uint32_t action) const { return regions_.all[node.region].moves[action]; }
 
   double value_of(const AlphaVector& vector, const Node& node) {
@@ -310,7 +299,7 @@ class BeliefGraph {
     const CertaintyEquivalent plans{model_, regions_, informed_.front(), blind, rounding_};
     for (std::uint32_t region = 0; region < lower_.size(); ++region) {
       for (AlphaVector& vector : plans.vectors(region)) {
-        largest_value_ = std::max(largest_value_, vector.size);
+        note_size(vector);
         lower_[region].add_initial(std::move(vector));
       }
     }

@@ -1,6 +1,7 @@
 // The nodes of a belief graph: the beliefs that were reached, their actions, and the successors of these.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -41,6 +42,12 @@ struct Node {
   double upper = std::numeric_limits<double>::infinity();
   bool is_expanded = false;
   std::vector<Branch> branches;  // actions that may still be the best
+
+  // The branch of an action; null if it was dropped.
+  Branch* branch_of(std::uint32_t action) {
+    const auto found = std::ranges::find(branches, action, &Branch::action);
+    return found != branches.end() ? &*found : nullptr;
+  }
 };
 
 }

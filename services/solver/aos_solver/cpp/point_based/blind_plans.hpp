@@ -28,9 +28,7 @@ class Tails {
       min_value_ = -std::numeric_limits<double>::infinity();
       for (std::size_t action = 0; action < model.actions; ++action) {
         double lowest = 0;
-        for (std::size_t state = 0; state < model.states; ++state) {
-          lowest = std::min(lowest, values[model.row(state, action)]);
-        }
+        for (std::size_t state = 0; state < model.states; ++state) lowest = std::min(lowest, values[model.row(state, action)]);
         min_value_ = std::max(min_value_, lowest);
       }
       tails_.push_back(model.horizon == 0 ? 0 : min_value_);

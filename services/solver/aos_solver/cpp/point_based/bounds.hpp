@@ -2,12 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <utility>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "point_based/regions.hpp"
 
 namespace aos::point_based {
@@ -28,15 +28,12 @@ struct AlphaVector {
   double size = 0;  // the largest absolute value
 
   AlphaVector(std::uint32_t of_action, std::uint32_t of_length, std::vector<double> of_states)
-      : action(of_action), length(of_length), values(std::move(of_states)) {
-    for (const double value : values) size = std::max(size, std::abs(value));
-  }
+      : action(of_action), length(of_length), values(std::move(of_states)), size(largest_size(values)) {}
   bool is_gone() const { return values.empty(); }
 };
 
 // The sum of probabilities times values. A processor can add up the eight partial sums side by side.
-template <class ValueOf>
-double weighted_sum(const std::vector<double>& probabilities, ValueOf&& value_of) {
+double weighted_sum(const std::vector<double>& probabilities, auto&& value_of) {
   constexpr std::size_t width = 8;
   double sums[width]{};
   const std::size_t whole = probabilities.size() / width * width;
@@ -91,8 +88,7 @@ class LowerBound {
     kept_ = initial_;
   }
   // Calls `take` with the longest blind vector of each action that has at most `left` decisions.
-  template <class Take>
-  void for_blind(std::uint32_t left, Take&& take) const {
+  void for_blind(std::uint32_t left, auto&& take) const {
     for (std::uint32_t number = 0; number < blind_; ++number) {
       if (vectors_[number].length > left) continue;
       const bool is_last = number + 1 == blind_ || vectors_[number + 1].action != vectors_[number].action;
@@ -114,12 +110,8 @@ class UpperBound {
   // `rounding` is the relative error of the longest sum. `dense` is memory for a belief, all 0 between calls.
   UpperBound(std::vector<double> corners, double rounding, std::vector<double>& dense)
       : corners_(std::move(corners)), dense_(dense), rounding_(rounding) {
-    double size = 0;
-    for (const double value : corners_) {
-      size = std::max(size, std::abs(value));
-      highest_ = std::max(highest_, value);
-    }
-    error_ = 4 * rounding * size;
+    for (const double value : corners_) highest_ = std::max(highest_, value);
+    error_ = 4 * rounding * largest_size(corners_);
   }
 
   // The highest value of a single state, or 0.

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
 #include "point_based/regions.hpp"
@@ -27,10 +28,8 @@ class CertaintyEquivalent {
                       double rounding)
       : model_(model), regions_(regions), informed_(informed), blind_(blind), rounding_(rounding), largest_(largest_planned_size()) {
     if (largest_ == 0) return;
-    for (const double reward : model.rewards) {
-      lowest_ = std::min(lowest_, reward);
-      scale_ = std::max(scale_, std::abs(reward));
-    }
+    for (const double reward : model.rewards) lowest_ = std::min(lowest_, reward);
+    scale_ = largest_size(model.rewards);
     const double worst = lowest_ / (1 - model.discount) * (1 + 1e-9);
     for (const Region& region : regions_.all) {
       first_of_.push_back(values_.size());
@@ -93,16 +92,14 @@ class CertaintyEquivalent {
   bool is_planned(const Region& region) const { return region.states.size() <= largest_; }
 
   std::uint32_t best_action(std::uint32_t region, std::uint32_t local) const {
-    const double* first = informed_.data() + model_.row(regions_.all[region].states[local], 0);
-    return static_cast<std::uint32_t>(std::max_element(first, first + model_.actions) - first);
+    const auto values = model_.of_actions(informed_, regions_.all[region].states[local]);
+    return static_cast<std::uint32_t>(std::ranges::max_element(values) - values.begin());
   }
 
   // Adds the pairs that follow each target of a move if `taken` is assumed.
   void add_landings(const Move& move, std::uint32_t taken) {
     predicted_.assign(move.targets, 0.0);
-    for (const auto& flow : move.flows[taken]) {
-      predicted_[flow.target] += flow.probability;
-    }
+    for (const auto& flow : move.flows[taken]) predicted_[flow.target] += flow.probability;
     of_target_.resize(std::max<std::size_t>(of_target_.size(), move.targets));
     for (const ObservationBranch& observation_branch : move.observation_branches) {
       const std::size_t first = plan_for(observation_branch.region, likeliest(observation_branch, taken));
@@ -118,11 +115,8 @@ class CertaintyEquivalent {
   }
   static void add(std::vector<Landing>& landings, const Landing& landing) {
     const auto known = std::ranges::find(landings, landing.pair, &Landing::pair);
-    if (known == landings.end()) {
-      landings.push_back(landing);
-    } else {
-      known->probability += landing.probability;
-    }
+    if (known == landings.end()) landings.push_back(landing);
+    else known->probability += landing.probability;
   }
   // The first pair of the plan that assumes a state in a region, or repeats the action that is best there.
   std::size_t plan_for(std::uint32_t number, std::uint32_t assumed) {

@@ -99,10 +99,7 @@ class InitialBounds {
     }
   }
 
-  double best_of(const ActionValues& values, std::uint32_t state) const {
-    const auto* first = values.data() + model_.row(state, 0);
-    return *std::max_element(first, first + model_.actions);
-  }
+  double best_of(const ActionValues& values, std::uint32_t state) const { return std::ranges::max(model_.of_actions(values, state)); }
 
   ActionValues endless_blind_values() const {
     ActionValues values(model_.states * model_.actions, 0.0);
@@ -172,9 +169,7 @@ class InitialBounds {
   std::vector<double> settled_values(const Rows<std::uint32_t>& choices) const {
     std::vector<double> values(model_.states, 0.0);
     double outcomes = 0;
-    for (const std::uint32_t row : choices.elements) {
-      outcomes += static_cast<double>(model_.outcomes[row].size());
-    }
+    for (const std::uint32_t row : choices.elements) outcomes += static_cast<double>(model_.outcomes[row].size());
     const double sweeps = std::max(operations_ / (outcomes + 1), min_sweeps_);
     double next_look = 4;
     for (double done = 1; done <= sweeps; ++done) {
@@ -258,9 +253,7 @@ class InitialBounds {
     const auto renew = [&](std::size_t number) {
       double& value = values[states_[number]];
       double renewed = -std::numeric_limits<double>::infinity();
-      for (const auto& row : choices[number]) {
-        renewed = std::max(renewed, lasting_value(states_[number], row, values));
-      }
+      for (const auto& row : choices[number]) renewed = std::max(renewed, lasting_value(states_[number], row, values));
       change = std::max(change, std::abs(renewed - value));
       value = renewed;
     };
@@ -276,11 +269,8 @@ class InitialBounds {
     double later = 0;
     double stays = 0;
     for (const auto& outcome : model_.outcomes[row]) {
-      if (outcome.next == state) {
-        stays += outcome.probability;
-      } else {
-        later += outcome.probability * values[outcome.next];
-      }
+      if (outcome.next == state) stays += outcome.probability;
+      else later += outcome.probability * values[outcome.next];
     }
     return (model_.rewards[row] + model_.discount * later) / (1 - model_.discount * stays);
   }
@@ -290,8 +280,7 @@ class InitialBounds {
     double error;  // an upper bound of the rounding error
   };
 
-  template <class ValueOf>
-  Estimate value_of(std::size_t row, ValueOf&& value) const {
+  Estimate value_of(std::size_t row, auto&& value) const {
     double later = 0;
     double size = 0;
     for (const auto& outcome : model_.outcomes[row]) {
@@ -328,7 +317,7 @@ class InitialBounds {
     sums.clear();
     double size = 0;
     for (const Outcome& outcome : outcomes) {
-      const double* next = values.data() + model_.row(outcome.next, 0);
+      const auto next = model_.of_actions(values, outcome.next);
       double largest = 0;
       for (std::size_t i = 0; i < actions; ++i) largest = std::max(largest, std::abs(next[i]));
       size += outcome.probability * largest;

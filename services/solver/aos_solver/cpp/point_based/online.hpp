@@ -12,9 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/function_ref.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {
+
+using Asked = FunctionRef<bool()>;      // now and then: whether the work is to end
+using Uniform = FunctionRef<double()>;  // draws a number in [0, 1)
 
 // The bounds of an action's value, how many trials began with it, and how probable it is at most that more can be earned after it.
 struct ActionBounds {

@@ -99,9 +99,7 @@ class Posterior {
       dense_[successor.local] += weight;
       total += weight;
     }
-    if (!std::is_sorted(belief_.states.begin(), belief_.states.end())) {
-      std::sort(belief_.states.begin(), belief_.states.end());
-    }
+    if (!std::ranges::is_sorted(belief_.states)) std::ranges::sort(belief_.states);
     for (const std::uint32_t local : belief_.states) belief_.probabilities.push_back(std::exchange(dense_[local], 0.0));
     return total;
   }

@@ -70,6 +70,12 @@ class Regions {
 
   // Whether nothing can be earned or lost from a state on.
   bool is_worthless(std::uint32_t state) const { return is_worthless_[state]; }
+  // How many states the largest region has.
+  std::size_t largest() const {
+    std::size_t largest = 0;
+    for (const Region& region : all) largest = std::max(largest, region.states.size());
+    return largest;
+  }
 
   std::vector<Region> all;
   std::vector<std::uint32_t> region_of;  // of a state; nowhere if it is worthless or never reached
@@ -87,9 +93,7 @@ class Regions {
       found.push_back(state);
     };
     for (std::uint32_t state = 0; state < model_.states; ++state) {
-      const auto first = model_.rewards.begin() + static_cast<std::ptrdiff_t>(model_.row(state, 0));
-      const auto last = first + static_cast<std::ptrdiff_t>(model_.actions);
-      if (std::any_of(first, last, [](double reward) { return reward != 0; })) find(state);
+      if (std::ranges::any_of(model_.of_actions(model_.rewards, state), [](double reward) { return reward != 0; })) find(state);
     }
     while (!found.empty()) {
       const std::uint32_t state = found.back();

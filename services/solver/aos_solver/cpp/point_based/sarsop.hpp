@@ -66,7 +66,7 @@ class Sarsop {
   // Continues from another belief. Beliefs that are known are kept; beyond `max_bytes`, only useful alpha vectors are.
   void move_to(const Start& start, std::size_t max_bytes) {
     if (graph_.bytes() > max_bytes) {
-      prune();
+      prune([] { return false; });
       graph_.forget_beliefs();
     }
     forget_roots();
@@ -75,8 +75,7 @@ class Sarsop {
 
   // Runs one trial with its backups. `is_over()` cuts the trial short, and `is_late()` its backups, too. Returns whether there may be
   // more to find out.
-  template <class IsOver, class IsLate>
-  bool improve(double precision, IsOver&& is_over, IsLate&& is_late) {
+  bool improve(double precision, Asked is_over, Asked is_late) {
     const Root* widest = nullptr;
     for (const Root& root : roots_) {
       if (widest == nullptr || weighted_gap(root) > weighted_gap(*widest)) widest = &root;
@@ -85,8 +84,7 @@ class Sarsop {
   }
 
   // Runs one trial below an action that is being carried out at the only start.
-  template <class IsOver, class IsLate>
-  bool improve_below(std::uint32_t action, double precision, IsOver&& is_over, IsLate&& is_late) {
+  bool improve_below(std::uint32_t action, double precision, Asked is_over, Asked is_late) {
     if (roots_.empty()) return false;
     const Branch& branch = root_branch(action);
     backups_.refreshed_lower(branch);
@@ -116,9 +114,7 @@ class Sarsop {
   // best at the end of a horizon, and without a horizon the bound counts what comes after these decisions, too. Most luck is
   // left out, since a step counts by what it is expected to change of the lower bound. At `is_over()` the mission breaks off, since
   // decisions without a search would be others: what is left of it loses as much as what was played. `uniform()` draws.
-  template <class IsOver, class IsLate, class Uniform>
-  MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, IsOver&& is_over, IsLate&& is_late,
-                              Uniform&& uniform) {
+  MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, Asked is_over, Asked is_late, Uniform uniform) {
     const std::vector<std::uint32_t> begun = trial_.begun();
     std::uint32_t number = roots_.front().node;
     graph_.refresh_lower(graph_[number]);
@@ -160,21 +156,16 @@ class Sarsop {
   }
 
   // What the best of some simple policies returns from the only start (base_policies.hpp).
-  template <class IsOver, class IsLate, class Uniform>
-  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, IsOver&& is_over, IsLate&& is_late, Uniform&& uniform) {
+  std::optional<PolicyValue> best_policy(std::size_t steps, bool decides_anew, Asked is_over, Asked is_late, Uniform uniform) {
     const auto found = policies_.best(graph_[roots_.front().node], steps, decides_anew, is_over, is_late, uniform);
     if (!found) return found;
     const double weight = roots_.front().weight;
     return PolicyValue{found->action, weight * found->value, weight * found->within, weight * found->standard_error};
   }
 
-  void prune() {
-    prune([] { return false; });
-  }
   // Gives up the alpha vectors that are best at no belief that the remaining actions reach. If `is_late()` comes first, all are kept,
   // and more are added before the next try.
-  template <class IsLate>
-  void prune(IsLate&& is_late) {
+  void prune(Asked is_late) {
     constexpr std::size_t between_looks = 64;  // at the clock, in beliefs
     backups_.vectors_added = 0;
     patience_ *= 2;
@@ -248,8 +239,8 @@ class Sarsop {
   Branch opened(std::uint32_t number, std::uint32_t action) {
     Node& node = graph_[number];
     graph_.expand(node);
-    const auto known = std::ranges::find(node.branches, action, &Branch::action);
-    Branch branch = known != node.branches.end() ? *known : graph_.closed_branch(node, action, graph_.informed_values(node)[action]);
+    const Branch* const known = node.branch_of(action);
+    Branch branch = known != nullptr ? *known : graph_.closed_branch(node, action);
     graph_.open(node, branch);
     backups_.refresh(branch);
     return branch;
@@ -263,8 +254,7 @@ class Sarsop {
 
   // The action with the highest lower bound at a belief, after a search for a gap of at most `precision`, and whether it is
   // proven to be the best. Any action if `is_late()` comes first.
-  template <class IsOver, class IsLate>
-  std::pair<std::uint32_t, bool> decided_anew(std::uint32_t number, double precision, IsOver&& is_over, IsLate&& is_late) {
+  std::pair<std::uint32_t, bool> decided_anew(std::uint32_t number, double precision, Asked is_over, Asked is_late) {
     const auto is_closed = [&] {
       Node& node = graph_[number];
       graph_.refresh_lower(node);
@@ -292,8 +282,7 @@ class Sarsop {
   }
 
   // Runs one trial. Returns false after three in a row, one of them by the lower bound, that learnt nothing.
-  template <class IsOver, class IsLate>
-  bool improve_from(std::uint32_t number, double precision, IsOver&& is_over, IsLate&& is_late) {
+  bool improve_from(std::uint32_t number, double precision, Asked is_over, Asked is_late) {
     const bool persists = switches::repeated_trials && persisted_ < model_.actions;
     bool has_learnt = persists ? trial_.persist(number, persisted_++, is_over) : trial_.sample(number, precision, is_over);
     for (auto step = trial_.path().rbegin(); step != trial_.path().rend() && !is_late(); ++step) {
@@ -327,16 +316,13 @@ class Sarsop {
   Branch& root_branch(std::uint32_t action) {
     Node& node = graph_[roots_.front().node];
     graph_.expand(node);
-    for (Branch& branch : node.branches) {
-      if (branch.action == action) return graph_.open(node, branch), branch;
+    Branch* branch = node.branch_of(action);
+    if (branch == nullptr) {
+      const auto dropped = std::ranges::find(dropped_at_root_, action, &Branch::action);
+      branch = dropped != dropped_at_root_.end() ? &*dropped : &dropped_at_root_.emplace_back(graph_.closed_branch(node, action));
     }
-    for (Branch& branch : dropped_at_root_) {
-      if (branch.action == action) return branch;
-    }
-    Branch& branch = dropped_at_root_.emplace_back(
-        graph_.closed_branch(node, action, graph_.informed_values(node)[action]));
-    graph_.open(node, branch);
-    return branch;
+    graph_.open(node, *branch);
+    return *branch;
   }
 
   const FlatModel& model_;

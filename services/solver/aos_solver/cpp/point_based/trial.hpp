@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "point_based/backups.hpp"
 #include "point_based/belief_graph.hpp"
 #include "point_based/constants.hpp"
+#include "point_based/online.hpp"
 
 namespace aos::point_based {
 
@@ -31,32 +31,26 @@ class Trial {
   void start_over() { sampled_ = 0; }
 
   // Repeats an action, with the likeliest observation each time, as long as it may be the best and leads on.
-  template <class IsOver>
-  bool persist(std::uint32_t number, std::uint32_t action, IsOver&& is_over) {
+  bool persist(std::uint32_t number, std::uint32_t action, Asked is_over) {
     begin();
     while (path_.size() < longest_detour) {
       Node& node = graph_[number];
       graph_.expand(node);
-      const auto branch = std::find_if(node.branches.begin(), node.branches.end(),
-                                       [&](const Branch& candidate) { return candidate.action == action; });
-      if (branch == node.branches.end()) break;
+      Branch* const branch = node.branch_of(action);
+      if (branch == nullptr) break;
       path_.push_back(number);
       if (!branch->is_open) has_learnt_ = true;
       graph_.open(node, *branch);
       backups_.refresh(*branch);
-      const Successor* likeliest = nullptr;
-      for (const Successor& successor : branch->successors) {
-        if (likeliest == nullptr || successor.probability > likeliest->probability) likeliest = &successor;
-      }
-      if (likeliest == nullptr || likeliest->node == number || is_over()) break;
+      const auto likeliest = std::ranges::max_element(branch->successors, {}, &Successor::probability);
+      if (likeliest == branch->successors.end() || likeliest->node == number || is_over()) break;
       number = likeliest->node;
     }
     return has_learnt_;
   }
 
   // Follows the upper bound or, every third time, the lower one, towards the gap that matters most at the root.
-  template <class IsOver>
-  bool sample(std::uint32_t number, double precision, IsOver&& is_over) {
+  bool sample(std::uint32_t number, double precision, Asked is_over) {
     begin();
     const bool by_lower = switches::lower_trials && sampled_++ % 3 == 2;
     const double gap = graph_[number].upper - graph_[number].lower;
@@ -74,8 +68,7 @@ class Trial {
       if (is_over()) break;
       const Branch* const best = followed_branch(node, by_lower, is_over);
       if (best == nullptr) break;
-      double best_lower = -std::numeric_limits<double>::infinity();
-      for (const Branch& branch : node.branches) best_lower = std::max(best_lower, branch.lower);
+      const double best_lower = std::ranges::max_element(node.branches, {}, &Branch::lower)->lower;
       if (path_.size() == 1) ++begun_[best->action];
       low = std::max(low, best_lower);
       high = std::max(high, best_lower + allowed);
@@ -118,8 +111,7 @@ class Trial {
 
   // The best of the open branches by one of the bounds. By the lower one all are opened; else the one with the highest upper
   // bound is. Refreshes the bounds of open branches. Null if `is_over()` comes first.
-  template <class IsOver>
-  const Branch* followed_branch(Node& node, bool by_lower, IsOver&& is_over) {
+  const Branch* followed_branch(Node& node, bool by_lower, Asked is_over) {
     for (Branch& branch : node.branches) {
       if (by_lower && !branch.is_open && !is_over()) {
         graph_.open(node, branch);

@@ -37,4 +37,6 @@ struct PlanningClock {
   }
 };
 
+inline double seconds_since(PlanningClock::time_point start) { return std::chrono::duration<double>(PlanningClock::now() - start).count(); }
+
 }

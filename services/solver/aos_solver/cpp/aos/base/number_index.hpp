@@ -16,14 +16,12 @@ class NumberIndex {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  template <class IsIt>
-  std::uint32_t find(std::uint64_t hash, IsIt&& is_it) const {
+  std::uint32_t find(std::uint64_t hash, auto&& is_it) const {
     return entries_.empty() ? none : entries_[slot_of(hash, is_it)].number;
   }
 
   // Returns the thing's number if there is one. Otherwise adds `number` and returns it.
-  template <class IsIt>
-  std::uint32_t find_or_add(std::uint64_t hash, std::uint32_t number, IsIt&& is_it) {
+  std::uint32_t find_or_add(std::uint64_t hash, std::uint32_t number, auto&& is_it) {
     if (2 * size_ >= entries_.size()) grow();
     Entry& entry = entries_[slot_of(hash, is_it)];
     if (entry.number == none) {
@@ -54,8 +52,7 @@ class NumberIndex {
 
   using Entries = std::vector<Entry, HugePages<Entry>>;
 
-  template <class IsIt>
-  std::size_t slot_of(std::uint64_t whole_hash, IsIt&& is_it) const {
+  std::size_t slot_of(std::uint64_t whole_hash, auto&& is_it) const {
     const auto hash = static_cast<std::uint32_t>(whole_hash);
     std::size_t slot = hash & (entries_.size() - 1);
     while (entries_[slot].number != none && (entries_[slot].hash != hash || !is_it(entries_[slot].number))) {

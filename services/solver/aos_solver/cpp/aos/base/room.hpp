@@ -16,8 +16,6 @@ std::vector<T> with_room_for(std::size_t capacity) {
 
 // Whether `more` further elements fit into the list.
 template <class T>
-bool has_room_for(const std::vector<T>& list, std::size_t more) {
-  return list.size() + more <= list.capacity();
-}
+bool has_room_for(const std::vector<T>& list, std::size_t more) { return list.size() + more <= list.capacity(); }
 
 }

@@ -34,9 +34,6 @@ void sort_stably(Iterator first, Iterator last, IsBefore is_before) {
   }
 }
 
-template <class Elements, class IsBefore>
-void sort_stably(Elements& elements, IsBefore is_before) {
-  sort_stably(elements.begin(), elements.end(), is_before);
-}
+void sort_stably(auto& elements, auto is_before) { sort_stably(elements.begin(), elements.end(), is_before); }
 
 }

@@ -131,8 +131,7 @@ class Belief {
 
   // The posterior, and the logarithm of the observation's probability or, if numbers were observed, of its density. The
   // belief is empty if the observation is impossible. `numbers` weighs each step by the numbers that it reports.
-  template <class Numbers>
-  std::pair<Belief, double> posterior(int action, Observation response, Numbers& numbers, Sampler& random) const {
+  std::pair<Belief, double> posterior(int action, Observation response, auto& numbers, Sampler& random) const {
     HistoryStep step{.action = action, .observation = response, .is_observed = true};
     if constexpr (requires { numbers.observed(); }) {
       if (Model::reports_numbers()) step.numbers = std::make_shared<const ObservedNumbers>(numbers.observed());
@@ -145,8 +144,7 @@ class Belief {
   }
 
   // The belief in which each state is changed by `change(state, draws)`, which nobody observes. It has no history.
-  template <class Change>
-  Belief changed(Change&& change, Sampler& random) const {
+  Belief changed(auto&& change, Sampler& random) const {
     try {
       if (is_drawn()) throw NotEnumerable{"the states were drawn"};
       Gathering<Model> gathering;
@@ -176,17 +174,16 @@ class Belief {
   // The belief at the start of a mission that nothing belongs to yet, after so many steps of extrinsic changes alone.
   Belief begun(int idle_steps, Sampler& random) const {
     Belief now = without_history();
-    for (int left = idle_steps; left > 1; --left) {
-      now = now.changed([](State& state, DirectedDraws& draws) { Model::begin(state, 1, draws); }, random);
+    const int at_once = std::min(idle_steps, 1);
+    for (int step = 0; step < std::max(idle_steps, 1); ++step) {
+      now = now.changed([at_once](State& state, DirectedDraws& draws) { Model::begin(state, at_once, draws); }, random);
     }
-    const int last = idle_steps > 0 ? 1 : 0;
-    return now.changed([last](State& state, DirectedDraws& draws) { Model::begin(state, last, draws); }, random);
+    return now;
   }
 
   // The belief given that `holds(state)`, and the logarithm of its probability. It is empty where that is impossible. If
   // some share e of the belief is wrong, the event has at least its probability p - e in the rest.
-  template <class Holds>
-  std::pair<Belief, double> conditioned(Holds&& holds) const {
+  std::pair<Belief, double> conditioned(auto&& holds) const {
     Gathering<Model> gathering;
     for (const auto& [state, weight] : particles()) {
       if (holds(state)) gathering.add(state, weight);
@@ -206,10 +203,7 @@ class Belief {
   }
 
   const State& sample(Sampler& random) const {
-    const double drawn = random.uniform() * cumulative_.back();
-    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), drawn);
-    const auto index = std::min<std::size_t>(found - cumulative_.begin(), particles().size() - 1);
-    return particles()[index].state;
+    return particles()[element_at(cumulative_, random.uniform())].state;
   }
 
   // The sum of the weights: 1 but for rounding.
@@ -228,11 +222,7 @@ class Belief {
   }
 
   // The entropy in nats.
-  double entropy() const {
-    double sum = 0;
-    for (const auto& particle : particles()) sum += share_of_entropy(particle.weight);
-    return std::max(sum, 0.0);
-  }
+  double entropy() const { return std::max(entropy_of(particles(), &Particle::weight), 0.0); }
 
   // These write members of an object: a summary for people, and the probabilities of the endings alone.
   void write_members(JsonWriter& json) const {
@@ -327,8 +317,7 @@ class Belief {
   }
 
   // Each state is changed once for each sample that its weight is worth, at least once.
-  template <class Change>
-  Belief changed_by_drawing(Change&& change, Sampler& random) const {
+  Belief changed_by_drawing(auto&& change, Sampler& random) const {
     Gathering<Model> gathering;
     Replay replay;
     const std::vector<double> none;

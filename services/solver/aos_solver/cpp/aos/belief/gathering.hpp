@@ -18,14 +18,25 @@ struct Particle {
   double weight;
 };
 
+template <class Model>
+double total_weight(const std::vector<Particle<Model>>& particles) {
+  double sum = 0;
+  for (const auto& particle : particles) sum += particle.weight;
+  return sum;
+}
+
+// The number of the element that covers this share of all weights, whose running sums are given.
+inline std::size_t element_at(const std::vector<double>& cumulative, double share) {
+  const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), share * cumulative.back());
+  return std::min<std::size_t>(found - cumulative.begin(), cumulative.size() - 1);
+}
+
 // Calls `visit(state)` for states drawn by their weights, one in each of `count` equal parts of the cumulative weights
 // (stratified sampling). Even distances would agree with a pattern in the order of the states.
 template <class Model>
 void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t count, Sampler& random,
                  FunctionRef<void(const typename Model::State&)> visit) {
-  double total = 0;
-  for (const auto& particle : particles) total += particle.weight;
-  const double length = total / count;
+  const double length = total_weight<Model>(particles) / count;
   double below = 0;  // the weight of the particles before `number`
   std::size_t number = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -101,11 +112,8 @@ class Gathering {
   std::size_t add(const State& state, double weight) {
     const auto is_it = [&](std::uint32_t number) { return particles_[number].state == state; };
     const std::size_t number = numbers_.find_or_add(Model::hash(state), static_cast<std::uint32_t>(particles_.size()), is_it);
-    if (number == particles_.size()) {
-      particles_.push_back({state, weight});
-    } else {
-      particles_[number].weight += weight;
-    }
+    if (number == particles_.size()) particles_.push_back({state, weight});
+    else particles_[number].weight += weight;
     return number;
   }
 
@@ -116,11 +124,7 @@ class Gathering {
 
   std::size_t size() const { return particles_.size(); }
   const std::vector<Particle<Model>>& particles() const { return particles_; }
-  double total() const {
-    double sum = 0;
-    for (const auto& particle : particles_) sum += particle.weight;
-    return sum;
-  }
+  double total() const { return total_weight<Model>(particles_); }
 
   // Leaves at most `count` states. Returns the weight of those that were dropped.
   double reduce(std::size_t count, Sampler& random) {

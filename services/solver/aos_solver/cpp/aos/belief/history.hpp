@@ -106,7 +106,7 @@ class History {
       origins->states.push_back(state);
       origins->cumulative.push_back((origins->cumulative.empty() ? 0 : origins->cumulative.back()) + weight);
     }
-    origins_ = std::move(origins);
+    rest_.origins = std::move(origins);
   }
 
   // The states that a history begins with, and the sums of their weights.
@@ -122,54 +122,45 @@ class History {
       return particles;
     }
   };
-  // All that a history knows beside its steps. Without origins it begins with the documents.
+  // All that a history knows beside its steps.
   struct Rest {
-    std::shared_ptr<const Origins> origins;
-    bool has_all_origins;
-    unsigned since_moves;
-    unsigned pause;
+    std::shared_ptr<const Origins> origins;  // null where it begins with the documents
+    bool has_all_origins = false;
+    unsigned since_moves = 0;  // updates
+    unsigned pause = 0;        // updates between moves
   };
-  Rest rest() const { return {origins_, has_all_origins_, since_moves_, pause_}; }
-  History(std::vector<HistoryStep> steps, Rest rest)
-      : origins_(std::move(rest.origins)),
-        steps_(std::move(steps)),
-        has_all_origins_(rest.has_all_origins),
-        since_moves_(rest.since_moves),
-        pause_(rest.pause) {}
+  const Rest& rest() const { return rest_; }
+  History(std::vector<HistoryStep> steps, Rest rest) : steps_(std::move(steps)), rest_(std::move(rest)) {}
 
-  bool begins_with_the_documents() const { return origins_ == nullptr; }
+  bool begins_with_the_documents() const { return rest_.origins == nullptr; }
   // A number in [0, 1) for which `originate` gives the state with this number.
   double origin_value(std::size_t number, Sampler& random) const {
-    const double below = number > 0 ? origins_->cumulative[number - 1] : 0;
-    return (below + random.uniform() * (origins_->cumulative[number] - below)) / origins_->cumulative.back();
+    const std::vector<double>& cumulative = rest_.origins->cumulative;
+    const double below = number > 0 ? cumulative[number - 1] : 0;
+    return (below + random.uniform() * (cumulative[number] - below)) / cumulative.back();
   }
   // Whether the particles include all possible origins of the history. Equal states merge, so few origins are
   // no lack then.
-  bool has_all_origins() const { return has_all_origins_; }
-  void note_all_origins() { has_all_origins_ = true; }
+  bool has_all_origins() const { return rest_.has_all_origins; }
+  void note_all_origins() { rest_.has_all_origins = true; }
   const std::vector<HistoryStep>& steps() const { return steps_; }
   void add(const HistoryStep& step) { steps_.push_back(step); }
 
   // Whether it is time to move particles of few origins. Moves that do not help are tried less and less often.
-  bool is_time_to_move() { return ++since_moves_ > pause_; }
+  bool is_time_to_move() { return ++rest_.since_moves > rest_.pause; }
   void note_moves(bool have_helped) {
-    since_moves_ = 0;
-    pause_ = have_helped ? 0 : 2 * pause_ + 1;
+    rest_.since_moves = 0;
+    rest_.pause = have_helped ? 0 : 2 * rest_.pause + 1;
   }
 
   void originate(State& state, Replay& draws) const {
-    if (origins_ == nullptr) return Model::initial(state, draws);
-    const auto& cumulative = origins_->cumulative;
-    const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), draws.uniform() * cumulative.back());
-    state = origins_->states[std::min<std::size_t>(found - cumulative.begin(), cumulative.size() - 1)];
+    if (begins_with_the_documents()) return Model::initial(state, draws);
+    state = rest_.origins->states[element_at(rest_.origins->cumulative, draws.uniform())];
   }
 
  private:
-  std::shared_ptr<const Origins> origins_;
   std::vector<HistoryStep> steps_;
-  bool has_all_origins_ = false;
-  unsigned since_moves_ = 0;  // updates
-  unsigned pause_ = 0;        // updates between moves
+  Rest rest_;
 };
 
 // The lineage of a particle of a drawn belief.
@@ -199,11 +190,7 @@ struct Cloud {
   History<Model> history;
 
   bool has_traces() const { return !lineages.empty() && lineages.front().trace != nullptr; }
-  double total() const {
-    double sum = 0;
-    for (const auto& particle : particles) sum += particle.weight;
-    return sum;
-  }
+  double total() const { return total_weight<Model>(particles); }
   // How many independent samples the weights are worth (Kong, Liu and Wong, 1994), up to `particle_count`.
   double effective() const {
     double squares = 0;

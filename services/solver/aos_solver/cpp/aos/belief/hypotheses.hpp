@@ -48,8 +48,7 @@ class Hypotheses {
   const Belief<Model>* cautious() const { return cautious_ ? &*cautious_ : nullptr; }
 
   // `posterior_of(belief)` gives a belief and the logarithm of the observation's probability, as Posteriors have them.
-  template <class PosteriorOf>
-  Posteriors posteriors(PosteriorOf&& posterior_of) const {
+  Posteriors posteriors(auto&& posterior_of) const {
     Posteriors found;
     for (const Hypothesis& hypothesis : all_) found.each.push_back(posterior_of(hypothesis.belief));
     if (cautious_) found.cautious = posterior_of(*cautious_);
@@ -255,8 +254,7 @@ class Hypotheses {
   }
 
   // After what changes each belief and tells nothing.
-  template <class Change>
-  Hypotheses changed(Change&& change) const {
+  Hypotheses changed(auto&& change) const {
     Hypotheses after = *this;
     for (Hypothesis& each : after.all_) each.belief = change(each.belief);
     after.mix();

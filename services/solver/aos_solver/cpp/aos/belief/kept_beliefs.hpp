@@ -176,10 +176,7 @@ class KeptBeliefs {
     get(&weight, sizeof weight);
     get(Model::bytes_of(state), Model::state_bytes());
   }
-  template <class T>
-  void put_as_bytes(const T& value) {
-    put(&value, sizeof value);
-  }
+  void put_as_bytes(const auto& value) { put(&value, sizeof value); }
   void put(const void* from, std::size_t count) { file_.write(from, count); }
   void get(void* to, std::size_t count) { file_.read(to, count); }
 

@@ -38,11 +38,8 @@ class Marginals {
     if (particles.empty()) return;
     const std::vector<std::byte> differences = differing_bits();
     const StateLeaves leaves{particles.front().state};
-    if (leaves.hold_all_of(differences)) {
-      add_by_place(leaves.all, differences);
-    } else {
-      add_by_visit();
-    }
+    if (leaves.hold_all_of(differences)) add_by_place(leaves.all, differences);
+    else add_by_visit();
   }
 
   // Writes an array with an entry for each variable: its name, its likeliest values, the probability of the others, and
@@ -83,11 +80,8 @@ class Marginals {
       const auto known = static_cast<std::uint32_t>(values.size());
       const auto is_it = [&](std::uint32_t place) { return values[place].number == added.number; };
       const std::uint32_t place = places.find_or_add(mixed(0, added.number), known, is_it);
-      if (place < known) {
-        values[place].weight += added.weight;
-      } else {
-        values.push_back(added);
-      }
+      if (place < known) values[place].weight += added.weight;
+      else values.push_back(added);
     }
   };
 
@@ -124,8 +118,7 @@ class Marginals {
   // In states of one shape, a leaf has one place. Most leaves have the same value in all states.
   void add_by_place(const std::vector<Leaf>& leaves, const std::vector<std::byte>& differences) {
     const std::byte* const first = Model::bytes_of(particles_.front().state);
-    double total = 0;
-    for (const auto& particle : particles_) total += particle.weight;
+    const double total = total_weight<Model>(particles_);
     variables_of(0, particles_.front().state);
     std::vector<std::size_t> varied;
     for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {

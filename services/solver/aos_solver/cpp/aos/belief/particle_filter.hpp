@@ -104,8 +104,7 @@ class ParticleFilter {
   }
 
   // Calls `visit(observation, weight)` for steps at random; the weights sum to 1.
-  template <class Visit>
-  void draw_observations(const std::vector<Particle<Model>>& particles, int action, Visit&& visit) {
+  void draw_observations(const std::vector<Particle<Model>>& particles, int action, auto&& visit) {
     draw_evenly<Model>(particles, particle_count, random_, [&](const State& drawn) {
       State next = drawn;
       visit(Model::step(next, action, random_).observation, 1.0 / particle_count);
@@ -223,9 +222,7 @@ class ParticleFilter {
       draw_evenly<Model>(before.particles, price_count, random_, [&](const State& drawn) { guided.from(drawn, nothing); });
       const double price = static_cast<double>(guided.runs()) / price_count;
       const bool are_dear = price > dear_trial;
-      if (are_dear && price * before.particles.size() <= max_covering_runs) {
-        return by_weight(before, few_particles);
-      }
+      if (are_dear && price * before.particles.size() <= max_covering_runs) return by_weight(before, few_particles);
     }
     const std::size_t guesses = std::clamp<std::size_t>(max_guesses / before.particles.size(), 1, 8);
     std::vector<double> trials;
@@ -291,11 +288,8 @@ class ParticleFilter {
       const auto& [state, weight] = before.particles[i];
       const double grown = expected < 1 ? weight / expected : weight;
       const Parent parent{state, grown, before.lineages[i].grown_squares(weight, grown), before.lineages[i].trace, trials};
-      if (plan.is_guided) {
-        guide(parent, guided, gathered);
-      } else {
-        draw(parent, step, gathered);
-      }
+      if (plan.is_guided) guide(parent, guided, gathered);
+      else draw(parent, step, gathered);
     }
     update_effort.steps += guided.runs();
     return gathered.updated(before, step, particle_count, random_);

@@ -109,10 +109,7 @@ class Projection {
         cumulative.push_back((cumulative.empty() ? 0 : cumulative.back()) + weight);
       }
     }
-    const State& at(double share) const {
-      const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), share * cumulative.back());
-      return states[std::min<std::size_t>(found - cumulative.begin(), states.size() - 1)].state;
-    }
+    const State& at(double share) const { return states[element_at(cumulative, share)].state; }
   };
 
   // As many draws of the new variables as the weight is worth, at least one; at even distances, from a random start.

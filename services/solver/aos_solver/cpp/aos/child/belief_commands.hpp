@@ -45,10 +45,7 @@ class BeliefCommands {
   // Null where nothing sets it apart from the belief.
   const Belief<Model>* cautious() const { return believed_.cautious(); }
   // The belief that a command is about: its flag `cautious` asks for the one in which nothing ran that was not observed.
-  const Belief<Model>& belief_for(const Command& command) const {
-    const bool is_cautious = command.optional_text("cautious") && command.flag("cautious");
-    return is_cautious && believed_.cautious() != nullptr ? *believed_.cautious() : belief();
-  }
+  const Belief<Model>& belief_for(const Command& command) const { return belief_for(command, believed_); }
 
   void summary(JsonWriter& json) const { believed_.write_summary(json); }
 
@@ -76,11 +73,8 @@ class BeliefCommands {
     const bool is_possible = !found.hypotheses_are_empty();
     json.begin_object().member("probability", is_possible ? std::exp(believed_.log_probability(found)) : 0.0);
     json.key("summary");
-    if (is_possible) {
-      become(json, believed_.known(std::move(found), command.number<double>("refuted_below")));
-    } else {
-      become(json, believed_, [] {});
-    }
+    if (is_possible) become(json, believed_.known(std::move(found), command.number<double>("refuted_below")));
+    else become(json, believed_, [] {});
     json.end_object();
   }
 
@@ -167,10 +161,7 @@ class BeliefCommands {
   // Updates the belief after an action that ran only with probability `ran_probability`.
   void update_without_observation(JsonWriter& json, const Command& command) {
     begin_change(command);
-    const int action = action_of<Model>(command);
-    json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
-    become(json.key("summary"), believed_.unobserved(action, command.number<double>("ran_probability"), random_));
-    json.end_object();
+    become_unobserved(json, believed_.unobserved(action_of<Model>(command), command.number<double>("ran_probability"), random_));
   }
 
   // Writes the particles from `first` on, of the belief or of the one with this `number` among those of `describe_beliefs`.
@@ -196,9 +187,7 @@ class BeliefCommands {
   // Lets the time of a step pass in which nothing is done and nothing is observed.
   void pass_time(JsonWriter& json, const Command& command) {
     begin_change(command);
-    json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
-    become(json.key("summary"), believed_.passed(random_));
-    json.end_object();
+    become_unobserved(json, believed_.passed(random_));
   }
 
   // Writes the marginals of all variables, with so many `values` in all.
@@ -236,18 +225,12 @@ class BeliefCommands {
     kept_.number_next(command.number<std::uint64_t>("change"));
     const bool is_from_aside = command.optional_text("from_aside") && command.flag("from_aside");
     if (is_from_aside && !aside_) throw BadCommand{"no belief was put aside"};
-    const bool is_cautious = command.optional_text("cautious") && command.flag("cautious");
-    const Hypotheses& base = is_from_aside ? *aside_ : believed_;
-    const Belief<Model>& from = is_cautious && base.cautious() != nullptr ? *base.cautious() : base.belief();
-    const JeffreysRule<Model> rule{from, command.text("variable"), command.text("value")};
+    const JeffreysRule<Model> rule{belief_for(command, is_from_aside ? *aside_ : believed_), command.text("variable"), command.text("value")};
     const auto moved = rule.moved_to(command.number<double>("probability"));
     json.begin_object().member("probability", rule.probability()).member("has_variable", rule.has_variable());
     json.key("summary");
-    if (moved) {
-      become(json, Hypotheses{*moved});
-    } else {
-      become(json, believed_, [] {});
-    }
+    if (moved) become(json, Hypotheses{*moved});
+    else become(json, believed_, [] {});
     json.end_object();
   }
   // Puts what is believed aside, and takes it back.
@@ -274,6 +257,10 @@ class BeliefCommands {
  private:
   using Hypotheses = aos::Hypotheses<Model>;
 
+  static const Belief<Model>& belief_for(const Command& command, const Hypotheses& believed) {
+    const bool is_cautious = command.optional_text("cautious") && command.flag("cautious");
+    return is_cautious && believed.cautious() != nullptr ? *believed.cautious() : believed.belief();
+  }
   // Each change draws from a stream of its own, so that it comes out the same whatever this process did before.
   void begin_change(const Command& command) {
     random_ = Sampler{command.number<std::uint64_t>("draws")};
@@ -297,9 +284,8 @@ class BeliefCommands {
     become(json, Hypotheses::of(std::move(all), words.value_or(Words{})));
   }
 
-  template <class Numbers>
   std::pair<Belief<Model>, double> corrected_posterior(const Belief<Model>& belief, int action, Observation observation,
-                                                       Numbers& numbers, std::string_view locals, Fault& uncorrected) {
+                                                       auto& numbers, std::string_view locals, Fault& uncorrected) {
     try {
       Model::read_locals(action, locals);
       const typename Model::Correcting correcting{observation};
@@ -315,12 +301,17 @@ class BeliefCommands {
     return belief.posterior(action, observation, numbers, random_);
   }
 
+  // Answers like `update`, where nothing was observed.
+  void become_unobserved(JsonWriter& json, Hypotheses believed) {
+    json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
+    become(json.key("summary"), std::move(believed));
+    json.end_object();
+  }
   // Takes over what is believed and writes its summary. If the summary fails, nothing changes.
   void become(JsonWriter& json, Hypotheses believed) {
     become(json, std::move(believed), [&] { search_.forget(); });
   }
-  template <class Follow>
-  void become(JsonWriter& json, Hypotheses believed, Follow&& follow) {
+  void become(JsonWriter& json, Hypotheses believed, auto&& follow) {
     believed.note_impossible(impossible_in_a_row_);
     believed.write_summary(json);
     believed_ = std::move(believed);

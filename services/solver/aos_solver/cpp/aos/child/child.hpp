@@ -105,7 +105,7 @@ int run_child(int argc, char** argv) {
     progress::tell_to(nullptr);  // nobody reads while nothing is asked
     watchdog::allow(0);
     detail::say(out, json);
-    commands->go_on_pondering(detail::has_input);
+    commands->go_on_pondering([] { return detail::has_input(); });
   }
   std::free(line);
   return 0;

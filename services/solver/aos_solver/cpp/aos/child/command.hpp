@@ -77,9 +77,7 @@ class Command {
     return *found;
   }
   template <class Number>
-  Number number(std::string_view field) const {
-    return detail::number_in<Number>(text(field));
-  }
+  Number number(std::string_view field) const { return detail::number_in<Number>(text(field)); }
   bool flag(std::string_view field) const { return number<int>(field) != 0; }
 
  private:

@@ -74,10 +74,7 @@ class Commands {
     json.begin_object().end_object();
   }
 
-  template <class IsOver>
-  void go_on_pondering(IsOver&& is_over) {
-    planning_.go_on_pondering(is_over);
-  }
+  void go_on_pondering(auto&& is_over) { planning_.go_on_pondering(is_over); }
 
  private:
   using Answer = void (*)(Commands& commands, JsonWriter& json, const Command& command);

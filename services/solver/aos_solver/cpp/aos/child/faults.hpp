@@ -54,8 +54,7 @@ inline void write_members(JsonWriter& json, const Fault& fault) {
 }
 
 // Runs `work`. A fault becomes the answer.
-template <class Work>
-void guarded(JsonWriter& json, Work&& work) {
+void guarded(JsonWriter& json, auto&& work) {
   try {
     work();
   } catch (...) {

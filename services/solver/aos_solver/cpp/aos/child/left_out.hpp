@@ -52,11 +52,8 @@ class LeftOut {
       const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) - Model::bytes_of(stand_in_));
       const auto dot = name.rfind('.');
       const std::string owner = dot == std::string::npos ? "" : name.substr(0, dot);
-      if (!owner.empty() && owner == compound) {
-        places.back().size = offset + leaf.size - places.back().offset;
-      } else {
-        places.push_back({owner.empty() ? name : owner, offset, leaf.size});
-      }
+      if (!owner.empty() && owner == compound) places.back().size = offset + leaf.size - places.back().offset;
+      else places.push_back({owner.empty() ? name : owner, offset, leaf.size});
       compound = owner;
     }};
     Model::visit_values(stand_in_, leaves);

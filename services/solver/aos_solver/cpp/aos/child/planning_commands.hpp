@@ -38,9 +38,9 @@ class PlanningCommands {
   // `without`, and the actions whose numbers are `without_actions`, are not there for the whole search.
   void plan(JsonWriter& json, const Command& command) {
     const auto left_out = left_out_by(command);
-    if (left_out.empty()) return plan_with(search_, json, command, all_actions());
     const std::vector<int> left = actions_left(left_out);
     if (left.empty()) throw BadCommand{"no action is left"};
+    if (left_out.empty()) return plan_with(search_, json, command, left);
     const typename Model::Without without{left_out};
     if (!shorter_search_ || left != left_) shorter_search_ = std::make_unique<Planners<Model>>();
     left_ = left;
@@ -56,8 +56,7 @@ class PlanningCommands {
   }
 
   // Ponders until the budget is used up or `is_over()`. A fault is dropped: the next search meets it again.
-  template <class IsOver>
-  void go_on_pondering(IsOver&& is_over) {
+  void go_on_pondering(auto&& is_over) {
     if (!pondered_ || planned_horizon_ == 0) return;
     const Pondered pondered = *std::exchange(pondered_, std::nullopt);
     Sampler random{pondered.seed};
@@ -120,14 +119,10 @@ class PlanningCommands {
 
   const Belief<Model>& belief() const { return beliefs_.belief(); }
 
-  static std::vector<int> all_actions() {
+  static std::vector<int> actions_left(const std::vector<bool>& left_out) {
     std::vector<int> actions(Model::action_count());
     std::iota(actions.begin(), actions.end(), 0);
-    return actions;
-  }
-  static std::vector<int> actions_left(const std::vector<bool>& left_out) {
-    std::vector<int> actions = all_actions();
-    std::erase_if(actions, [&](int action) { return left_out[action]; });
+    std::erase_if(actions, [&](int action) { return !left_out.empty() && left_out[action]; });
     return actions;
   }
   // For each action whether it is left out; empty if none is.

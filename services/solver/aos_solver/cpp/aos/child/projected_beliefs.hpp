@@ -51,11 +51,8 @@ void save_joint(JsonWriter& json, const Command& command, const Belief<Model>& b
     Row row{weight, Model::ending(state), Model::spent(state) & mask, text_of<Model>(members, state)};
     const std::string key = std::to_string(static_cast<int>(row.ending)) + ' ' + std::to_string(row.spent) + ' ' + row.values;
     const auto [place, is_new] = places.try_emplace(key, rows.size());
-    if (is_new) {
-      rows.push_back(std::move(row));
-    } else {
-      rows[place->second].weight += weight;
-    }
+    if (is_new) rows.push_back(std::move(row));
+    else rows[place->second].weight += weight;
   }
   json.begin_object().member("error_bound", belief.error_bound()).member("is_drawn", belief.is_drawn());
   json.member("states", rows.size()).key("rows").begin_array();

@@ -53,9 +53,7 @@ class StudyCommands {
     auto evaluation = evaluation_for(command, belief, horizon);
     evaluation.action_values(exact_root(*space_, belief), horizon);
     const auto times = evaluation.occupancy(space_->weights_of(belief), action, horizon);
-    for (const auto& [where, weight] : times) {
-      terms.add((*space_)[where.first], where.second, weight);
-    }
+    for (const auto& [where, weight] : times) terms.add((*space_)[where.first], where.second, weight);
     terms.write(json);
   }
 

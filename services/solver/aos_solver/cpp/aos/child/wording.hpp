@@ -22,9 +22,7 @@ int checked_action(int action) {
   return action;
 }
 template <class Model>
-int action_of(const Command& command) {
-  return checked_action<Model>(command.number<int>("action"));
-}
+int action_of(const Command& command) { return checked_action<Model>(command.number<int>("action")); }
 
 // The command's horizon; that of the documents where it names none.
 template <class Model>

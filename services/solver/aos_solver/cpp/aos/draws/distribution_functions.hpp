@@ -62,21 +62,19 @@ double Distribution::spread() const {
   return kind_ == Kind::normal ? second_ : kind_ == Kind::uniform ? 0.3 * std::abs(second_ - first_) : 0.25;
 }
 
-void Distribution::describe(DescribedDistribution& description) const {
+DescribedDistribution Distribution::described() const {
   using Described = DescribedDistribution::Kind;
   check();
-  if (kind_ == Kind::normal) {
-    description = {Described::normal, {first_, second_}};
-  } else if (kind_ == Kind::uniform) {
-    description = {Described::uniform, {std::min(first_, second_), std::max(first_, second_)}};
-  } else if (kind_ == Kind::bernoulli) {
+  if (kind_ == Kind::normal) return {Described::normal, {first_, second_}};
+  if (kind_ == Kind::uniform) return {Described::uniform, {std::min(first_, second_), std::max(first_, second_)}};
+  if (kind_ == Kind::bernoulli) {
     const double probability = std::clamp(first_, 0.0, 1.0);
-    description = {Described::discrete, {0, 1 - probability, probability}};
-  } else {
-    const auto [total, whole] = total_and_whole();
-    description = {Described::discrete, {-1, (whole - total) / whole}};
-    for (std::size_t i = 0; i < count_; ++i) description.numbers.push_back(weights_[i] / whole);
+    return {Described::discrete, {0, 1 - probability, probability}};
   }
+  const auto [total, whole] = total_and_whole();
+  DescribedDistribution discrete{Described::discrete, {-1, (whole - total) / whole}};
+  for (std::size_t i = 0; i < count_; ++i) discrete.numbers.push_back(weights_[i] / whole);
+  return discrete;
 }
 
 std::pair<double, double> Distribution::total_and_whole() const {

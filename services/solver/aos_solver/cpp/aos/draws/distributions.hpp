@@ -24,7 +24,7 @@ class Distribution {
   double log_density(double value) const;
   // The scale on which values of this distribution differ: two draws that are closer tell little apart.
   double spread() const;
-  void describe(DescribedDistribution& description) const;
+  DescribedDistribution described() const;
 
  protected:
   enum class Kind : std::uint8_t { normal, uniform, bernoulli, discrete, normalised };
@@ -76,9 +76,7 @@ class Discrete : public Distribution {
     }
   }
   template <class Weights = std::initializer_list<double>>
-  Discrete(Normalised, const Weights& weights) : Discrete(weights) {
-    kind_ = Kind::normalised;
-  }
+  Discrete(Normalised, const Weights& weights) : Discrete(weights) { kind_ = Kind::normalised; }
   Discrete(const Discrete&) = delete;
   Discrete& operator=(const Discrete&) = delete;
 

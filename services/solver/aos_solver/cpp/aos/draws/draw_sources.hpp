@@ -26,8 +26,7 @@ inline int next_outcome(const double* weights, int count, int taken, int first) 
   }
 }
 
-template <class T>
-void append_bytes(std::string& text, const T& value) {
+void append_bytes(std::string& text, const auto& value) {
   text.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
@@ -37,17 +36,15 @@ inline bool skips_sensing(DirectedDraws& draws) { return draws.skips_sensing(); 
 template <class Source>
 inline constexpr AnySource::Functions functions_of{
     .flag = [](void* source, double probability) { return static_cast<Source*>(source)->flag(probability); },
-    .choose =
-        [](void* source, const double* weights, int count, double total) {
-          return static_cast<Source*>(source)->choose(weights, count, total);
-        },
+    .choose = [](void* source, const double* weights, int count, double total) {
+      return static_cast<Source*>(source)->choose(weights, count, total);
+    },
     .uniform = [](void* source) { return static_cast<Source*>(source)->uniform(); },
     .skips_sensing = [](void* source) { return skips_sensing(*static_cast<Source*>(source)); },
     .gives_means = std::is_same_v<Source, DirectedDraws>,
-    .report =
-        [](void* source, std::uint32_t key, const Distribution& distribution) {
-          static_cast<Source*>(source)->report(key, distribution);
-        },
+    .report = [](void* source, std::uint32_t key, const Distribution& distribution) {
+      static_cast<Source*>(source)->report(key, distribution);
+    },
     .loop_heads = [](void* source) -> LoopHeads* { return static_cast<Source*>(source)->loop_heads(); },
 };
 
@@ -142,7 +139,9 @@ double Enumerator::list_heads(Run run, std::size_t max_depth_first) {
 }
 
 double Enumerator::walk_on(Run run, End at_end, std::size_t max_depth_first) {
-  start();
+  choices_.clear();
+  chance_ = Sampler{1};
+  is_best_first_ = false;
   do {
     if (--paths_left_ < 0) give_up();
     run_once(run, at_end);
@@ -170,7 +169,12 @@ void Enumerator::run_once(Run run, End at_end) {
 
 double Enumerator::best_first(Run run, End at_end) {
   if (!advance()) return 0;
-  begin_best_first();
+  is_best_first_ = true;
+  nodes_.clear();
+  begun_.clear();
+  shared_ = 0;
+  last_ = no_node;
+  waiting_ = dropped_ = 0;
   for (; paths_left_ > 0 && nodes_.size() < max_frontier; --paths_left_) {
     run_once(run, at_end);
     put_off();
@@ -179,12 +183,6 @@ double Enumerator::best_first(Run run, End at_end) {
   }
   if (waiting_ + dropped_ > max_left_out) throw NotEnumerable{"loops that draw have more paths than can be walked"};
   return waiting_ + dropped_;
-}
-
-void Enumerator::start() {
-  choices_.clear();
-  chance_ = Sampler{1};
-  is_best_first_ = false;
 }
 
 void Enumerator::start_from(LoopChain::Number head) {
@@ -279,15 +277,6 @@ bool Enumerator::advance() {
   if (choices_.empty()) return false;
   choices_.back().taken = choices_.back().following;
   return true;
-}
-
-void Enumerator::begin_best_first() {
-  is_best_first_ = true;
-  nodes_.clear();
-  begun_.clear();
-  shared_ = 0;
-  last_ = no_node;
-  waiting_ = dropped_ = 0;
 }
 
 namespace detail {

@@ -116,7 +116,6 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   std::string* arrive(std::uint32_t loop, std::uint32_t entry) override;
   [[noreturn]] void cut() override;
 
-  void start();
   void start_from(LoopChain::Number head);
   // Goes to the next path, depth first. Returns false after the last one.
   bool advance();
@@ -139,7 +138,6 @@ class Enumerator final : public DirectedDraws, private LoopHeads {
   void run_once(Run run, End at_end);
 
   double best_first(Run run, End at_end);
-  void begin_best_first();
   // Stores the paths that branch off the one just walked.
   void put_off();
   void take_likeliest();

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/add_up.hpp"
 #include "aos/draws/enumerator.hpp"
 #include "aos/draws/loop_chain.hpp"
 
@@ -31,14 +32,8 @@ void LoopChain::write_way(Number to, std::vector<int>& draws, std::vector<Stop>&
 
 void LoopChain::end(Number head, double ends, double lost) {
   std::sort(listed_.begin(), listed_.end(), [](const Edge& left, const Edge& right) { return left.to < right.to; });
-  std::vector<Edge>& edges = heads_[head].edges;
-  for (const Edge& edge : listed_) {
-    if (edges.empty() || edges.back().to != edge.to) {
-      edges.push_back(edge);
-    } else {
-      edges.back().probability += edge.probability;
-    }
-  }
+  add_up_neighbours(listed_, &Edge::to, &Edge::probability);
+  heads_[head].edges = listed_;
   heads_[head].ends = ends;
   heads_[head].lost = lost;
   ++listed_heads_;

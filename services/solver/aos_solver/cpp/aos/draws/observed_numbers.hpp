@@ -5,7 +5,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -50,15 +49,6 @@ class ObservedNumbers {
     return true;
   }
 
-  std::uint64_t hash() const {
-    std::uint64_t hash = 0;
-    for (const auto& [key, value] : numbers_) {
-      for (const std::uint64_t part : {std::uint64_t{key}, std::bit_cast<std::uint64_t>(value)}) {
-        hash = std::rotl((hash ^ part) * 0x9e3779b97f4a7c15u, 29);
-      }
-    }
-    return hash;
-  }
 
  private:
   std::vector<ObservedNumber>::iterator place_of(NumberKey key) {

@@ -90,9 +90,7 @@ class Draws {
   // Draws a value of an enum whose values count from 0.
   template <class Enum, class Weights = std::initializer_list<double>>
     requires std::is_enum_v<Enum>
-  Enum SampleDiscrete(const Weights& weights) {
-    return static_cast<Enum>(SampleDiscrete(-1, weights));
-  }
+  Enum SampleDiscrete(const Weights& weights) { return static_cast<Enum>(SampleDiscrete(-1, weights)); }
   // Draws one of several values.
   template <class Value, class Weights = std::initializer_list<double>>
   Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {

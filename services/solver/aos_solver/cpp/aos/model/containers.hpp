@@ -32,9 +32,7 @@ class Elements {
 
   template <class U>
     requires std::is_constructible_v<U, const T&>
-  operator std::vector<U>() const {
-    return std::vector<U>(begin(), end());
-  }
+  operator std::vector<U>() const { return std::vector<U>(begin(), end()); }
 
   T& front() { return self()[std::ptrdiff_t{0}]; }
   const T& front() const { return self()[std::ptrdiff_t{0}]; }
@@ -68,18 +66,12 @@ class Vector : public Elements<Vector<T, Capacity>, T> {
   Vector(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
   explicit Vector(std::size_t size, const T& value = T{}) { assign(size, value); }
   template <class U>
-  Vector(const std::vector<U>& values) {
-    assign(values.begin(), values.end());
-  }
+  Vector(const std::vector<U>& values) { assign(values.begin(), values.end()); }
   template <class U, std::size_t OtherCapacity>
-  Vector(const Vector<U, OtherCapacity>& values) {
-    assign(values.begin(), values.end());
-  }
+  Vector(const Vector<U, OtherCapacity>& values) { assign(values.begin(), values.end()); }
   template <class Iterator>
     requires(!std::is_integral_v<Iterator>)
-  Vector(Iterator first, Iterator last) {
-    assign(first, last);
-  }
+  Vector(Iterator first, Iterator last) { assign(first, last); }
   Vector& operator=(std::initializer_list<T> values) {
     assign(values.begin(), values.end());
     return *this;
@@ -223,13 +215,9 @@ std::size_t erase(Vector<T, Capacity>& values, const Value& value) {
   return erase_if(values, [&](const T& other) { return other == erased; });
 }
 template <class T, std::size_t Capacity>
-void swap(Vector<T, Capacity>& left, std::vector<T>& right) {
-  left.swap(right);
-}
+void swap(Vector<T, Capacity>& left, std::vector<T>& right) { left.swap(right); }
 template <class T, std::size_t Capacity>
-void swap(std::vector<T>& left, Vector<T, Capacity>& right) {
-  right.swap(left);
-}
+void swap(std::vector<T>& left, Vector<T, Capacity>& right) { right.swap(left); }
 
 // `values[index]` of document code: a ModelFault where a vector, an array or a string has no such element.
 template <class Values, class Index>

@@ -31,8 +31,7 @@ struct LocalArray : std::vector<T> {
 };
 
 // Reads the values of a skill's local variables.
-template <class Locals>
-void read_locals(Locals& locals, std::string_view text) {
+void read_locals(auto& locals, std::string_view text) {
   StateReader values{text};
   values.read(locals);
   values.finish();

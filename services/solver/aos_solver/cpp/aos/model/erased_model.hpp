@@ -86,9 +86,7 @@ struct ErasedModel {
   static std::size_t bytes_elsewhere() { return Size == 0 ? state_bytes() : 0; }
 
   template <class Random>
-  static void initial(State& state, Random& random) {
-    functions<Random>().initial(state.bytes, random);
-  }
+  static void initial(State& state, Random& random) { functions<Random>().initial(state.bytes, random); }
   // Makes a state one in which a mission begins, after so many steps of extrinsic changes alone. Whether an earlier mission
   // has ended there, makes no difference.
   static void begin(State& state, int idle_steps, DirectedDraws& random) {

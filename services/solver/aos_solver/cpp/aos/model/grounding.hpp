@@ -75,10 +75,9 @@ constexpr SkillFacts facts_of(void (*read_locals)(std::string_view values)) {
       .number_count = Skill::number_count,
       .has_alike_groundings = Skill::has_alike_groundings,
       .has_certain_rewards = Skill::has_certain_rewards,
-      .write_parameters =
-          [](const void* parameters, JsonWriter& json) {
-            write_json(json, *static_cast<const typename Skill::aos_Parameters*>(parameters));
-          },
+      .write_parameters = [](const void* parameters, JsonWriter& json) {
+        write_json(json, *static_cast<const typename Skill::aos_Parameters*>(parameters));
+      },
       .read_locals = read_locals,
   };
 }

@@ -269,9 +269,7 @@ class ModelOf {
   inline static Prepared prepared_;
 
   template <class Skill>
-  static typename Skill::aos_Locals& locals_of() {
-    return static_cast<LocalsOf<Skill>&>(prepared_.locals).values;
-  }
+  static typename Skill::aos_Locals& locals_of() { return static_cast<LocalsOf<Skill>&>(prepared_.locals).values; }
 
   static void set_default_values(Draft& draft, auto& random) {
     if constexpr (Project::draws_defaults) {

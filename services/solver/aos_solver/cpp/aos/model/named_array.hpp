@@ -24,13 +24,9 @@ class Named : public Elements<Named<E, Size, T>, T> {
   Named() = default;
   Named(std::initializer_list<T> values) { copy(values.begin(), values.size()); }
   template <class U>
-  Named(const std::vector<U>& values) {
-    copy(values.begin(), values.size());
-  }
+  Named(const std::vector<U>& values) { copy(values.begin(), values.size()); }
   template <class U, std::size_t Capacity>
-  Named(const Vector<U, Capacity>& values) {
-    copy(values.begin(), values.size());
-  }
+  Named(const Vector<U, Capacity>& values) { copy(values.begin(), values.size()); }
   static Named filled(const T& value) {
     Named made;
     made.fill(value);

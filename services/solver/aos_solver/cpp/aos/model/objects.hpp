@@ -88,9 +88,7 @@ Objects<State, T, Members...> objects(State& state) {
 
 // The pointers of such a list, which may be put into another order.
 template <class List>
-std::vector<typename List::Pointer> listed(const List& list) {
-  return list;
-}
+std::vector<typename List::Pointer> listed(const List& list) { return list; }
 
 // The values that parameters of one type take, by the name `state.<variable>`. An unknown name is a ModelFault.
 template <class T>

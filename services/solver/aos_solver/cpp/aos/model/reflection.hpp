@@ -194,9 +194,7 @@ void write_json(JsonWriter& json, AnyValue value);
 // Document code writes enums to streams as numbers. Without this, the small enums of a state would print as characters.
 template <class Stream, class Enum>
   requires std::is_enum_v<Enum> && requires { typename Stream::char_type; }
-Stream& operator<<(Stream& out, Enum value) {
-  return static_cast<Stream&>(out << static_cast<int>(value));
-}
+Stream& operator<<(Stream& out, Enum value) { return static_cast<Stream&>(out << static_cast<int>(value)); }
 
 // Extends a hash by `size` bytes. It is not inlined, since a state may have many arrays.
 [[gnu::noinline]] inline std::uint64_t hashed_bytes(std::uint64_t hash, const void* bytes, std::size_t size) {

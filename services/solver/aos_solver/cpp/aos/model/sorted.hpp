@@ -51,17 +51,13 @@ class Sorted : public Store {
   Sorted() = default;
   Sorted(std::initializer_list<T> elements) { insert(elements.begin(), elements.end()); }
   template <class Iterator>
-  Sorted(Iterator first, Iterator last) {
-    insert(first, last);
-  }
+  Sorted(Iterator first, Iterator last) { insert(first, last); }
   template <class Other>
     requires requires { typename Other::node_type; }
   Sorted(const Other& other) : Sorted(other.begin(), other.end()) {}
   template <class Other>
     requires requires { typename Other::node_type; }
-  operator Other() const {
-    return Other(begin(), end());
-  }
+  operator Other() const { return Other(begin(), end()); }
 
   iterator lower_bound(const Key& key) {
     return std::partition_point(begin(), end(), [&](const T& each) { return key_in(each) < key; });

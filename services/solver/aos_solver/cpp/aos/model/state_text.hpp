@@ -59,8 +59,7 @@ class StateReader {
  private:
   [[noreturn]] static void malformed();
 
-  template <class T>
-  static void resize(T& value, std::size_t size) {
+  static void resize(auto& value, std::size_t size) {
     if constexpr (requires { value.resize(size); }) {
       value.resize(size);
     } else if (size != value.size()) {

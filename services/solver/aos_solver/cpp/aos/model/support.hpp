@@ -126,9 +126,7 @@ void EndlessSteps::add(std::uint32_t loop, AnyValue before) {
 
 Observation text_observation(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char character : text) {
-    hash = (hash ^ static_cast<unsigned char>(character)) * 0x100000001b3u;
-  }
+  for (const char character : text) hash = (hash ^ static_cast<unsigned char>(character)) * 0x100000001b3u;
   auto number = static_cast<Observation>(hash | (std::uint64_t{1} << 63));
   if (number == default_observation) --number;
   if (number == no_observation) ++number;

@@ -100,9 +100,7 @@ class Text {
   friend std::string operator+(const Text& left, const Text& right) { return left.str().append(right.view()); }
   friend std::string operator+(const Text& left, char right) { return left.str() + right; }
   template <class Stream>
-  friend Stream& operator<<(Stream& out, const Text& text) {
-    return static_cast<Stream&>(out << text.view());
-  }
+  friend Stream& operator<<(Stream& out, const Text& text) { return static_cast<Stream&>(out << text.view()); }
 
  private:
   std::size_t checked(std::size_t index) const {

@@ -10,7 +10,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,13 +26,7 @@ std::string leaf_text(const Leaf& leaf) {
   if (is_text(leaf)) return std::string{characters_of(leaf)};
   if (leaf.kind == Leaf::Kind::boolean) return stored_at<bool>(leaf.place) ? "true" : "false";
   std::string text;
-  with_number(leaf, [&](auto number) {
-    if constexpr (std::is_floating_point_v<decltype(number)>) {
-      text = number_text(number);
-    } else {
-      text = std::to_string(number);
-    }
-  });
+  with_number(leaf, [&](auto number) { text = number_text(number); });
   return text;
 }
 
@@ -155,13 +148,7 @@ class ValueNumbers final : public ValueVisitor {
       put(static_cast<std::int64_t>(characters.size()));
       for (const char character : characters) put(character);
     } else {
-      with_number(leaf, [&](auto number) {
-        if constexpr (std::is_floating_point_v<decltype(number)>) {
-          put(std::bit_cast<std::int64_t>(static_cast<double>(number)));
-        } else {
-          put(static_cast<std::int64_t>(number));
-        }
-      });
+      put(static_cast<std::int64_t>(leaf_number(leaf)));
     }
   }
 

@@ -24,8 +24,7 @@ T stored_at(const void* place) {
 }
 
 // Calls `use` with the leaf's number: a real number as it is, any other widened to 64 bits.
-template <class Use>
-void with_number(const Leaf& leaf, Use&& use) {
+void with_number(const Leaf& leaf, auto&& use) {
   const auto widened = [&](auto narrow) {
     if (leaf.kind == Leaf::Kind::unsigned_number || leaf.kind == Leaf::Kind::boolean) {
       use(std::uint64_t{static_cast<std::make_unsigned_t<decltype(narrow)>>(narrow)});

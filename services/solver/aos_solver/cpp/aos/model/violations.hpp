@@ -23,8 +23,7 @@ const typename Named::aos_Parameters* chosen(const typename Skill::aos_Parameter
 }
 
 // The bit of constraint `number` if its condition holds, else 0.
-template <class Condition>
-Violations violation(int number, std::uint32_t piece, Condition&& holds) {
+Violations violation(int number, std::uint32_t piece, auto&& holds) {
   blame::at(piece);
   const bool is_violated = static_cast<bool>(holds());
   blame::at(0);

@@ -33,7 +33,7 @@ struct Promise {
 };
 
 // The values of actions whose estimates come from a tree that ends in values of seen states.
-inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate> estimates, const Promise& promise, int choice) {
+inline Estimates values_of_promise(Estimates estimates, const Promise& promise, int choice) {
   const double chosen = estimates[choice].q;
   const double reach = std::max(std::abs(promise.most - chosen), std::abs(promise.played - chosen)) / 2;
   const double moved = promise.is_guess ? promise.played - chosen : 0;
@@ -46,7 +46,7 @@ inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate>
 }
 
 // The values of actions whose estimates come from a tree that ends in rollouts.
-inline std::vector<ActionEstimate> values_of_tree(std::vector<ActionEstimate> estimates, const TreeReach& reach, int choice) {
+inline Estimates values_of_tree(Estimates estimates, const TreeReach& reach, int choice) {
   const double moved = reach.gain * reach.beyond[choice] / 2;
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     ActionEstimate& estimate = estimates[a];
@@ -71,7 +71,7 @@ inline std::string unplayed_text(std::size_t played) {
 }
 
 // The values of actions with bounds; `lowers` and `uppers` are between what the values may be, proven or not.
-inline void set_between(std::vector<ActionEstimate>& estimates, const std::vector<double>& lowers,
+inline void set_between(Estimates& estimates, const std::vector<double>& lowers,
                         const std::vector<double>& uppers, int choice) {
   static const double deviation_of_even = 1 / std::sqrt(12.0);
   const std::size_t chosen = choice;

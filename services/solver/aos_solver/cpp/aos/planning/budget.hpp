@@ -62,13 +62,13 @@ struct ActionEstimate {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
 };
+using Estimates = std::vector<ActionEstimate>;  // by action
 
 // The action with the highest value of those that count, or, of actions that are as good, the one with the highest immediate
 // reward: what is as good later would else be put off for ever, since the best of many later choices is estimated too high. As
 // good is a value that is less by at most sqrt(2 ln horizon) errors, by which the best of `horizon` values of the same error
 // exceeds their mean, and by at most what a delay by one of `horizon` steps can be worth.
-template <class Counts>
-int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, Counts&& counts) {
+int preferred_action(const Estimates& estimates, int horizon, auto&& counts) {
   const ActionEstimate* best = nullptr;
   for (const ActionEstimate& estimate : estimates) {
     if (counts(estimate) && (best == nullptr || estimate.q > best->q)) best = &estimate;

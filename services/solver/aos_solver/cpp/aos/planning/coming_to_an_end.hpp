@@ -9,8 +9,7 @@ namespace aos {
 
 // Whether the work comes to its end. Model code may fail in states and on paths that no mission comes to, and it may have
 // too many outcomes.
-template <class Work>
-bool comes_to_an_end(Work&& work) {
+bool comes_to_an_end(auto&& work) {
   bool has_ended = false;
   try {
     work();

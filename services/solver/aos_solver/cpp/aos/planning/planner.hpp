@@ -4,13 +4,12 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "aos/base/clock.hpp"
+#include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -59,9 +58,6 @@ class SearchTime {
 template <class Model>
 class Planner {
  public:
-  using Estimates = std::vector<ActionEstimate>;
-  using IsOver = std::function<bool()>;
-
   explicit Planner(const StateSpace<Model>& space) : space_(space) {}
   virtual ~Planner() = default;
   Planner(const Planner&) = delete;  // planners refer to one another
@@ -92,12 +88,12 @@ class Planner {
     });
   }
   // What a decision tells if the belief is what it should be; `estimates` are those by which `choice` was made.
-  virtual Estimates values(const Belief<Model>& belief, Estimates estimates, int choice) const = 0;
+  virtual Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const { return estimates; }
   // How far bounds of values have to be widened; see StateSpace.
   virtual double slack(const Belief<Model>& belief, int horizon) const { return space_.slack(belief, horizon); }
 
   // Searches below an action that is being carried out, until `is_over()`, which is called every millisecond or so.
-  virtual void ponder(int /*action*/, const Question<Model>& /*question*/, Sampler& /*random*/, const IsOver& /*is_over*/) {}
+  virtual void ponder(int /*action*/, const Question<Model>& /*question*/, Sampler& /*random*/, FunctionRef<bool()> /*is_over*/) {}
   // Keeps what serves the decision after an action and an observation.
   virtual void advance(int /*action*/, Observation /*observation*/) {}
   // Drops what holds for the last belief only.

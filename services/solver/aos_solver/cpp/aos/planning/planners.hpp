@@ -46,8 +46,6 @@ inline std::optional<PlannerKind> planner_kind(std::string_view name) {
 template <class Model>
 class Planners {
  public:
-  using Estimates = typename Planner<Model>::Estimates;
-
   // Chooses the planner, prepares it and searches. Returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
@@ -104,8 +102,7 @@ class Planners {
   }
 
   // Searches below the action that is being carried out, if the last planner can use that.
-  template <class IsOver>
-  void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, IsOver&& is_over) {
+  void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, auto&& is_over) {
     used_->ponder(action, {belief, budget, horizon, barred_}, random, is_over);
   }
   void move_to(int action, Observation observation) {

@@ -21,8 +21,6 @@ namespace aos {
 template <class Model>
 class TreePlanner : public Planner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-
   TreePlanner(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
       : Planner<Model>(space), listed_(values), missions_(missions) {}
 

@@ -14,8 +14,7 @@
 namespace aos {
 
 // The shortest text that reads back as the same number.
-template <std::floating_point Number>
-std::string number_text(Number number) {
+inline std::string number_text(auto number) {
   char buffer[64];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, number).ptr;
   return {buffer, end};
@@ -34,10 +33,7 @@ class JsonWriter {
     text_ += ':';
     return *this;
   }
-  template <class Value>
-  JsonWriter& member(std::string_view name, const Value& member_value) {
-    return key(name).value(member_value);
-  }
+  JsonWriter& member(std::string_view name, const auto& member_value) { return key(name).value(member_value); }
 
   JsonWriter& value(bool flag) { return put(flag ? "true" : "false"); }
   JsonWriter& value(std::integral auto number) { return put(std::to_string(number)); }
@@ -51,11 +47,8 @@ class JsonWriter {
     text_ += '"';
     while (!text.empty()) {
       const std::size_t size = letter_size(text);
-      if (size == 1) {
-        escape(text.front());
-      } else {
-        text_ += size == 0 ? std::string_view{"\\ufffd"} : text.substr(0, size);
-      }
+      if (size == 1) escape(text.front());
+      else text_ += size == 0 ? std::string_view{"\\ufffd"} : text.substr(0, size);
       text.remove_prefix(std::max<std::size_t>(size, 1));
     }
     text_ += '"';

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,8 +39,6 @@ inline constexpr std::size_t spreading = 7919;  // a prime, by which states are 
 template <class Model>
 class BeliefTree final : public TreePlanner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-
   BeliefTree(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
       : TreePlanner<Model>(space, values, missions), space_(space), values_(values) {}
 
@@ -153,9 +150,6 @@ class BeliefTree final : public TreePlanner<Model> {
     std::size_t action;
   };
 
-  static double seconds_since(PlanningClock::time_point start) {
-    return std::chrono::duration<double>(PlanningClock::now() - start).count();
-  }
   bool is_full() const {
     return actions_.size() * sizeof(ActionNode) + states_.size() * sizeof states_[0] > max_belief_tree_bytes;
   }

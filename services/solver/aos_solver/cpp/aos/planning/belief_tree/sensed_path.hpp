@@ -32,9 +32,7 @@ class Strata {
     auto& column = columns_[name];
     if (column.empty()) {
       Sampler random{name};
-      for (std::size_t i = 0; i < sensing_runs; ++i) {
-        column.push_back((i + random.uniform()) / sensing_runs);
-      }
+      for (std::size_t i = 0; i < sensing_runs; ++i) column.push_back((i + random.uniform()) / sensing_runs);
       for (std::size_t i = sensing_runs; i-- > 1;) std::swap(column[i], column[random.below(static_cast<int>(i) + 1)]);
     }
     return column[run % sensing_runs];
@@ -137,10 +135,7 @@ class SensedPath final : public DirectedDraws, private NumberSink {
     const bool is_other = sensing_++ == other_;
     return strata_.value(is_other ? run_ + sensing_runs / 2 : run_, name);
   }
-  void take(NumberKey key, const Distribution& distribution) override {
-    numbers_.emplace_back(key, DescribedDistribution{});
-    distribution.describe(numbers_.back().second);
-  }
+  void take(NumberKey key, const Distribution& distribution) override { numbers_.emplace_back(key, distribution.described()); }
 
   Strata strata_;
   Enumerator* path_ = nullptr;

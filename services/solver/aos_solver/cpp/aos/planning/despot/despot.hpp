@@ -39,7 +39,6 @@ template <class Model>
 class Despot final : public TreePlanner<Model> {
  public:
   using State = typename Model::State;
-  using typename Planner<Model>::Estimates;
 
   Despot(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions)
       : TreePlanner<Model>(space, values, missions), evaluation_(values), values_(values) {}

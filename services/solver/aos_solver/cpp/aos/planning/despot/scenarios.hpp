@@ -4,12 +4,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
@@ -122,7 +122,7 @@ class ScenarioEvaluation {
       best_ = !has_values_ || (has_rollouts() && by_rollouts.mean() > by_average.mean()) ? by_rollouts : by_average;
       for (std::size_t i = first; i < last; ++i) {
         bounds_[i].lower = best_.mean();
-        bounds_[i].upper = has_values_ ? 0 : best_.mean_of_upper();
+        bounds_[i].upper = has_values_ ? 0 : best_.sum_of_upper / best_.count();
       }
     });
     return bounds_;
@@ -139,24 +139,8 @@ class ScenarioEvaluation {
   static constexpr Operations per_rolled_out = operations_of_step * 17 / 20;  // a step of a rollout, with which a search does nothing
   static constexpr Operations per_action = 1;       // of each scenario, where the best one on average is looked for
 
-  // The mean and the deviation of returns, and the mean of the highest returns found.
-  class Earnings {
-   public:
-    void add(double earned, double upper = 0) {
-      ++count_;
-      sum_ += earned;
-      squares_ += earned * earned;
-      sum_of_upper_ += upper;
-    }
-    double mean() const { return sum_ / count_; }
-    double mean_of_upper() const { return sum_of_upper_ / count_; }
-    double deviation() const { return std::sqrt(std::max(squares_ / count_ - mean() * mean(), 0.0)); }
-
-   private:
-    double count_ = 0;
-    double sum_ = 0;
-    double squares_ = 0;
-    double sum_of_upper_ = 0;
+  struct Earnings : SampleMean {
+    double sum_of_upper = 0;  // of the highest returns found
   };
 
   struct Follower : Observed<Model> {
@@ -225,7 +209,8 @@ class ScenarioEvaluation {
       highest = std::max(highest, found);
     }
     const double origin = has_values_ ? values_.value(scenario.seen, horizon_ - depth) : 0;
-    earnings.add(sum / count - origin, highest);
+    earnings.add(sum / count - origin);
+    earnings.sum_of_upper += highest;
   }
 
   // Splits the followers from `first` to `last` by their last observations.
@@ -256,11 +241,8 @@ class ScenarioEvaluation {
       const Step step = this->step(follower.scenario, action, depth, has_ended);
       earned_[follower.index] += discount * earned(before, action, depth, step.reward);
       follower.observation = step.observation;
-      if (!has_ended) {
-        ++i;
-      } else {
-        follower = followers_[--last];
-      }
+      if (!has_ended) ++i;
+      else follower = followers_[--last];
     }
     split(first, last, depth + 1, discount * Model::discount);
   }

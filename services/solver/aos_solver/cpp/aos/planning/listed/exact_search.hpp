@@ -1,7 +1,6 @@
 // The exact values of all actions over the whole horizon, if computing them fits the budget.
 #pragma once
 
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -25,8 +24,6 @@ namespace aos {
 template <class Model>
 class ExactSearch final : public Planner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-
   explicit ExactSearch(const StateSpace<Model>& space) : Planner<Model>(space), space_(space) {}
 
   const char* name() const override { return "exact"; }
@@ -115,9 +112,7 @@ class ExactSearch final : public Planner<Model> {
       limits.work = static_cast<Operations>(share_of_budget * static_cast<double>(budget.operations(horizon))) + 1;
     }
     if (budget.seconds > 0) {
-      limits.is_over = [start = PlanningClock::now(), seconds = share_of_budget * budget.seconds] {
-        return std::chrono::duration<double>(PlanningClock::now() - start).count() >= seconds;
-      };
+      limits.is_over = [start = PlanningClock::now(), seconds = share_of_budget * budget.seconds] { return seconds_since(start) >= seconds; };
     }
     return limits;
   }

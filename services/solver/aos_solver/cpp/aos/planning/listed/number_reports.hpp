@@ -34,9 +34,7 @@ class NumberReports final : public NumberSink {
 
   void begin() override { taken_.clear(); }
   void take(NumberKey key, const Distribution& distribution) override {
-    if (is_full_) return;
-    taken_.emplace_back(key, DescribedDistribution{});
-    distribution.describe(taken_.back().second);
+    if (!is_full_) taken_.emplace_back(key, distribution.described());
   }
   bool write_taken(std::string& key) const override {
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };

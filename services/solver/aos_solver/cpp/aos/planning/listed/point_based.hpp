@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "aos/base/clock.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
@@ -97,8 +97,7 @@ class PointBased {
   // Runs trials from the prepared belief. Where they leave the bounds apart, simple policies are tried. If these do not
   // decide, missions are played that begin with the action that `choice()` tells then. Returns how many simulations the
   // trials count as; policies and missions are no search.
-  template <class Choice>
-  std::uint64_t search(Budget budget, Choice&& choice) {
+  std::uint64_t search(Budget budget, auto&& choice) {
     loss_ = loss_error_ = later_ = 0;
     missions_ = 0;
     played_ = 0;
@@ -138,8 +137,7 @@ class PointBased {
   }
 
   // Runs trials below an action that is being carried out.
-  template <class IsOver>
-  void ponder(int action, Budget budget, IsOver&& is_over) {
+  void ponder(int action, Budget budget, auto&& is_over) {
     if (running_ <= 0 || budget.seconds <= 0) return;
     const Operations work = search_->improve_below(static_cast<std::uint32_t>(action), until(budget, is_over));
     known_ += Budget::simulations_of(work, horizon_);
@@ -148,10 +146,10 @@ class PointBased {
   // The lower bounds of the actions, or what a policy returns that begins with one; the decision is made by these. `n`
   // counts the trials that began with the action, and 1 for opening it. What is proven holds for the next `horizon`
   // decisions, also where the search has no horizon.
-  std::vector<ActionEstimate> estimates() const {
-    if (running_ <= 0) return std::vector<ActionEstimate>(static_cast<std::size_t>(Model::action_count()));
+  Estimates estimates() const {
+    if (running_ <= 0) return Estimates(static_cast<std::size_t>(Model::action_count()));
     const auto [least_later, most_later] = later();
-    std::vector<ActionEstimate> result;
+    Estimates result;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
       const double lower = bounds.lower - error_;
       result.push_back({lower, bounds.trials + 1, 0, 0, lower - bounds.goes_on * most_later});
@@ -167,7 +165,7 @@ class PointBased {
   }
   // Estimates with a value between the bounds. Where the search has no horizon, missions tell what comes after the horizon.
   // Without missions it is worth nothing at least, and as much as now at most.
-  std::vector<ActionEstimate> values(std::vector<ActionEstimate> estimates, int choice) const {
+  Estimates values(Estimates estimates, int choice) const {
     if (running_ <= 0) return estimates;
     const auto [worst, best] = search_->bounds();
     const double left = is_endless_ && missions_ == 0 ? std::pow(Model::discount, horizon_) : 0;
@@ -259,9 +257,7 @@ class PointBased {
   // Whether it takes long to go through all observations of all states once for each decision to go.
   bool is_large(const point_based::FlatModel& model) const {
     double likelihoods = 0;
-    for (const point_based::Outcome& outcome : model.outcomes.elements) {
-      likelihoods += static_cast<double>(model.likelihoods[outcome.sensing].size());
-    }
+    for (const point_based::Outcome& outcome : model.outcomes.elements) likelihoods += static_cast<double>(model.likelihoods[outcome.sensing].size());
     return likelihoods * horizon_ > point_based::max_likelihoods_in_layers;
   }
   point_based::FlatModel flat_model() const {
@@ -280,17 +276,13 @@ class PointBased {
   // How far errors in the probabilities of cells may move values: at each decision, by their share of all that follows.
   double error_of(const point_based::FlatModel& model) const {
     if (!tells_by_cells()) return 0;
-    double largest = 0;
-    for (const double reward : model.rewards) largest = std::max(largest, std::abs(reward));
     const double decisions = std::min(static_cast<double>(horizon_), 1 / (1 - Model::discount));
-    return NumberCells::error * largest * decisions * decisions;
+    return NumberCells::error * largest_size(model.rewards) * decisions * decisions;
   }
 
-  template <class IsOver>
-  static point_based::OnlineSarsop::IsOver until(Budget budget, IsOver&& is_over) {
+  static point_based::OnlineSarsop::IsOver until(Budget budget, auto&& is_over) {
     return [budget, &is_over, start = PlanningClock::now()] {
-      const std::chrono::duration<double> spent = PlanningClock::now() - start;
-      return (budget.seconds > 0 && spent.count() >= budget.seconds) || is_over();
+      return (budget.seconds > 0 && seconds_since(start) >= budget.seconds) || is_over();
     };
   }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aos/base/switches.hpp"
+#include "aos/base/function_ref.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/planning/listed/near_states.hpp"
@@ -21,9 +22,6 @@ namespace aos {
 template <class Model>
 class SarsopPlanner final : public Planner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-  using typename Planner<Model>::IsOver;
-
   explicit SarsopPlanner(const StateSpace<Model>& space) : Planner<Model>(space), space_(space) {}
 
   const char* name() const override { return "sarsop"; }
@@ -66,7 +64,7 @@ class SarsopPlanner final : public Planner<Model> {
   double slack(const Belief<Model>& belief, int horizon) const override {
     return (is_near_ ? near_.space() : space_).slack(belief, horizon);
   }
-  void ponder(int action, const Question<Model>& question, Sampler& /*random*/, const IsOver& is_over) override {
+  void ponder(int action, const Question<Model>& question, Sampler& /*random*/, FunctionRef<bool()> is_over) override {
     used().ponder(action, question.budget, is_over);
   }
   void start_over() override {

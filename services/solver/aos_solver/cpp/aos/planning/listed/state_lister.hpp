@@ -66,8 +66,7 @@ class StateLister {
 
   // Calls `found(next, step, probability)` for each path of an action after which the mission goes on. Returns the expected
   // reward. Throws NotEnumerable at a limit.
-  template <class Found>
-  double walk(const State& state, int action, Found&& found) {
+  double walk(const State& state, int action, auto&& found) {
     double reward = 0;
     const auto run = [&](Enumerator& path) {
       work_ += work_of_step(path, Model::state_bytes());

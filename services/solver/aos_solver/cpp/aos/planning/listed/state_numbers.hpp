@@ -127,8 +127,7 @@ class StateNumbers {
   }
 
   std::uint64_t kept_of(std::uint32_t number, std::size_t i) const { return kept_[number * words_.size() + i]; }
-  template <class WordAt>
-  std::uint64_t hash_of_words(WordAt&& word_at) const {
+  std::uint64_t hash_of_words(auto&& word_at) const {
     std::uint64_t hash = 0;
     for (std::size_t i = 0; i < words_.size(); ++i) hash = mixed(hash, word_at(i));
     return hash;

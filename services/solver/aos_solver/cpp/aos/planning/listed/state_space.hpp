@@ -14,9 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/add_up.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/progress.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/base/switches.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/enumerator.hpp"
@@ -150,26 +152,16 @@ class StateSpace {
       if (Model::ending(state) == Ending::running) weights.emplace_back(lister_.numbers().find(state), weight);
     }
     std::sort(weights.begin(), weights.end());
-    std::size_t kept = 0;
-    for (const auto& [number, weight] : weights) {
-      if (kept > 0 && weights[kept - 1].first == number) {
-        weights[kept - 1].second += weight;
-      } else {
-        weights[kept++] = {number, weight};
-      }
-    }
-    weights.resize(kept);
+    add_up_neighbours(weights, &std::pair<std::uint32_t, double>::first, &std::pair<std::uint32_t, double>::second);
     return weights;
   }
 
  private:
   // The largest expected reward, earned at each decision.
   double most_earned(int horizon) const {
-    double largest = 0;
-    for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
     double decisions = 0;
     for (int left = 0; left < horizon; ++left) decisions = 1 + Model::discount * decisions;
-    return largest * decisions;
+    return largest_size(rows_.rewards) * decisions;
   }
 
   static constexpr std::uint32_t fewest_priced = 16;  // states

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
 #include "aos/base/clock.hpp"
@@ -38,7 +37,7 @@ class DecisionClock {
   double left_s() const { return end_s_ - spent_s(); }
 
  private:
-  double spent_s() const { return std::chrono::duration<double>(PlanningClock::now() - start_).count(); }
+  double spent_s() const { return seconds_since(start_); }
 
   PlanningClock::time_point start_{};
   double seconds_ = std::numeric_limits<double>::infinity();

@@ -29,8 +29,7 @@ class OptionGains {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
 
   // Takes each option from each state. What changes by itself touches nothing. Options for which there is no time earn nothing.
-  template <class Library>
-  void measure(const Library& library, const std::vector<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
+  void measure(const auto& library, const std::vector<State>& states, const OwnChanges<Model>& changes, double& steps, Sampler& random) {
     const std::vector<Option>& options = library.options();
     const LeafCells<Model>& cells = library.cells();
     options_ = &options;

@@ -129,7 +129,7 @@ class OptionMoves {
     if (share < 0.5) return;
     const auto last = share < 1 - 1e-9 ? RepeatedObservation{std::vector<StepReports>{}} : RepeatedObservation::at_last(reports);
     if (!last.is_listed(1)) steps -= way.size() * OptionTests<Model>::steps_of_weighing(now.size());
-    const auto told = regret_.after(last, 1, steps, random, [&](std::size_t k, StateWeights& weights) {
+    const auto told = regret_.after(last, 1, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {
       for (std::size_t i = 0; i < now.size(); ++i) weights[i] *= goes_on(i) ? 1 : 0;
       if (weights[k] <= 0) return;
       for (const auto& of_step : reports) observe(of_step, of_step[k].drawn(random), weights);

@@ -102,7 +102,7 @@ class OptionPolicy {
     return 1 + static_cast<std::uint64_t>(taken_ / horizon);
   }
 
-  const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  const Estimates& estimates() const { return estimates_; }
   // What the best candidate is worth if nothing more is observed after it.
   double least() const { return least_; }
   // The plain plan that returns most from the states of the decision, and how much an action earns there.
@@ -150,6 +150,7 @@ class OptionPolicy {
   }
 
  private:
+  using View = typename OptionMoves<Model>::View;
   static constexpr double of_states = 0.05;
   // Of the time, if the budget is one:
   static constexpr double of_gains = 0.5;  // until options are measured
@@ -239,7 +240,7 @@ class OptionPolicy {
 
   void add_observations(const std::vector<std::size_t>& likely, const BarredActions& barred, double& left, Sampler& random) {
     tests_.observe_all(barred, left, random);
-    const std::vector<typename OptionMoves<Model>::View> views = library_.counts() ? priced_views(barred, left, random) : std::vector<typename OptionMoves<Model>::View>{};
+    const std::vector<View> views = library_.counts() ? priced_views(barred, left, random) : std::vector<View>{};
     tests_.add_to(candidates_, left, random);
     moves_.add_to(candidates_, tried_moves_, left, random);
     for (const auto& view : views) moves_.add_view(candidates_, view, left, random);
@@ -254,8 +255,8 @@ class OptionPolicy {
   }
 
   // The moves with what can be observed after them. The state can be found out at the price of a nat where that is cheapest.
-  std::vector<typename OptionMoves<Model>::View> priced_views(const BarredActions& barred, double& left, Sampler& random) {
-    std::vector<typename OptionMoves<Model>::View> views;
+  std::vector<View> priced_views(const BarredActions& barred, double& left, Sampler& random) {
+    std::vector<View> views;
     double price = tests_.price_of_nat(regret_.value_seen());
     for (const int move : tried_moves_) {
       if (left <= 0 || clock_.is_over()) break;
@@ -329,7 +330,7 @@ class OptionPolicy {
   std::vector<int> tried_moves_;
   bool are_for_views_ = false;
   std::vector<OptionCandidate> candidates_;
-  std::vector<ActionEstimate> estimates_;
+  Estimates estimates_;
   const char* reason_ = "";
   double least_ = 0;
 };

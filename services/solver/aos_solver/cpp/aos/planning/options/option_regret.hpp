@@ -76,18 +76,12 @@ class OptionRegret {
   }
   double after(const StateWeights& weights) const {
     const double blind = std::max(value_seen(weights) - gains_.best(weights), 0.0);
-    return blind > 0 && std::isfinite(price_) ? std::min(blind, price_ * entropy(weights)) : blind;
+    return blind > 0 && std::isfinite(price_) ? std::min(blind, price_ * entropy_of(weights)) : blind;
   }
 
-  // The mean regret after an observation that is made so many times, and what it tells of each likely option. Where these are too many to list, `see(k, weights)`
-  // draws from state k what is observed. `steps` is counted down.
-  template <class See>
-  Told after(const RepeatedObservation& observation, int times, double& steps, Sampler& random, See&& see) const {
-    return after(observation, times, belief_.weights(), steps, random, see);
-  }
-  // The same from other weights.
-  template <class See>
-  Told after(const RepeatedObservation& observation, int times, const StateWeights& before, double& steps, Sampler& random, See&& see) const {
+  // The mean regret after an observation that is made so many times, from the weights `before`, and what it tells of each likely option.
+  // Where these are too many to list, `see(k, weights)` draws from state k what is observed. `steps` is counted down.
+  Told after(const RepeatedObservation& observation, int times, const StateWeights& before, double& steps, Sampler& random, auto&& see) const {
     Told told;
     for (const std::size_t option : likely_) told.avoided.push_back(-std::max(gains_.earned(option, before), 0.0));
     const auto note = [&](double probability, const StateWeights& weights) {
@@ -113,12 +107,6 @@ class OptionRegret {
     constexpr double of_gain = 0.02;
     return of_gain * (gains_.size() * belief_.size());
   }
-  static double entropy(const StateWeights& weights) {
-    double nats = 0;
-    for (const double weight : weights) nats += share_of_entropy(weight);
-    return nats;
-  }
-
   const SampledBelief<Model>& belief_;
   const OptionGains<Model>& gains_;
   std::vector<std::size_t> likely_;

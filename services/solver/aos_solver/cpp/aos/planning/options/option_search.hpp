@@ -128,7 +128,7 @@ class OptionSearch {
 
   // The ways from a state, the best first. `steps` is counted down.
   std::vector<Option> from(const State& state, double& steps, Sampler& random) {
-    std::vector<Option> found = counts_ ? by_conditions(state, steps, random) : narrow(state, steps, random);
+    std::vector<Option> found = counts_ ? options_of(confirmed(state, found_by_conditions(state, steps, random), steps, random)) : narrow(state, steps, random);
     if (found.empty()) found = searched(state, 2, steps, random);
     return found;
   }
@@ -169,9 +169,6 @@ class OptionSearch {
       sort_stably(ways, has_more_income);
     }
     return options_of(ways);
-  }
-  std::vector<Option> by_conditions(const State& start, double& steps, Sampler& random) {
-    return options_of(confirmed(start, found_by_conditions(start, steps, random), steps, random));
   }
   static std::vector<Option> options_of(const std::vector<Way>& ways) {
     std::vector<Option> options;
@@ -292,7 +289,7 @@ class OptionSearch {
 
   void note_all(const State& state, auto& seen, int width) {
     cells_.write(state, cells_after_.data());
-    seen.note(cells_after_.data(), cells_.size(), width, [](std::size_t) { return true; });
+    note_cells(seen, cells_after_.data(), cells_.size(), width, [](std::size_t) { return true; });
   }
   // Notes the values of a state. Returns whether it has any that no state before it had.
   bool is_new(const State& state, int width) {
@@ -308,7 +305,7 @@ class OptionSearch {
     return has_new_value ? 1 : has_new_pair ? 2 : 3;
   }
   bool is_new_among(auto& seen, int width, bool all) {
-    return seen.note(cells_after_.data(), cells_.size(), width, [&](std::size_t i) { return all || cells_after_[i] != cells_before_[i]; });
+    return note_cells(seen, cells_after_.data(), cells_.size(), width, [&](std::size_t i) { return all || cells_after_[i] != cells_before_[i]; });
   }
 
   const LeafCells<Model>& cells_;

@@ -121,7 +121,7 @@ class OptionTests {
     for (int i = 0; i < repeats; ++i, discount *= Model::discount) paid += discount * test.reward;
     const RepeatedObservation observation{reports};
     if (!observation.is_listed(repeats)) steps -= repeats * steps_of_weighing(belief_.size());
-    const auto told = regret_.after(observation, repeats, steps, random, [&](std::size_t k, StateWeights& weights) {
+    const auto told = regret_.after(observation, repeats, belief_.weights(), steps, random, [&](std::size_t k, StateWeights& weights) {
       for (int i = 0; i < repeats; ++i) observe(reports, reports[k].drawn(random), weights);
     });
     candidates.push_back({test.action, paid + discount * (regret_.value_seen() - told.regret), discount, "what can be observed", told.avoided,

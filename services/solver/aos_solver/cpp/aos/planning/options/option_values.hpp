@@ -70,8 +70,7 @@ class OptionValues {
   }
 
   // How much more states are worth than by the values that `seen` has of them.
-  template <class Seen>
-  double beyond(Seen&& seen) const {
+  double beyond(auto&& seen) const {
     double sum = 0;
     double weights = 0;
     for (const auto& [k, weight, followed] : valued_) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -24,8 +23,6 @@ namespace aos {
 template <class Model>
 class OptionsPlanner final : public Planner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-
   OptionsPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
 
   const char* name() const override { return "options"; }
@@ -73,7 +70,6 @@ class OptionsPlanner final : public Planner<Model> {
   }
 
   Estimates estimates(const Belief<Model>& /*belief*/) const override { return policy_.estimates(); }
-  Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
   void advance(int action, Observation /*observation*/) override { promises_.note_taken(action); }
   void forget() override { promises_.forget(); }
   void start_over() override {

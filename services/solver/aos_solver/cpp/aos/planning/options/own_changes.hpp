@@ -17,8 +17,7 @@ namespace aos {
 inline constexpr double most_actions = 0.75;  // do alike what the world does
 
 // The value that most of so many actions lead to, by `value_of` an action; without one the value before.
-template <class ValueOf>
-std::uint64_t value_in_common(ValueOf&& value_of, std::size_t actions, std::uint64_t before) {
+std::uint64_t value_in_common(auto&& value_of, std::size_t actions, std::uint64_t before) {
   // A value of more than half of the actions outlasts all others (majority vote: Boyer and Moore, 1991).
   std::uint64_t candidate = before;
   std::size_t votes = 0;

@@ -35,17 +35,13 @@ class RepeatedObservation {
   bool tells_nothing() const { return likelihoods_.size() == 1; }
 
   // Calls `use(probability, weights)` with the weights after each combination.
-  template <class Use>
-  void for_each(const StateWeights& weights, int times, Use&& use) const {
-    follow(0, times, weights, use);
-  }
+  void for_each(const StateWeights& weights, int times, auto&& use) const { follow(0, times, weights, use); }
 
  private:
   static constexpr double most_combinations = 64;
 
   // `weights` have the probability of what was observed so far, in each of its orders.
-  template <class Use>
-  void follow(std::size_t response, int left, const StateWeights& weights, Use& use) const {
+  void follow(std::size_t response, int left, const StateWeights& weights, auto& use) const {
     const bool is_last = response + 1 == likelihoods_.size();
     StateWeights now = weights;
     for (int count = 0; count <= left; ++count) {

@@ -24,10 +24,7 @@ class KeptDistributions final : public NumberSink {
  public:
   using Kept = std::vector<std::pair<NumberKey, DescribedDistribution>>;
   void begin() override { kept_.clear(); }
-  void take(NumberKey key, const Distribution& distribution) override {
-    kept_.emplace_back(key, DescribedDistribution{});
-    distribution.describe(kept_.back().second);
-  }
+  void take(NumberKey key, const Distribution& distribution) override { kept_.emplace_back(key, distribution.described()); }
   const Kept& kept() const { return kept_; }
 
  private:

@@ -174,8 +174,7 @@ class InformationPrice {
     cloud.swap(after);
   }
 
-  template <class Visit>
-  void walk(const State& state, int action, Visit&& visit) {
+  void walk(const State& state, int action, auto&& visit) {
     outcomes_.walk(state, action, [&](const State& next, const Step& step, double probability) {
       if (++work_ > most_priced_steps) throw NotEnumerable{"missions take too long"};
       visit(next, step, probability);

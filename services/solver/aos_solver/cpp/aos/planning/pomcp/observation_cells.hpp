@@ -20,24 +20,20 @@ namespace aos {
 
 class ObservationCells {
  public:
+  struct Number {
+    NumberKey key;
+    double value;
+    double spread;
+  };
   // Draws the numbers that a step reports.
   class Drawn final : public NumberSink {
    public:
     explicit Drawn(Sampler& random) : random_(random) {}
     void take(NumberKey key, const Distribution& distribution) override {
-      keys.push_back(key);
-      values.push_back(distribution.draw(random_));
-      spreads.push_back(distribution.spread());
-    }
-    void clear() {
-      keys.clear();
-      values.clear();
-      spreads.clear();
+      numbers.push_back({key, distribution.draw(random_), distribution.spread()});
     }
 
-    std::vector<NumberKey> keys;
-    std::vector<double> values;
-    std::vector<double> spreads;
+    std::vector<Number> numbers;
 
    private:
     Sampler& random_;
@@ -50,7 +46,7 @@ class ObservationCells {
 
   // The observation that stands for a response and its numbers. `action` is the node of the action before.
   Observation cell(std::uint32_t action, Observation response, const Drawn& drawn) {
-    if (drawn.keys.empty()) return response;
+    if (drawn.numbers.empty()) return response;
     Place& place = places_[mixed(mixed(0, action), response)];
     ++place.visits;
     const Cell* nearest = nullptr;
@@ -66,15 +62,14 @@ class ObservationCells {
     if (!is_new) return nearest->name;
     ++cells_;
     const auto name = mixed(response, place.cells.size() + 1);
-    place.cells.push_back({static_cast<Observation>(name), drawn.keys, drawn.values});
+    place.cells.push_back({static_cast<Observation>(name), drawn.numbers});
     return place.cells.back().name;
   }
 
  private:
   struct Cell {
     Observation name;
-    std::vector<NumberKey> keys;
-    std::vector<double> values;
+    std::vector<Number> numbers;
   };
   struct Place {
     std::uint64_t visits = 0;
@@ -83,10 +78,10 @@ class ObservationCells {
 
   // Infinite if other numbers were reported. From `limit` on the distance is not exact.
   static double squared_distance(const Cell& cell, const Drawn& drawn, double limit) {
-    if (cell.keys != drawn.keys) return std::numeric_limits<double>::infinity();
+    if (!std::ranges::equal(cell.numbers, drawn.numbers, {}, &Number::key, &Number::key)) return std::numeric_limits<double>::infinity();
     double sum = 0;
-    for (std::size_t i = 0; i < cell.values.size() && sum < limit; ++i) {
-      const double distance = (cell.values[i] - drawn.values[i]) / drawn.spreads[i];
+    for (std::size_t i = 0; i < cell.numbers.size() && sum < limit; ++i) {
+      const double distance = (cell.numbers[i].value - drawn.numbers[i].value) / drawn.numbers[i].spread;
       sum += distance * distance;
     }
     return sum;

@@ -26,11 +26,7 @@ class ObservationOddsOfStep {
     }
     odds_.emplace_back(seen, probability);
   }
-  double entropy() const {  // in nats
-    double sum = 0;
-    for (const auto& [seen, probability] : odds_) sum += share_of_entropy(probability);
-    return sum;
-  }
+  double entropy() const { return entropy_of(odds_, &std::pair<Observation, double>::second); }
   const std::vector<std::pair<Observation, double>>& all() const { return odds_; }
 
  private:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,8 +39,6 @@ template <class Model>
 class Pomcp final : public TreePlanner<Model> {
  public:
   using State = typename Model::State;
-  using typename Planner<Model>::Estimates;
-  using typename Planner<Model>::IsOver;
 
   // `values_states`: whether it may find out what states are worth. Else the tree ends in rollouts.
   Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values, GroupMissions<Model>& missions, bool values_states = true)
@@ -54,7 +51,7 @@ class Pomcp final : public TreePlanner<Model> {
     get_ready(question, random);
     return true;
   }
-  void ponder(int action, const Question<Model>& question, Sampler& random, const IsOver& is_over) override {
+  void ponder(int action, const Question<Model>& question, Sampler& random, FunctionRef<bool()> is_over) override {
     get_ready(question, random);
     search_below(action, question, random, is_over);
   }
@@ -194,16 +191,15 @@ class Pomcp final : public TreePlanner<Model> {
     const Operations step_cost = has_table_ ? cost_by_table : cost_of_code() + (rolls_out() ? 0 : cost_of_value);
     const Operations worth_cost = source_ == ValueSource::listed ? cost_of_listed_worth : step_cost;
     for (const auto& tree : threads_.trees()) {
-      tree->begin(horizon, prior_, source_ == ValueSource::wide && switches::first_state, barred, step_cost, worth_cost);
-      tree->pay_for_information(price_of_nat_);
+      tree->begin(horizon, prior_, source_ == ValueSource::wide && switches::first_state, barred, step_cost, worth_cost, price_of_nat_);
     }
-    threads_.count_by(rolls_out() ? 0 : Budget::operations_of_simulation(horizon));
+    const Operations each = rolls_out() ? 0 : Budget::operations_of_simulation(horizon);
     if (has_table_) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
-      return threads_.simulate(start_state, budget, start, random, first, is_over);
+      return threads_.simulate(start_state, budget, start, random, first, is_over, each);
     }
     const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), state_values_}; };
-    return threads_.simulate(start_state, budget, start, random, first, is_over);
+    return threads_.simulate(start_state, budget, start, random, first, is_over, each);
   }
 
   // What states are worth, as well as it can be known; null if nothing is known of it.
@@ -240,8 +236,7 @@ class Pomcp final : public TreePlanner<Model> {
   }
 
   // The mean value of the running part of a belief.
-  template <class Worth>
-  static double mean_value(const Belief<Model>& belief, Worth&& worth) {
+  static double mean_value(const Belief<Model>& belief, auto&& worth) {
     double sum = 0;
     double running = 0;
     for (const auto& [state, weight] : belief.particles()) {

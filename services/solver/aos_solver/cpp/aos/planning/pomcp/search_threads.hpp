@@ -2,7 +2,6 @@
 // the same result however the threads are scheduled. The values of the trees are merged by visits.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -36,15 +35,11 @@ class SearchThreads {
   // Of the last search, by thread.
   const std::vector<std::uint64_t>& simulations() const { return simulations_; }
 
-  // How a budget in simulations is counted: by the work in the tree, with so many operations to a simulation, or by
-  // descents if there are none, since each of these has a rollout.
-  void count_by(Operations operations_of_simulation) { each_ = operations_of_simulation; }
-
   // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or
-  // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch.
-  template <class StartState>
-  std::uint64_t simulate(const StartState& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
-                         int first, FunctionRef<bool()> is_over) {
+  // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch. A budget in simulations is counted by the work
+  // in the tree, with `each` operations to a simulation, or by descents if there are none, since each of these has a rollout.
+  std::uint64_t simulate(const auto& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
+                         int first, FunctionRef<bool()> is_over, Operations each) {
     std::vector<Work> works(trees_.size());
     {
       std::vector<std::jthread> others;
@@ -53,10 +48,10 @@ class SearchThreads {
         others.emplace_back([&, i, seed] {
           blame::use_line(i);
           Sampler own{seed};
-          works[i] = work(*trees_[i], start_state, share(budget, i), each_, start, own, first, is_over);
+          works[i] = work(*trees_[i], start_state, share(budget, i), each, start, own, first, is_over);
         });
       }
-      works[0] = work(*trees_[0], start_state, share(budget, 0), each_, start, random, first, is_over);
+      works[0] = work(*trees_[0], start_state, share(budget, 0), each, start, random, first, is_over);
     }
     std::uint64_t simulations = 0;
     simulations_.clear();
@@ -85,8 +80,7 @@ class SearchThreads {
     return budget;
   }
 
-  template <class StartState>
-  static Work work(Tree& tree, const StartState& start_state, Budget budget, Operations each,
+  static Work work(Tree& tree, const auto& start_state, Budget budget, Operations each,
                    PlanningClock::time_point start, Sampler& random, int first, FunctionRef<bool()> is_over) {
     constexpr std::uint64_t between_looks = 64;
     constexpr Operations start_cost = 30;
@@ -113,7 +107,7 @@ class SearchThreads {
 
   static bool is_enough(const Tree& tree, double seconds, PlanningClock::time_point start, std::uint64_t simulations,
                         int first) {
-    const double spent = std::chrono::duration<double>(PlanningClock::now() - start).count();
+    const double spent = seconds_since(start);
     if (spent >= seconds) return true;
     if (first >= 0 || spent < min_time_share * seconds) return false;
     return tree.is_decided(simulations * (seconds / spent - 1));
@@ -121,7 +115,6 @@ class SearchThreads {
 
   std::vector<std::unique_ptr<Tree>> trees_;
   std::vector<std::uint64_t> simulations_;
-  Operations each_ = 0;
 };
 
 }

@@ -101,7 +101,7 @@ class SearchTree {
   [[gnu::always_inline]] std::uint32_t find_child(std::uint32_t action, Observation observation) const {
     const ActionNode& parent = actions_[action];
     if (parent.children > max_listed_children) {
-      return index_.find(hash_of(action, observation), [&](std::uint32_t child) {
+      return index_.find(mixed(action, observation), [&](std::uint32_t child) {
         return histories_[child].parent == action && histories_[child].observation == observation;
       });
     }
@@ -164,12 +164,9 @@ class SearchTree {
     }
   }
 
-  static std::uint64_t hash_of(std::uint32_t action, Observation observation) {
-    return mixed(action, observation);
-  }
   void add_to_index(std::uint32_t action, std::uint32_t child) {
     const auto is_new = [](std::uint32_t) { return false; };
-    index_.find_or_add(hash_of(action, histories_[child].observation), child, is_new);
+    index_.find_or_add(mixed(action, histories_[child].observation), child, is_new);
   }
 
   std::uint32_t action_count_;

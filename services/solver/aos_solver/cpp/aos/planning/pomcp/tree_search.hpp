@@ -41,11 +41,12 @@ class TreeSearch {
   // Begins a decision. `prior` is how much less each action is worth than the best one; empty if nothing is
   // known before the search. With `first_state_tells`, the first state of a history tells what its actions are worth.
   // The `barred` actions are not tried at the root. A step of the model costs `step_cost`, and
-  // what an action is worth in a state `worth_cost`.
+  // what an action is worth in a state `worth_cost`. At a `price` for each nat, actions count by what they tell, too.
   void begin(int horizon, const std::vector<double>& prior, bool first_state_tells, const BarredActions& barred,
-             Operations step_cost, Operations worth_cost) {
+             Operations step_cost, Operations worth_cost, double price) {
     step_cost_ = step_cost + (reports_numbers_ ? per_numbers : 0);
     worth_cost_ = worth_cost;
+    price_ = price;
     horizon_ = horizon;
     barred_ = barred;
     prior_ = prior;
@@ -53,9 +54,6 @@ class TreeSearch {
     record_ = RootRecord{action_count()};
     work_ = 0;
   }
-
-  // What a nat of information is worth in this decision, at which actions count by what they tell; 0: nothing.
-  void pay_for_information(double price) { price_ = price; }
 
   // The work of all simulations since `begin`, without that of rollouts.
   Operations work() const { return work_; }
@@ -282,7 +280,7 @@ class TreeSearch {
   template <class SimulatedState>
   [[gnu::always_inline]] Step step_of(SimulatedState& state, int action, Sampler& random, std::optional<ObservationCells::Drawn>& drawn) const {
     if (!reports_numbers_) return state.step(action, random);
-    drawn->clear();
+    drawn->numbers.clear();
     const ReportingTo reporting{random, &*drawn};
     return state.step(action, random);
   }

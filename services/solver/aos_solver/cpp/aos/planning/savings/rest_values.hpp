@@ -126,8 +126,7 @@ class RestValues {
 
   // What a policy returns in so many steps, given its actions and the draws of its steps, and in fewer than the mission has
   // with what the state after them is worth.
-  template <class Choice, class Luck>
-  double returned_in(std::size_t steps, State state, Choice&& choice, Luck&& luck) const {
+  double returned_in(std::size_t steps, State state, auto&& choice, auto&& luck) const {
     double sum = 0;
     double discount = 1;
     for (std::size_t i = 0; i < steps && Model::ending(state) == Ending::running; ++i, discount *= Model::discount) {

@@ -7,14 +7,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
+#include <span>
 #include <vector>
 
-#include "aos/base/stable_order.hpp"
 #include "aos/draws/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/options/option_search.hpp"
 #include "aos/planning/options/sampled_belief.hpp"
+#include "aos/planning/same_observation.hpp"
 #include "aos/planning/savings/rest_values.hpp"
 #include "aos/planning/savings/saving_search.hpp"
 
@@ -51,30 +51,30 @@ class SavingLookahead {
     told_.clear();
     incomes_.resize(states * (ways_.size() + 1));
     for (std::size_t k = 0; k < states; ++k) take(action, k);
-    sort_stably(told_, [](const auto& one, const auto& other) { return one.first < other.first; });
+    sort_by_observation(told_, 0, told_.size());
     double sum = 0;
     rare_.clear();
-    for (auto start = told_.begin(); start != told_.end();) {
-      auto end = start;
-      while (end != told_.end() && end->first == start->first) ++end;
-      group_.clear();
-      for (auto entry = start; entry != end; ++entry) group_.push_back(entry->second);
-      if (group_.size() < smallest_group) rare_.insert(rare_.end(), group_.begin(), group_.end());
-      else sum += of_group(group_);
-      start = end;
-    }
+    for_each_history(told_, [&](std::size_t first, std::size_t last) {
+      const std::span<const Told> alike{&told_[first], last - first};
+      if (alike.size() < smallest_group) rare_.insert(rare_.end(), alike.begin(), alike.end());
+      else sum += of_group(alike);
+    });
     return sum + of_group(rare_);
   }
 
  private:
   static constexpr std::size_t smallest_group = 8;
+  struct Told {
+    Observation observation;
+    std::size_t state;
+  };
 
   // Takes the action, and then each way or nothing, from a state.
   void take(int action, std::size_t k) {
     State next = belief_->states()[k];
     Sampler random = lucks_[k].of(0);
     const Step step = Model::step(next, action, random);
-    told_.emplace_back(step.observation, k);
+    told_.push_back({step.observation, k});
     double* const incomes = &incomes_[k * (ways_.size() + 1)];
     for (std::size_t i = 0; i <= ways_.size(); ++i) {
       const Option& way = i < ways_.size() ? ways_[i] : nothing_;
@@ -84,7 +84,7 @@ class SavingLookahead {
   }
 
   // The income of a group, times its weight.
-  double of_group(const std::vector<std::size_t>& group) {
+  double of_group(std::span<const Told> group) {
     double sum = 0;
     for (std::size_t half = 0; half < 2 && !group.empty(); ++half) {
       // One state alone knows nothing: it goes by itself.
@@ -92,11 +92,11 @@ class SavingLookahead {
       best_.assign(ways_.size() + 1, 0);
       for (std::size_t j = 0; j < group.size(); ++j) {
         if (is_split && j % 2 != half) continue;
-        for (std::size_t i = 0; i < best_.size(); ++i) best_[i] += belief_->weights()[group[j]] * incomes_[group[j] * best_.size() + i];
+        for (std::size_t i = 0; i < best_.size(); ++i) best_[i] += belief_->weights()[group[j].state] * incomes_[group[j].state * best_.size() + i];
       }
       const auto best = static_cast<std::size_t>(std::ranges::max_element(best_) - best_.begin());
       for (std::size_t j = 0; j < group.size(); ++j) {
-        if (!is_split || j % 2 != half) sum += (is_split ? 1 : 0.5) * belief_->weights()[group[j]] * incomes_[group[j] * best_.size() + best];
+        if (!is_split || j % 2 != half) sum += (is_split ? 1 : 0.5) * belief_->weights()[group[j].state] * incomes_[group[j].state * best_.size() + best];
       }
     }
     return sum;
@@ -109,9 +109,8 @@ class SavingLookahead {
   std::vector<StepLuck> lucks_;       // by state
   std::vector<Rest<Model>> rests_;    // by state
   std::vector<double> incomes_;       // [state * (ways + 1) + way], of the action at hand
-  std::vector<std::pair<Observation, std::size_t>> told_;
-  std::vector<std::size_t> group_;
-  std::vector<std::size_t> rare_;
+  std::vector<Told> told_;
+  std::vector<Told> rare_;
   std::vector<double> best_;
 };
 

@@ -87,7 +87,7 @@ class SavingPolicy {
 
   // The steps of the model that `prepare` took.
   double taken() const { return taken_; }
-  const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  const Estimates& estimates() const { return estimates_; }
   // What the belief of the last decision is worth to a robot that does not plan.
   double resting() const { return resting_; }
   // How much more missions return that see the state.
@@ -168,9 +168,7 @@ class SavingPolicy {
       shares[Model::step(state, action, random).observation] += belief_.weights()[k];
     }
     steps -= belief_.size();
-    double entropy = 0;
-    for (const auto& [observation, share] : shares) entropy += share_of_entropy(share);
-    return entropy;
+    return entropy_of(shares, [](const auto& entry) { return entry.second; });
   }
 
   void settle(int action, double value) {
@@ -191,7 +189,7 @@ class SavingPolicy {
   double taken_ = 0;  // steps of the model
   double resting_ = 0;
   std::vector<Found> found_;
-  std::vector<ActionEstimate> estimates_;
+  Estimates estimates_;
 };
 
 }

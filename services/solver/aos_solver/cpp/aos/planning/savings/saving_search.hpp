@@ -112,7 +112,7 @@ class SavingSearch {
     cells_after_.resize(actions * cells_.size());
     after_.resize(actions, start);
     cells_.write(start, cells_before_.data());
-    seen_.note(cells_before_.data(), cells_.size(), width, [](std::size_t) { return true; });
+    note_cells(seen_, cells_before_.data(), cells_.size(), width, [](std::size_t) { return true; });
     for (std::uint32_t number = 0; number < nodes_.size() && limit > 0 && nodes_[number].depth < longest; ++number) {
       const std::uint32_t depth = nodes_[number].depth;
       const double discount = std::pow(Model::discount, depth);
@@ -167,8 +167,8 @@ class SavingSearch {
   }
   // Notes what an action changes. Returns whether anything of it is new.
   bool is_new(std::size_t action, int width) {
-    return seen_.note(&cells_after_[action * cells_.size()], cells_.size(), width,
-                      [&](std::size_t i) { return is_own_[action * cells_.size() + i] != 0; });
+    const std::size_t first = action * cells_.size();
+    return note_cells(seen_, &cells_after_[first], cells_.size(), width, [&](std::size_t i) { return is_own_[first + i] != 0; });
   }
 
   const LeafCells<Model>& cells_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -24,8 +23,6 @@ namespace aos {
 template <class Model>
 class SavingsPlanner final : public Planner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-
   SavingsPlanner(const StateSpace<Model>& space, const OptionsPlanner<Model>& options, Pomcp<Model>& rollouts, GroupMissions<Model>& missions)
       : Planner<Model>(space), options_(options), rollouts_(rollouts), missions_(missions) {}
 

@@ -27,10 +27,13 @@ class SeekPlaces {
   using State = typename Model::State;
   static constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
+  struct Move {
+    std::uint32_t next = nowhere;  // nowhere for what is no move
+    double paid = 0;               // on average
+  };
   struct Place {
     std::vector<State> states;
-    std::vector<std::uint32_t> next;  // by action; nowhere for what is no move
-    std::vector<double> paid;         // by action, on average
+    std::vector<Move> moves{};  // by action
   };
   struct Test {
     std::uint32_t place;
@@ -46,12 +49,13 @@ class SeekPlaces {
     int action;
     double reward;
   };
-  struct Ways {  // from a place
-    std::vector<std::uint32_t> distance;
-    std::vector<std::uint32_t> before;
-    std::vector<int> by;
-    std::vector<double> paid;
+  struct Arrival {  // at a place, on the way from another one
+    std::uint32_t distance = nowhere;
+    std::uint32_t before = nowhere;
+    int by = -1;
+    double paid = 0;
   };
+  using Ways = std::vector<Arrival>;  // by place
 
   // Finds places from the states of a belief on, breadth first, all states in step and under the same luck. Takes at most
   // half of the steps.
@@ -63,13 +67,12 @@ class SeekPlaces {
     after_.clear();
     std::unordered_map<std::uint64_t, std::uint32_t> known;
     const std::size_t actions = Model::action_count();
-    places_.push_back({belief.states(), {}, {}});
+    places_.push_back({belief.states()});
     known.emplace(running_down.place_of(places_[0].states), 0);
     std::vector<StepReports> reports(belief.size());
     const double least = steps / 2;
     for (std::uint32_t number = 0; number < places_.size() && steps > least; ++number) {
-      places_[number].next.assign(actions, nowhere);
-      places_[number].paid.assign(actions, 0);
+      places_[number].moves.resize(actions);
       for (std::size_t a = 0; a < actions; ++a) {
         if (barred.contains(a)) continue;
         std::vector<State> next = places_[number].states;
@@ -83,7 +86,7 @@ class SeekPlaces {
           failing += Model::ending(next[k]) == Ending::failure ? belief.weights()[k] : 0;
           tells = tells || !reports[k].is_like(reports[0]);
         }
-        places_[number].paid[a] = reward;
+        places_[number].moves[a].paid = reward;
         if (running < 0.5) {
           if (failing < 0.5) ends_.push_back({number, static_cast<int>(a), reward});
           continue;
@@ -97,14 +100,11 @@ class SeekPlaces {
           known.erase(entry);
           continue;
         }
-        places_[number].next[a] = entry->second;
-        if (is_new) places_.push_back({std::move(next), {}, {}});
+        places_[number].moves[a].next = entry->second;
+        if (is_new) places_.push_back({std::move(next)});
       }
     }
-    for (Place& place : places_) {
-      place.next.resize(actions, nowhere);
-      place.paid.resize(actions, 0);
-    }
+    for (Place& place : places_) place.moves.resize(actions);
   }
 
   const std::vector<Place>& places() const { return places_; }
@@ -117,21 +117,16 @@ class SeekPlaces {
     const auto [entry, is_new] = ways_.try_emplace(start);
     Ways& ways = entry->second;
     if (!is_new) return ways;
-    ways.distance.assign(places_.size(), nowhere);
-    ways.before.assign(places_.size(), nowhere);
-    ways.by.assign(places_.size(), -1);
-    ways.paid.assign(places_.size(), 0);
-    ways.distance[start] = 0;
+    ways.resize(places_.size());
+    ways[start].distance = 0;
     std::vector<std::uint32_t> open{start};
     for (std::size_t i = 0; i < open.size(); ++i) {
-      const Place& place = places_[open[i]];
-      for (std::size_t a = 0; a < place.next.size(); ++a) {
-        const std::uint32_t to = place.next[a];
-        if (to == nowhere || ways.distance[to] != nowhere) continue;
-        ways.distance[to] = ways.distance[open[i]] + 1;
-        ways.before[to] = open[i];
-        ways.by[to] = a;
-        ways.paid[to] = ways.paid[open[i]] + std::pow(Model::discount, ways.distance[open[i]]) * place.paid[a];
+      const std::vector<Move>& moves = places_[open[i]].moves;
+      for (std::size_t a = 0; a < moves.size(); ++a) {
+        const std::uint32_t to = moves[a].next;
+        if (to == nowhere || ways[to].distance != nowhere) continue;
+        const Arrival& here = ways[open[i]];
+        ways[to] = {here.distance + 1, open[i], static_cast<int>(a), here.paid + std::pow(Model::discount, here.distance) * moves[a].paid};
         open.push_back(to);
       }
     }
@@ -140,7 +135,7 @@ class SeekPlaces {
   std::vector<int> way(std::uint32_t from, std::uint32_t to, int last) {
     const Ways& ways = ways_from(from);
     std::vector<int> actions{last};
-    for (; to != from; to = ways.before[to]) actions.push_back(ways.by[to]);
+    for (; to != from; to = ways[to].before) actions.push_back(ways[to].by);
     std::ranges::reverse(actions);
     return actions;
   }

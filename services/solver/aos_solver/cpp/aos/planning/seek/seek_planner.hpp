@@ -2,7 +2,6 @@
 // (seek_policy.hpp). Where to seek no longer pays, POMCP goes on: it tells less than it returns, and may find the thing.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -23,8 +22,6 @@ namespace aos {
 template <class Model>
 class SeekPlanner final : public Planner<Model> {
  public:
-  using typename Planner<Model>::Estimates;
-
   SeekPlanner(const StateSpace<Model>& space, Pomcp<Model>& pomcp) : Planner<Model>(space), pomcp_(pomcp) {}
 
   const char* name() const override { return seeks_ ? "seek" : pomcp_.name(); }
@@ -55,7 +52,6 @@ class SeekPlanner final : public Planner<Model> {
   }
 
   Estimates estimates(const Belief<Model>& /*belief*/) const override { return estimates_; }
-  Estimates values(const Belief<Model>& /*belief*/, Estimates estimates, int /*choice*/) const override { return estimates; }
   void start_over() override {
     policy_.start_over();
     has_sought_ = false;

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -96,7 +97,7 @@ class SeekPolicy {
   Ended ended(std::uint32_t place, const State& start, Sampler random) {
     Ended best;
     for (const End& end : places_.ends()) {
-      if (places_.ways_from(place).distance[end.place] == Places::nowhere) continue;
+      if (places_.ways_from(place)[end.place].distance == Places::nowhere) continue;
       State state = start;
       const std::vector<int> actions = places_.way(place, end.place, end.action);
       const double returned = taken(state, actions, random);
@@ -157,9 +158,7 @@ class SeekPolicy {
         for (std::size_t o = 0; o < test.outcomes; ++o) test.odds[class_of_[k] * test.outcomes + o] += share * test.own[k * test.outcomes + o];
       }
       for (std::size_t z = 0; z < classes_; ++z) {
-        double doubt = 0;
-        for (std::size_t o = 0; o < test.outcomes; ++o) doubt += share_of_entropy(test.odds[z * test.outcomes + o]);
-        test.doubts.push_back(doubt);
+        test.doubts.push_back(entropy_of(std::span{&test.odds[z * test.outcomes], test.outcomes}));
       }
     }
   }
@@ -183,12 +182,12 @@ class SeekPolicy {
     const auto& ways = places_.ways_from(place);
     ranked_.clear();
     for (const Test& test : places_.tests()) {
-      const std::uint32_t distance = ways.distance[test.place];
+      const auto& [distance, before, by, paid] = ways[test.place];
       if (distance == Places::nowhere) continue;
       const double told = information(test, weights);
       if (told < least_information) continue;
       const double later = std::pow(Model::discount, distance);
-      const double cost = (1 - later * Model::discount) * stake_ - ways.paid[test.place] - later * test.reward;
+      const double cost = (1 - later * Model::discount) * stake_ - paid - later * test.reward;
       ranked_.emplace_back(told / std::max(cost, 1e-9), &test);
     }
     steps_ -= static_cast<double>(places_.tests().size() * classes_) / 20;
@@ -199,8 +198,8 @@ class SeekPolicy {
       const Test& test = *ranked_[i].second;
       State then = state;
       taken(then, places_.way(place, test.place, test.action), random);
-      if (places_.ends().empty() ? Model::ending(then) != Ending::failure
-                        : Model::ending(then) == Ending::running ? !ended(test.place, then, random).fails : Model::ending(then) != Ending::failure) return &test;
+      const bool is_asked = Model::ending(then) == Ending::running && !places_.ends().empty();
+      if (is_asked ? !ended(test.place, then, random).fails : Model::ending(then) != Ending::failure) return &test;
     }
     return nullptr;
   }

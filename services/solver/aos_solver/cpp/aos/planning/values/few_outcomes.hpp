@@ -1,7 +1,6 @@
 // All outcomes of an action in a state, where they are few.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "aos/draws/enumerator.hpp"
@@ -21,16 +20,14 @@ class FewOutcomes {
 
   // Calls `visit(next state, step, probability)` for each outcome. False if the action is left out, as it is once it has had too
   // many outcomes, or a continuous draw that does not count by its mean; some outcomes may have been visited then.
-  template <class Visit>
-  bool visit_each(const typename Model::State& state, int action, Visit&& visit) {
+  bool visit_each(const typename Model::State& state, int action, auto&& visit) {
     if (is_left_out_[action]) return false;
     const bool are_few = comes_to_an_end([&] { walk(state, action, visit); });
     if (!are_few) leave_out(action);
     return are_few;
   }
   // The same, and throws what a step throws, or NotEnumerable.
-  template <class Visit>
-  void walk(const typename Model::State& state, int action, Visit&& visit) {
+  void walk(const typename Model::State& state, int action, auto&& visit) {
     Step step;
     const auto run = [&](Enumerator& path) {
       next_ = state;

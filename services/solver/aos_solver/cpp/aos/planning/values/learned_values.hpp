@@ -63,15 +63,9 @@ class LearnedValues final : public StateValues<Model> {
   void advantages(const State& state, double* worths, Sampler& random) const override {
     const double now = value(state, horizon_);
     const Sampler luck{random.bits()};
-    for (int a = 0; a < Model::action_count(); ++a) worths[a] = action_value(state, a, horizon_, luck) - now;
+    for (int a = 0; a < Model::action_count(); ++a) worths[a] = this->stepped_value(state, a, horizon_, luck) - now;
   }
 
-  // The value of an action with `left` decisions to go, under given luck.
-  double action_value(State state, int action, int left, Sampler luck) const {
-    const Step step = Model::step(state, action, luck);
-    const bool goes_on = Model::ending(state) == Ending::running;
-    return step.reward + (goes_on ? Model::discount * value(state, left - 1) : 0);
-  }
 
  private:
   static constexpr std::size_t walks_between_looks = 64;  // at the progress
@@ -141,10 +135,9 @@ class LearnedValues final : public StateValues<Model> {
 
   int best_action(const State& state, int left, Sampler& random) const {
     const Sampler luck{random.bits()};
-    return best_by([&](int action) { return action_value(state, action, left, luck); }, random);
+    return best_by([&](int action) { return this->stepped_value(state, action, left, luck); }, random);
   }
-  template <class Worth>
-  static int best_by(Worth&& worth_of, Sampler& random) {
+  static int best_by(auto&& worth_of, Sampler& random) {
     const bool compares_all = Model::action_count() <= max_compared_actions;
     int best = 0;
     double most = -std::numeric_limits<double>::infinity();
@@ -238,8 +231,7 @@ class LearnedValues final : public StateValues<Model> {
   }
 
   // The discounted return of one mission whose policy observes the state.
-  template <class Choice>
-  double earned_by(State state, Choice&& choice, Sampler& random) const {
+  double earned_by(State state, auto&& choice, Sampler& random) const {
     double earned = 0;
     double discount = 1;
     for (int left = horizon_; left > 0 && Model::ending(state) == Ending::running; --left) {

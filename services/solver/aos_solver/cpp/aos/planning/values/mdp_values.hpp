@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "aos/base/progress.hpp"
+#include "aos/base/statistics.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/listed/state_space.hpp"
 #include "aos/planning/values/state_values.hpp"
@@ -44,7 +45,6 @@ class MdpValues final : public StateValues<Model> {
   // Whether the last `prepare` was for the states that are listed now, and for this horizon.
   bool knows(int horizon) const { return values_of_ == space_.numbering() && horizon == horizon_ && is_prepared_; }
 
-  std::size_t states() const { return space_.size(); }
   const StateSpace<Model>& space() const { return space_; }
 
   // The number of a state; `no_state` if the state is not listed. Such a state has the highest value.
@@ -66,9 +66,7 @@ class MdpValues final : public StateValues<Model> {
 
   void advantages(const State& state, double* worths, Sampler& /*random*/) const override { advantages(number_of(state), worths); }
   void advantages(std::uint32_t number, double* worths) const {
-    for (std::size_t action = 0; action < actions(); ++action) {
-      worths[action] = advantage(number, action, horizon_);
-    }
+    for (std::size_t action = 0; action < actions(); ++action) worths[action] = advantage(number, action, horizon_);
   }
 
   // The fully observable value of an action less that of the best action; never above 0.
@@ -138,11 +136,9 @@ class MdpValues final : public StateValues<Model> {
   }
   // How far rounding may move the mean value of an action, at most.
   double rounding() const {
-    double largest = 0;
-    for (const double reward : rows().rewards) largest = std::max(largest, std::abs(reward));
     const double decisions = horizon_;
     const double once = point_based::rounding_of(point_based::longest_row(rows().outcomes) + space_.size());
-    return 2 * once * decisions * decisions * largest;
+    return 2 * once * decisions * decisions * largest_size(rows().rewards);
   }
 
   double value_of(std::size_t row, const std::vector<double>& later) const { return backed_up(rows(), row, later); }

@@ -37,9 +37,7 @@ std::vector<double> learned_prior(const LearnedValues<Model>& values, const Beli
     const typename Model::State& state = belief.sample(random);
     const Sampler luck{random.bits()};
     if (Model::ending(state) != Ending::running) continue;
-    for (int a = 0; a < Model::action_count(); ++a) {
-      worths[a] += values.action_value(state, a, horizon, luck) / states;
-    }
+    for (int a = 0; a < Model::action_count(); ++a) worths[a] += values.stepped_value(state, a, horizon, luck) / states;
   }
   return below_best(std::move(worths));
 }
@@ -53,8 +51,7 @@ std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpac
 
 // Draws estimates towards a prior in their unit. `counts(estimate)` tells which actions were searched for
 // long enough; the others get the value of the prior.
-template <class Counts>
-void draw_towards(const std::vector<double>& prior, std::vector<ActionEstimate>& estimates, Counts&& counts) {
+void draw_towards(const std::vector<double>& prior, Estimates& estimates, auto&& counts) {
   double sum = 0;
   double count = 0;
   for (std::size_t a = 0; a < prior.size(); ++a) {

@@ -1,7 +1,6 @@
 // Actions as a rollout takes them (rollout.hpp), one by one: those of a random walk repeat, as those of some rollouts do.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "aos/draws/random.hpp"

@@ -10,7 +10,6 @@
 #include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/draws/random.hpp"
-#include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/leaf_cells.hpp"

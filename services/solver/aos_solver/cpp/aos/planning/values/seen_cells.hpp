@@ -12,10 +12,9 @@
 
 namespace aos {
 
-// Notes the values of those of `count` variables that are looked at, or with width 2 their pairs with all others. Returns
-// whether any is new. `insert` notes a value or pair, and says whether it is new.
-template <class IsLookedAt, class Insert>
-bool note_cells(const std::uint64_t* cells, std::size_t count, int width, IsLookedAt&& is_looked_at, Insert&& insert) {
+// Notes in `seen` the values of those of `count` variables that are looked at, or with width 2 their pairs with all others.
+// Returns whether any is new.
+bool note_cells(auto& seen, const std::uint64_t* cells, std::size_t count, int width, auto&& is_looked_at) {
   thread_local std::vector<std::uint64_t> atoms;
   atoms.clear();
   bool is_new = false;
@@ -23,13 +22,13 @@ bool note_cells(const std::uint64_t* cells, std::size_t count, int width, IsLook
     if (!is_looked_at(variable)) continue;
     const auto atom_of = [&](std::size_t each) { return mixed(mixed(0, each), cells[each]); };
     if (width == 1) {
-      is_new = insert(atom_of(variable)) || is_new;
+      is_new = seen.insert(atom_of(variable)) || is_new;
       continue;
     }
     for (std::size_t each = atoms.size(); each < count; ++each) atoms.push_back(atom_of(each));
     const std::uint64_t atom = atoms[variable];
     for (std::size_t other = 0; other < count; ++other) {
-      if (other != variable) is_new = insert(mixed(std::min(atom, atoms[other]), std::max(atom, atoms[other]))) || is_new;
+      if (other != variable) is_new = seen.insert(mixed(std::min(atom, atoms[other]), std::max(atom, atoms[other]))) || is_new;
     }
   }
   return is_new;
@@ -39,20 +38,17 @@ bool note_cells(const std::uint64_t* cells, std::size_t count, int width, IsLook
 class SeenCells {
  public:
   void clear() { *this = {}; }
-  // See note_cells.
-  template <class IsLookedAt>
-  bool note(const std::uint64_t* cells, std::size_t count, int width, IsLookedAt&& is_looked_at) {
-    return note_cells(cells, count, width, is_looked_at, [this](std::uint64_t value) { return insert(std::max<std::uint64_t>(value, 1)); });
-  }
-
- private:
+  // Notes a value. Returns whether it is new.
   bool insert(std::uint64_t value) {
+    value = std::max<std::uint64_t>(value, 1);
     std::uint64_t& slot = slot_of(value);
     if (slot == value) return false;
     slot = value;
     if (2 * ++size_ > slots_.size()) grow();
     return true;
   }
+
+ private:
   std::uint64_t& slot_of(std::uint64_t value) {
     std::size_t slot = value & (slots_.size() - 1);
     while (slots_[slot] != 0 && slots_[slot] != value) slot = (slot + 1) & (slots_.size() - 1);
@@ -72,15 +68,10 @@ class SeenCells {
 // The same in a table of bits, which is faster. Of two values with one bit the second counts as seen.
 class SeenBits {
  public:
-  template <class IsLookedAt>
-  bool note(const std::uint64_t* cells, std::size_t count, int width, IsLookedAt&& is_looked_at) {
-    return note_cells(cells, count, width, is_looked_at, [this](std::uint64_t value) {
-      std::uint64_t& word = words_[value / 64 % words_.size()];
-      const std::uint64_t bit = std::uint64_t{1} << value % 64;
-      const bool is_new = (word & bit) == 0;
-      word |= bit;
-      return is_new;
-    });
+  bool insert(std::uint64_t value) {
+    std::uint64_t& word = words_[value / 64 % words_.size()];
+    const std::uint64_t bit = std::uint64_t{1} << value % 64;
+    return (std::exchange(word, word | bit) & bit) == 0;
   }
 
  private:

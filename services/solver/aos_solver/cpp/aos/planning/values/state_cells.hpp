@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "aos/model/reflection.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/values/cell_tables.hpp"
 

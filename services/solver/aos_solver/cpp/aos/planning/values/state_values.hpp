@@ -14,6 +14,12 @@ class StateValues {
   // Writes to `worths` what each action is worth beyond the state's value, with many decisions to go.
   virtual void advantages(const typename Model::State& state, double* worths, Sampler& random) const = 0;
 
+  // The value of an action with `left` decisions to go, under given luck.
+  double stepped_value(typename Model::State state, int action, int left, Sampler luck) const {
+    const Step step = Model::step(state, action, luck);
+    return step.reward + (Model::ending(state) == Ending::running ? Model::discount * value(state, left - 1) : 0);
+  }
+
  protected:
   ~StateValues() = default;
 };

@@ -67,18 +67,8 @@ class WideValues final : public StateValues<Model> {
   void advantages(const State& state, double* worths, Sampler& random) const override {
     const double now = value(state, 1);
     const Sampler luck{random.bits()};
-    int stepped = 0;
     for (int action = 0; action < Model::action_count(); ++action) {
-      if (is_like_the_one_before(action)) {
-        worths[action] = worths[stepped];
-        continue;
-      }
-      stepped = action;
-      State next = state;
-      Sampler draws = luck;
-      const Step step = Model::step(next, action, draws);
-      const bool goes_on = Model::ending(next) == Ending::running;
-      worths[action] = step.reward + (goes_on ? Model::discount * value(next, 1) : 0) - now;
+      worths[action] = is_like_the_one_before(action) ? worths[action - 1] : this->stepped_value(state, action, 2, luck) - now;
     }
   }
 
