@@ -202,6 +202,18 @@ def test_a_mistake_is_told_at_its_place(tmp_path, name, change, finding):
 @pytest.mark.parametrize(
     ("before", "after", "told"),
     [
+        ("home rock", "home, rock", "8:12 home, has a comma. Names stand between blanks"),
+        ('fullyObs="true"', 'fullyObs="yes"', "7:1 fullyObs is true or false, not yes. "),
+        ('vnamePrev="worth_0" ', "", "10:1 StateVar needs vnamePrev and vnameCurr. "),
+        ("persistent", "persistant", "36:18 persistant is no type of SubDAG. Did you mean `persistent`?"),
+        (' idref="slip"', "", "39:18 a template needs idref. "),
+        (">0.8<", ">0,8<", "50:18 Terminal needs a number. A decimal is written with a point"),
+        (">identity<", ">identiy<", "58:65 identiy is not a number. Did you mean `identity`?"),
+        (
+            "</Func>",
+            "</Fun>",
+            "78:3 this is not well-formed XML: mismatched tag. <Func> of line 71 is open here",
+        ),
         ("states:", "state:", "4:1 state is no keyword. Did you mean `states`?"),
         ("T: *", "T *", "9:1 T begins a line without a colon. Write `T:`"),
         ("T: listen", "T: listen:", "11:1 a colon before identity. Write `T: listen identity`"),
@@ -211,9 +223,12 @@ def test_a_mistake_is_told_at_its_place(tmp_path, name, change, finding):
     ],
 )
 def test_one_mistake_of_a_whole_statement_is_told_once(tmp_path, before, after, told):
-    (tmp_path / "a.pomdp").write_text(replaced(before, after)((PROBLEMS / "tiger.pomdp").read_text()))
+    texts = [(PROBLEMS / name).read_text() for name in ("tiger.pomdp", "rover.pomdpx")]
+    (text,) = [text for text in texts if before in text]
+    file = tmp_path / f"a.pomdp{'x' * ('<' in text)}"
+    file.write_text(replaced(before, after)(text))
     with pytest.raises(DocumentError) as caught:
-        read_problem(tmp_path / "a.pomdp")
+        read_problem(file)
     (only,) = caught.value.diagnostics
     assert f"{only.span.line}:{only.span.column} {only.message}. {only.hint}" == told
 

@@ -7,7 +7,7 @@ import numpy as np
 from aos_lab.formats.pomdp_rewards import RewardRules
 from aos_lab.formats.pomdp_statements import Statement, statements_of
 from aos_lab.formats.pomdp_tables import Distribution, PomdpTables, explicit_model
-from aos_lab.formats.problem_text import ProblemFindings, Word
+from aos_lab.formats.problem_text import ProblemFindings, Word, advice_on_number
 from aos_protocol.errors import IntractableError
 from aos_protocol.spelling import did_you_mean
 from aos_solver.offline.explicit_model import ExplicitModel
@@ -321,8 +321,7 @@ class _Reader:
         except ValueError:
             value = float("nan")
         if not np.isfinite(value):
-            hint = "A decimal is written with a point" if "," in word.text else ""
-            self._error("AOS106", f"{word.text} is not a finite number", word, hint)
+            self._error("AOS106", f"{word.text} is not a finite number", word, advice_on_number(word.text))
             return 0.0
         return value
 

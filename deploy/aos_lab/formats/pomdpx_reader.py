@@ -46,6 +46,8 @@ class _Reader:
         for found, tag in ((states, "StateVar"), (actions, "ActionVar")):
             if not found:
                 self._findings.error("AOS105", f"Variable has no {tag}", variables)
+        if self._findings.has_any:
+            return None  # Without its names and values nothing else can be told apart.
         before = {state.before.name: state.before for state in states}
         after = {state.after.name: state.after for state in states}
         chosen = {variable.name: variable for variable in actions}
@@ -89,9 +91,11 @@ class _Reader:
         if not all(names):
             self._findings.error("AOS105", "StateVar needs vnamePrev and vnameCurr", element)
         values = self._values(element, "s")
-        is_seen = element.attributes.get("fullyObs", "false").strip().lower() == "true"
+        seen = element.attributes.get("fullyObs", "false").strip().lower()
+        if seen not in ("true", "false"):
+            self._findings.error("AOS106", f"fullyObs is true or false, not {seen}", element)
         before = Variable(names[0], values, element.line)
-        return StateVariable(before, Variable(names[1], values, element.line, names[0]), is_seen)
+        return StateVariable(before, Variable(names[1], values, element.line, names[0]), seen == "true")
 
     def _plain(self, element: Element, letter: str) -> Variable:
         return Variable(self._name_of(element), self._values(element, letter), element.line)
@@ -107,10 +111,13 @@ class _Reader:
         listed, counted = element.first("ValueEnum"), element.first("NumValues")
         if listed is not None:
             words = listed.words()
-            values = tuple(word.text for word in words)
+            values = tuple(word.text.rstrip(",") or word.text for word in words)
             for place, word in enumerate(words):
                 if word.text in values[:place]:
                     self._findings.error("AOS103", f"{word.text} is there twice", word)
+                if word.text != values[place]:
+                    message = f"{word.text} has a comma"
+                    self._findings.error("AOS102", message, word, "Names stand between blanks")
             if values:
                 return values
         elif counted is not None:

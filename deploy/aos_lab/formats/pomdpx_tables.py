@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from aos_lab.formats.factors import ANY, EACH, Entry, Table, Variable
-from aos_lab.formats.problem_text import ProblemFindings, Word
+from aos_lab.formats.problem_text import ProblemFindings, Word, advice_on_number
 from aos_lab.formats.xml_text import Element
 from aos_language.number_text import is_number
+from aos_protocol.spelling import did_you_mean
 from aos_solver.offline.explicit_model import Floats
 
 
@@ -81,7 +82,8 @@ def _cells(element: Element, sizes: list[int], table: Table, findings: ProblemFi
         numbers = np.array([word.text for word in words], dtype=float)
     except ValueError:
         wrong = next(word for word in words if not is_number(word.text))
-        findings.error("AOS106", f"{wrong.text} is not a number", wrong)
+        hint = did_you_mean(wrong.text, ("identity", "uniform")) or advice_on_number(wrong.text)
+        findings.error("AOS106", f"{wrong.text} is not a number", wrong, hint)
         return None
     wanted = int(np.prod(sizes, dtype=int))
     if len(numbers) != wanted:
@@ -134,7 +136,8 @@ class _Diagram:
                 if len(words) == 1 and is_number(words[0].text):
                     yield chosen, float(words[0].text)
                 else:
-                    self._findings.error("AOS106", "Terminal needs a number", element)
+                    hint = advice_on_number("".join(word.text for word in words))
+                    self._findings.error("AOS106", "Terminal needs a number", element, hint)
             elif element.tag == "SubDAG":
                 yield from self._sub_diagram(element, chosen, depth)
 
@@ -156,8 +159,9 @@ class _Diagram:
         if kind == "template":
             template = self._templates.get(element.attributes.get("idref", ""))
             if template is None:
-                message = f"there is no SubDAGTemplate {element.attributes.get('idref', '')}"
-                self._findings.error("AOS110", message, element)
+                name = element.attributes.get("idref", "")
+                message = f"there is no SubDAGTemplate {name}" if name else "a template needs idref"
+                self._findings.error("AOS110", message, element, did_you_mean(name, self._templates))
                 return
             yield from self._ways(template, chosen, depth + 1)
             return
@@ -182,7 +186,8 @@ class _Diagram:
             for value, after in itertools.product(ways, range(len(values))):
                 yield {**chosen, place: value, own: after}, float(value == after)
         else:
-            self._findings.error("AOS106", f"{kind} is no type of SubDAG", element)
+            hint = did_you_mean(kind, ("deterministic", "persistent", "template", "uniform"))
+            self._findings.error("AOS106", f"{kind} is no type of SubDAG", element, hint)
 
     def _place(self, element: Element) -> int | None:
         name = element.attributes.get("var", "")

@@ -58,6 +58,13 @@ def words_of(text: str, line: int = 1, column: int = 1) -> Iterator[Word]:
             yield Word(match.group(), line + offset, before + match.start())
 
 
+def advice_on_number(text: str) -> str:
+    """Advice on a word that should be a number and has a comma; empty for others."""
+    if text.endswith(","):
+        return "Numbers stand between blanks"
+    return "A decimal is written with a point" if "," in text else ""
+
+
 class ProblemFindings:
     """Collects the mistakes of one file, so that all of them are told in one run."""
 
@@ -77,7 +84,7 @@ class ProblemFindings:
 
     def unknown(self, kind: str, word: Word, known: Iterable[str], keywords: tuple[str, ...] = ()) -> None:
         """A name that nothing has, where these keywords may stand, too."""
-        names = list(known)
+        names = [name for name in known if name]
         shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
         hint = did_you_mean(word.text, (*keywords, *names[:_COMPARED])) or f"There is: {shown}"
         self.error("AOS110", f"there is no {kind} {word.text}", word, hint)

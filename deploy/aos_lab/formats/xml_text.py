@@ -57,10 +57,10 @@ def read_xml(data: bytes, findings: ProblemFindings) -> Element | None:
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
-        reason = expat.ErrorString(error.code)
-        findings.error(
-            "AOS104", f"this is not well-formed XML: {reason}", Word("", error.lineno, error.offset + 1)
-        )
+        message = f"this is not well-formed XML: {expat.ErrorString(error.code)}"
+        last = open_elements[-1]
+        hint = f"<{last.tag}> of line {last.line} is open here" if last.tag else ""
+        findings.error("AOS104", message, Word("", error.lineno, error.offset + 1), hint)
         return None
     return open_elements[0].children[0]
 
