@@ -102,6 +102,10 @@ def test_all_dialects_say_the_same():
             "AOS110",
             "look.am:3:16",
         ),
+        *(
+            (f"is_left(bearing_rad)\nresponse: right -> {call}\nresponse: right", "AOS110", "look.am:3:16")
+            for call in ("is_left()", "is_left(bearing_rad, 3)", "is_left(angle=bearing_rad)")
+        ),
         ("    return NAMES[text] ->     return NAMES[text", "AOS121", "barn.ef:14:17"),
         ("    return NAMES[text] ->     NAMES.update(l=text)\n    return text", "AOS121", "barn.ef:14:5"),
         ("    return NAMES[text] ->     NAMES[text] = text\n    return text", "AOS121", "barn.ef:14:5"),

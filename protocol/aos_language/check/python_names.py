@@ -18,6 +18,7 @@ from importlib import import_module
 import msgspec
 
 from aos_language.check.scope import STATE_COPIES, Scope
+from aos_language.check.shared_calls import check_python_call
 from aos_language.findings import Findings
 from aos_language.python_syntax import module_of, names_bound_by, own_scope, place_in, place_of_byte
 from aos_protocol.diagnostics import Mend, Severity
@@ -51,7 +52,8 @@ class PythonNames(msgspec.Struct, frozen=True):
     `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
     those of the skill. `is_open` where an `import *` brings names that nobody knows here. `of_end` are those
     that say how the skill has ended, `messages` the classes that are imported from modules of messages,
-    `enum_values` those of the model, each with its enum, and `modules` what is imported as a whole.
+    `enum_values` those of the model, each with its enum, `functions` those of shared code, and `modules` what
+    is imported as a whole.
     """
 
     known: frozenset[str]
@@ -61,6 +63,7 @@ class PythonNames(msgspec.Struct, frozen=True):
     of_end: frozenset[str] = frozenset()
     messages: frozenset[str] = frozenset()
     enum_values: Mapping[str, str] = {}
+    functions: Mapping[str, ast.FunctionDef] = {}
     modules: frozenset[str] = frozenset()
 
     @classmethod
@@ -84,6 +87,7 @@ class PythonNames(msgspec.Struct, frozen=True):
             of_end=of_end,
             messages=frozenset(messages),
             enum_values=scope.enum_values,
+            functions=_shared_functions(scope.shared_mapping_code, local_names),
             modules=frozenset(name for item in imports if not item.module for name in item.names).difference(
                 local_names
             ),
@@ -145,6 +149,16 @@ def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
         return frozenset(_WORD.findall(snippet.code))  # Told where the code is checked.
 
 
+def _shared_functions(snippet: Snippet | None, hidden: tuple[str, ...]) -> dict[str, ast.FunctionDef]:
+    """The functions of the environment's `shared_mapping_code` by name, but for those that are hidden."""
+    try:
+        body = module_of(snippet.code).body if snippet is not None else []
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return {}  # Told where the code is checked.
+    functions = (each for each in body if isinstance(each, ast.FunctionDef) and not each.decorator_list)
+    return {function.name: function for function in functions if function.name not in hidden}
+
+
 def top_level_names(tree: ast.AST) -> frozenset[str]:
     """The names that code's own statements bind: not those of functions' insides."""
     return frozenset(name for node in own_scope(tree) for name in names_bound_by(node))
@@ -167,6 +181,8 @@ def check_names(
                 span = place_in(snippet, node)
                 message = f"{name} is given fields by position, which fails where it cannot be imported"
                 findings.warning("AOS121", message, span, f"Give them by name: `{name}(field=...)`")
+            case ast.Call(func=ast.Name(id=name)) if name in names.functions and name not in bound:
+                check_python_call(node, names.functions[name], place_in(snippet, node), findings)
             case ast.Attribute(value=ast.Name(id=name), attr=constant) if name in names.messages:
                 span = place_in(snippet, node)
                 message = f"{name}.{constant} is not known where {name} cannot be imported"
