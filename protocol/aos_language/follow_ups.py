@@ -15,6 +15,7 @@ _UNREAD = frozenset(("AOS101", "AOS102", "AOS103", "AOS104", "AOS107", "AOS108")
 _STRAY = "AOS104"
 _OF_NAMES = frozenset(("AOS110", "AOS116", "AOS123", "AOS201"))
 _NEEDS_DECLARATION = frozenset(("AOS110", "AOS116", "AOS119"))
+_UNUSED = frozenset(("AOS117", "AOS133"))
 _SHOWN = 6
 
 
@@ -23,7 +24,8 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
 
     Left out are warnings and remarks on a file with errors. Where text is not taken up, so is what its file
     lacks. Where it is not, or an object of JSON lacks a key, so are names that nothing declares and no other
-    name is near, in files that use what it declares. A compiler's error is left out where another error
+    name is near, in files that use what it declares. What nothing uses is not told where an unknown name may
+    have meant it. A compiler's error is left out where another error
     stands before it in its line. A name that stands at several places is told at the first, with the others
     in the hint.
     """
@@ -36,9 +38,13 @@ def told_once(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     for error in errors:
         lines.setdefault((error.span.file, error.span.line), error)
 
+    meant = {one.mend.text for one in errors if one.code in _OF_NAMES and one.mend is not None}
+
     def follows(one: Diagnostic) -> bool:
         if not one.is_error:
-            return one.span.file in wrong
+            names = meant if one.code in _UNUSED else ()
+            stands_here = (one.excerpt.startswith(name, one.span.column - 1) for name in names)
+            return one.span.file in wrong or any(stands_here)
         match one.code:
             case "AOS105":
                 return one.span.file in unread

@@ -273,6 +273,23 @@ async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(values
             *["`sort` takes a beginning and an end, and no container"] * 2,
         ),
         (
+            "double d = std::max(0, state.total * 0.5); state__.total = d;",
+            "`max` compares values of one type, and these are int and double",
+            "no matching function for call to `max`",
+        ),
+        (
+            "struct S { int n; }; S s; S* p = &s; p.n = 1;",
+            "`p` is a pointer",
+            "member reference type `S *` is a pointer",
+        ),
+        (
+            "int n; n = {1, 2};",
+            "`int` cannot be set to a list in braces",
+            "excess elements in scalar initializer",
+        ),
+        ("int n = 1; state__.total = n[0];", *["this is one value, and has no elements"] * 2),
+        ("Bool ok = true;\nstate__.total = ok;", "`Bool` was not declared", "unknown type name `Bool`"),
+        (
             "auto f = [](std::optional<Spot> p) {\nreturn p ? 1 : 0; };\nf(std::nullopt);",
             "`Spot` was not declared",
             "use of undeclared identifier `Spot`",

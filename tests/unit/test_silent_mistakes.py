@@ -277,6 +277,7 @@ def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
             "vector<int> n = [1, 2]; __reward = n[0];",
             "9 AOS108 a list stands in braces in C++. Write `{1, 2}`",
         ),
+        ("if (steps =< 1) __reward = 1;", "9 AOS108 `=<` is no operator of C++. Write `<=`"),
         ("auto f = [steps] { return steps; }; __reward = f();", ""),
     ],
 )

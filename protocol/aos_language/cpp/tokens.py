@@ -32,7 +32,7 @@ _TOKEN = re.compile(
     | (?P<list>(?<==)[ \t]*\[[^\[\](){}=&;]*\](?=[ \t]*;))
     | (?P<bracket>[()\[\]{}]|<%|%>|<:|:>)
     | (?P<quote>["'])
-    | (?P<arrow>(?<![<=>!])=>)
+    | (?P<arrow>(?<![<=>!])=[<>])
     | (?P<other>.)
     """,
     re.VERBOSE | re.DOTALL,
@@ -181,7 +181,8 @@ def cut(code: str) -> Tokens:
         elif kind == "hash":
             faults.append(_no_comment(extent))
         elif kind == "arrow":
-            faults.append(Fault(FaultKind.CHARACTER, "`=>` is no operator of C++", extent, "Write `>=`"))
+            message, hint = f"`{match.group()}` is no operator of C++", f"Write `{match.group()[::-1]}`"
+            faults.append(Fault(FaultKind.CHARACTER, message, extent, hint))
         elif kind == "list":
             faults.append(_list_of_python(lines.extent(code.index("[", match.start()), match.end()), code))
         elif kind == "other":

@@ -44,6 +44,7 @@ _BUILT_ON = frozenset({
 _IN_PLACE_OF_TEXT = {
     "a list": "A list stands in brackets, each of its texts in quotes",
     "a number": "A number stands without quotes",
+    "true or false": "Write true or false, without quotes",
 }
 _BOOLEANS = {"true": True, "false": False}
 

@@ -73,7 +73,8 @@ def read_number(part: Part, findings: Findings) -> float | None:
         number = float("nan")
     if not abs(number) < float("inf"):
         span = part.value.span if part.value.text else part.span
-        findings.error("AOS106", f"`{part.word}:` needs a number, not {part.value.text!r}", span)
+        hint = "A decimal is written with a point" if "," in text else ""
+        findings.error("AOS106", f"`{part.word}:` needs a number, not {part.value.text!r}", span, hint)
         return None
     return number
 

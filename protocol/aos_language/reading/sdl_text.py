@@ -354,6 +354,8 @@ class _Scanner:
                 message = f"text {where} that belongs to no section"
                 inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
                 hint = "Write `code:` above it" if "code" in inner else ""
+                if self._current is not None and self._current.word == "enum_members":
+                    hint = "Is a comma missing at the end of the line above?"
                 self._findings.error("AOS104", message, line.strip().span, hint)
             self._stray_line = line.span.line
 

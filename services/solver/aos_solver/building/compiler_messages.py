@@ -5,6 +5,7 @@ import re
 
 import msgspec
 
+from aos_language.reading.sdl_sections import GRAMMARS
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.spelling import did_you_mean
 from aos_solver.building.map_messages import told_of_a_map
@@ -46,9 +47,11 @@ _CONSEQUENCES = re.compile(
     rf"|template argument \d+ is invalid|no match for call to `\(<lambda|{_OF_STD.pattern}"
 )
 """Said too where a name within was not declared."""
+_POINTER = re.compile(r"request for member `(\w+)` in `(.+?)`, which is of pointer type .*")
 _PRIVATE = re.compile(
     r"`.*?(\w+::\w+)(?:\(.*\))?(?: const)?` is private within.*|`(\w+)` is a private member of .*"
 )
+_NO_SEMICOLON = "Is a semicolon missing at the end of the line above?"
 _FAULTS = ("error", "fatal error", "Error")
 _ENDLESS = re.compile(r"expected .*`;`.* before .*")
 """g++ tells a missing semicolon where it reads on, and skips what comes before the next one."""
@@ -96,24 +99,33 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
         name = unknown[1] or unknown[2] if unknown is not None else ""
         if (parameter := _OF_STD.fullmatch(text)) is not None:
             unread.add(parameter[1])
+        if name and message.file.endswith(source_name):
+            unread.update(_declared_with(name, lines[message.line - 1][message.column - 1 :].decode()))
         if name in unread:
             continue  # Its declaration was not taken up.
         if _ENDLESS.fullmatch(text) and message.file.endswith(source_name):
             line, start = lines[message.line - 1], message.column - 1
             unread.update(re.findall(r"[A-Za-z_]\w*", line[start:].decode()))
-            hint = "" if line[:start].strip() else "Is a semicolon missing at the end of the line above?"
+            hint = "" if line[:start].strip() else _NO_SEMICOLON
         if name in emitted.layout.shapes:
             hint = f"Did you mean `state.{name}`?"
         elif not _may_be_meant(hint, emitted):
             hint = ""
         if not hint and name:
             of_python = f"C++ writes `{_OF_PYTHON[name]}`" if name in _OF_PYTHON else ""
+            if "_" in name and any(name in words for words in GRAMMARS.values()):
+                of_python = f"A section begins with its word and a colon: `{name}:`"
             hint = of_python or did_you_mean(name, sorted(emitted.names - {name}))
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
         diagnostics.append(diagnostic)
     return CompilerReport(
         tuple(_without_consequences(_without_repeats(diagnostics), emitted)), tuple(outside)
     )
+
+
+def _declared_with(type_name: str, code: str) -> list[str]:
+    """The name that code declares, which begins with the name of its type."""
+    return re.findall(rf"^{type_name}(?:<.*?>)?[&*\s]+(\w+)\s*[=;{{]", code)
 
 
 def _may_be_meant(hint: str, emitted: EmittedModel) -> bool:
@@ -139,11 +151,14 @@ def _without_consequences(diagnostics: list[Diagnostic], emitted: EmittedModel) 
 def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """Each complaint once for a line: a template is complained about for every use of it."""
     first: dict[tuple[str, int, str], Diagnostic] = {}
+    cut = {f.span.file for f in diagnostics if f.hint == _NO_SEMICOLON}
     bound = {(f.span.file, f.span.line) for f in diagnostics if f.message.endswith("this is only read")}
     named = {found.span for found in diagnostics if _NOT_DECLARED.fullmatch(found.message)}
     for diagnostic in diagnostics:
         if "std::ios_base" in diagnostic.message and diagnostic.span in named:
             continue  # Said of the same name.
+        if diagnostic.span.file in cut and diagnostic.message.startswith("expected `}` before"):
+            continue  # g++ has lost its place in the statement.
         if named and _CONSEQUENCES.search(diagnostic.message):
             continue  # It follows from another.
         line = (diagnostic.span.file, diagnostic.span.line)
@@ -194,6 +209,8 @@ def _plain(text: str) -> tuple[str, str]:
             "this array is indexed by another enum",
             "Use a value of its own enum, or a number: `int(value)`",
         )
+    if (pointer := _POINTER.fullmatch(text)) is not None:
+        return f"`{pointer[2]}` is a pointer", f"Write `{pointer[2]}->{pointer[1]}`"
     if (private := _PRIVATE.fullmatch(text)) is not None:
         hint = "Write `struct` in place of `class`, or `public:` before it"
         return f"`{private[1] or private[2]}` is private", hint

@@ -37,6 +37,11 @@ _RANGE = re.compile(
     r"(?:\((?:const )?(?:(?:array|list) of |(?:std::)?(?:array|deque|list|map|set|string|vector)\b)"
     r".*\))?`"
 )
+_LIST_FOR_ONE = re.compile(
+    r"cannot convert `<brace-enclosed initializer list>` to `(.+)` in (?:assignment|initialization)"
+)
+_OTHER_TYPES = re.compile(r"no matching function for call to `(max|min)\(([a-z ]+)&?, ([a-z ]+)&?\)`")
+_NO_ARRAY = re.compile(r"invalid types `(.+)\[.*\]` for array subscript|subscripted value is n.*")
 _NOT_ASSIGNED = "no viable overloaded `=`"
 """Clang's words, without the types."""
 
@@ -50,6 +55,13 @@ def in_words(text: str) -> tuple[str, str]:
         plain = pattern.sub(word, plain)
     if _CALLED.match(plain) is not None:
         return "this is an array, and no function", "An element of it has square brackets: `[i]`"
+    if (other := _OTHER_TYPES.fullmatch(text)) is not None:
+        message = f"`{other[1]}` compares values of one type, and these are {other[2]} and {other[3]}"
+        return message, f"Write `std::{other[1]}<double>(...)`, or both with a point"
+    if (one := _LIST_FOR_ONE.fullmatch(text)) is not None:
+        return f"`{one[1]}` cannot be set to a list in braces", "Is it to be an array?"
+    if _NO_ARRAY.fullmatch(text) is not None:
+        return "this is one value, and has no elements", "Is it to be an array?"
     if (called := _RANGE.fullmatch(plain)) is not None:
         hint = f"Write `std::{called[1]}(values.begin(), values.end(), ...)`"
         return f"`{called[1]}` takes a beginning and an end, and no container", hint
