@@ -347,6 +347,9 @@ def test_long_names_are_told_whole_and_widen_no_screen(
             wait_for_width(page)
             assert page.locator(".scroll").evaluate_all(is_cut) == 0, (view, screen)
             kept(page, f"long-{screen}{view.replace('/', '-')}")
+        if view == "/steps":
+            lines = "all => all.map(each => each.getClientRects().length)"
+            assert {*page.locator(".steps td:nth-child(4) .whole").evaluate_all(lines)} == {1}
         if view == "/model":
             expect(page.locator(".expected li")).to_have_count(12)
             expect(page.locator(".expected li").last).to_have_text("all others120/120")
@@ -376,7 +379,8 @@ def test_a_mission_whose_model_is_compiled_says_so_everywhere_and_another_follow
     compiler.write_text('#!/bin/sh\ncase "$*" in *version*) exec c++ "$@";; esac\nexec sleep 1000\n')
     compiler.chmod(0o755)
     monkeypatch.setenv("CXX", str(compiler))
-    with gateway(tmp_path, tmp_path / "cache") as served:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "cache"))
+    with gateway(tmp_path) as served:
         start = {"deploy_file": str(DEPLOY / "errand.yaml"), "model": True, "stay": True}
         started = served.post("/v1/runs", start)
         page = opened(browser, served)

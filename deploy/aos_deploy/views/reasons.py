@@ -63,7 +63,7 @@ def _update(why: Why) -> str:
 
 
 def _consequence(each: Consequence) -> str:
-    goal = f"    after {each.response} the goal has {each.goal_probability:.3g}"
+    goal = f"    after {each.response} the goal has probability {each.goal_probability:.3g}"
     if not each.action:
         return f"{goal}, and the mission would be over"
     return f"{goal}, and next would be {each.action}, worth {_worth(each.value, each.stderr)}"

@@ -36,13 +36,17 @@ export function Table() {
 
 const Row = ({ step, isNow }) => html`<tr aria-selected=${isNow} onClick=${() => selectStep(step.step)}>
   <td><button class="row-step" aria-label=${`Step ${step.step}`}>${step.step}</button></td>
-  <td class="action" title=${step.action}>${briefAction(step.action).split(/(?<=[(,])/).map((part) => html`${part}<wbr />`)}</td>
+  <td class="action" title=${step.action}><${Name} of=${briefAction(step.action)} /></td>
   <td class="num wide-only">${signed(step.value)}</td>
-  <td>${step.status ? (hasFailed(step) ? html`<span class="bad">✕ ${step.status.replace("_", " ")}</span>` : step.seen) : html`<span class="muted">running</span>`}</td>
+  <td>${step.status ? (hasFailed(step) ? html`<span class="bad">✕ ${step.status.replace("_", " ")}</span>` : html`<${Name} of=${step.seen} />`) : html`<span class="muted">running</span>`}</td>
   <td class="num wide-only">${step.status ? chance(step.expected) : ""}</td>
   <td class="num">${step.status ? html`${isSurprising(step) ? html`<span class="mark" aria-label="surprising">▲ </span>` : ""}${step.impossible ? "∞" : plain(step.surprise)}` : ""}</td>
   <td class="num wide-only">${chance((step.endings_after ?? step.endings)?.goal)}</td>
 </tr>`;
+
+// It breaks between the parts of a name, and within one only where that is too long.
+const Name = ({ of }) =>
+  of.split(/(?<=[(,_])/).map((part) => html`<span class=${part.length < 12 ? "whole" : ""}>${part}</span><wbr />`);
 
 function Activation() {
   const found = record.value;
