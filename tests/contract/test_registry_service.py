@@ -216,24 +216,39 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
         assert (await current(bus, keys)).revision == rest[2].revision
 
 
-async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_a_document_alone_is_refused(
+async def test_of_a_folder_from_before_nothing_is_told_before_the_project_and_an_archive_is_taken_in(
     tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):
     drops = tmp_path / "run" / "drop"
     drops.mkdir(parents=True)
     drop(drops.parent, "half", {"sing.am": finer["pick.am"]})
-    (drops / "pick.sd").write_bytes(finer["pick.sd"])
     async with (
         asyncio.timeout(HANG_S),
         bus.listen(keys.bundle_report, messages.BundleReport) as reports,
         running_registry(drops.parent, endpoint, bus, keys),
     ):
         shutil.make_archive(str(drops / "whole"), "zip", BUNDLES / "armadillo-finer")
-        told = [(await anext(aiter(reports)))[1] for _ in range(3)]
+        told = [(await anext(aiter(reports)))[1] for _ in range(2)]
     assert [(report.source, report.revision, report.is_waiting) for report in told] == [
-        *(("pick.sd", 0, False), ("whole.zip", 1, False), ("half", 1, True))
+        *(("whole.zip", 1, False), ("half", 1, True))
     ]
-    assert codes(told[0]) == {"AOS101"}
+
+
+async def test_documents_beside_the_bundles_of_the_watched_folder_are_one_bundle(
+    registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
+):
+    without_pick = {name: content for name, content in finer.items() if not name.startswith("pick")}
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
+        drop(registry, "armadillo", without_pick)
+        first = (await anext(aiter(reports)))[1]
+        (registry / "drop" / "pick.am").write_bytes(finer["pick.am"])
+        alone = (await anext(aiter(reports)))[1]
+        (registry / "drop" / "pick.sd").write_bytes(finer["pick.sd"])
+        both = (await anext(aiter(reports)))[1]
+    assert [(told.source, told.revision, told.is_waiting) for told in (first, alone, both)] == [
+        *(("armadillo", 1, False), ("drop", 1, True), ("drop", 2, False))
+    ]
+    assert (codes(alone), both.added) == ({"AOS114"}, ("pick",))
 
 
 async def test_the_catalogue_survives_a_restart(

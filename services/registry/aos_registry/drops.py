@@ -8,10 +8,11 @@ from pathlib import Path
 import msgspec
 
 from aos_language.load import read_bundle_files
+from aos_language.reading.files import is_document_name
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport
-from aos_registry.watch import is_document, watch_for_bundles
+from aos_registry.watch import bundles_in, watch_for_bundles
 
 LACKING = ("AOS105", "AOS110", "AOS113", "AOS114", "AOS115")
 """Other documents can mend these errors: something is missing, or a name that nothing defines."""
@@ -40,7 +41,7 @@ class DroppedBundles:
         self._changed: asyncio.Queue[Path] = asyncio.Queue()
         self._waiting: dict[Path, BundleReport | None] = {}  # By what was told of them.
         self._again: set[Path] = set()
-        self._from_before = set(folder.iterdir())
+        self._from_before = {*bundles_in(folder)}
 
     async def follow(self) -> None:
         """Follows the folder until it is cancelled."""
@@ -74,10 +75,10 @@ class DroppedBundles:
 
     async def _report(self, path: Path) -> BundleReport | None:
         """Takes a folder or an archive in and returns what becomes of it; None for an empty folder."""
-        if is_document(path):
-            return _refused(path, "AOS101", "a document alone is not taken", "Put it into a folder here")
         try:
             files, remarks = read_bundle_files(path)
+            if path == self._folder:  # Other bundles stand beside its documents.
+                remarks = [remark for remark in remarks if is_document_name(remark.span.file)]
             if has_errors(remarks):
                 return BundleReport("", False, 0, tuple(remarks), source=path.name)
             return await self._take(files, path.name) if files else None

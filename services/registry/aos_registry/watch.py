@@ -19,7 +19,9 @@ logging.getLogger("watchfiles").setLevel(logging.WARNING)
 async def watch_for_bundles(
     folder: Path, take: Callable[[Path], Awaitable[None]], changed: asyncio.Queue[Path], *, quiet_s: float
 ) -> None:
-    """Calls `take` with each sub-folder, archive and document in `folder`, one at a time, for ever.
+    """Calls `take` with each sub-folder and archive in `folder`, one at a time, for ever.
+
+    Documents that lie in `folder` itself are one bundle, for which `take` gets `folder`.
 
     First come those that are there, then each that has changed, and what else is put into `changed`. A bundle
     is taken once nothing changed for `quiet_s`, so that it is not read while it is being copied, and again
@@ -28,7 +30,7 @@ async def watch_for_bundles(
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(_follow(folder, changed, quiet_s))
         await asyncio.sleep(0)  # `_follow` has run to its first wait: the watch stands before the look.
-        for path in _bundles_in(folder):
+        for path in bundles_in(folder):
             await take(path)
         while True:
             await take(await changed.get())
@@ -39,18 +41,19 @@ async def _follow(folder: Path, changed: asyncio.Queue[Path], quiet_s: float) ->
     try:
         async for batch in awatch(folder, step=step, debounce=debounce):
             touched = {_bundle_of(folder, Path(path)) for _, path in batch}
-            for path in sorted(path for path in touched if path is not None and _may_be_bundle(path)):
+            for path in sorted(path for path in touched if path is not None and _is_bundle(path)):
                 changed.put_nowait(path)
     except OSError as error:
         raise _unwatched(folder, error) from error
 
 
-def _bundles_in(folder: Path) -> list[Path]:
+def bundles_in(folder: Path) -> list[Path]:
+    """Returns what `take` is called with for a folder as it stands; StorageError AOS701 as above."""
     try:
-        inside = [path for path in folder.iterdir() if not path.name.startswith(".")]
+        touched = {_bundle_of(folder, path) for path in folder.iterdir()}
     except OSError as error:
         raise _unwatched(folder, error) from error
-    return sorted(path for path in inside if _may_be_bundle(path))
+    return sorted(path for path in touched if path is not None and _is_bundle(path))
 
 
 def _unwatched(folder: Path, error: OSError) -> StorageError:
@@ -58,18 +61,14 @@ def _unwatched(folder: Path, error: OSError) -> StorageError:
     return StorageError(text, hint="Name another one by `watch:`")
 
 
-def _may_be_bundle(path: Path) -> bool:
-    return path.is_dir() or is_document(path) or (path.is_file() and is_archive_name(path.name))
-
-
-def is_document(path: Path) -> bool:
-    """Returns whether this is a document alone, which is no bundle."""
-    return is_document_name(path.name) and path.is_file()
+def _is_bundle(path: Path) -> bool:
+    return path.is_dir() or (path.is_file() and is_archive_name(path.name))
 
 
 def _bundle_of(folder: Path, path: Path) -> Path | None:
-    """The sub-folder or file that a changed path belongs to; None for hidden things and the folder."""
+    """Returns what `take` is called with for a path that is there or has gone; None for hidden things."""
     parts = path.relative_to(folder).parts
     if not parts or any(part.startswith(".") for part in parts):
         return None
-    return folder / parts[0]
+    is_document = len(parts) == 1 and is_document_name(parts[0]) and not path.is_dir()
+    return folder if is_document else folder / parts[0]
