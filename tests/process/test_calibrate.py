@@ -18,6 +18,7 @@ from aos_lab.calibration.draws import draws_of
 from aos_lab.calibration.records import RecordedMission, read_missions
 from aos_lab.trials.campaign import play_campaign
 from aos_lab.trials.setting import Setting
+from aos_protocol.errors import ModelError
 from aos_protocol.messages import MissionBegun, StartMission
 from aos_runtime.disk.journal import Journal
 from aos_runtime.disk.mission_folders import make_mission_folder, mission_folder
@@ -95,6 +96,18 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(missions_of_f
     # Of intervals that hold 95 % of the time, one of eight may well miss.
     assert len(held) == 8
     assert held.count(False) <= 1
+
+
+def test_a_model_that_is_compiled_first_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    compiler = tmp_path / "c++"
+    compiler.write_text('#!/bin/sh\ncase "$*" in *version*) exec c++ "$@";; esac\nexit 1\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CXX", str(compiler))
+    monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path))
+    told: list[str] = []
+    with pytest.raises(ModelError):
+        calibrate((), [FINER, RETRACT], on_build=told.append)
+    assert told[0].startswith("compiling armadillo with")
 
 
 def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path):

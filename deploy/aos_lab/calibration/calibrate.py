@@ -62,6 +62,7 @@ def calibrate(
     missions: Sequence[RecordedMission],
     bundles: Sequence[Path],
     *,
+    on_build: Callable[[str], None] = lambda text: None,
     on_mission: Callable[[], None] = lambda: None,
     on_sweep: Callable[[int, int], None] = lambda done, of: None,
 ) -> Calibration:
@@ -81,7 +82,7 @@ def calibrate(
             "the documents have errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
         )
     draws = draws_of(loaded.project)
-    lattices = asyncio.run(_lattices(missions, draws, on_mission))
+    lattices = asyncio.run(_lattices(missions, draws, on_build, on_mission))
     estimates = estimate(draws.draws, lattices, on_sweep)
     is_here = all(path.is_relative_to(Path.cwd()) for path in paths.values())
     base = Path.cwd() if is_here else Path("/")
@@ -100,10 +101,13 @@ def calibrate(
 
 
 async def _lattices(
-    missions: Sequence[RecordedMission], draws: Draws, on_mission: Callable[[], None]
+    missions: Sequence[RecordedMission],
+    draws: Draws,
+    on_build: Callable[[str], None],
+    on_mission: Callable[[], None],
 ) -> list[Lattice]:
     """Returns all that each mission may have been, by the engine of the documents."""
-    built = await build_project(draws.keeping, cache_dir())
+    built = await build_project(draws.keeping, cache_dir(), on_build)
     async with await Engine.start(built, seed=1, keeps_belief=False) as engine:
         lattices: list[Lattice] = []
         for values, alike in _by_values(missions):

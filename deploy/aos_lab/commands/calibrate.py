@@ -62,7 +62,8 @@ def calibrate(
         result = calibrate_bundles(
             missions,
             [bundle, *(also or ())],
-            on_mission=lambda: bar.advance(reading),
+            on_build=lambda text: bar.update(reading, description=text),
+            on_mission=lambda: bar.update(reading, description="missions", advance=1),
             on_sweep=lambda done, of: bar.update(drawing, completed=done, total=of, visible=True),
         )
     if write is not None:
