@@ -1,12 +1,15 @@
 """The host of adapters as a process, and calls of its skills as the middleware makes them."""
 
 import sys
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
+import pytest
 from processes import HANG_S
 
+from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillResult
 from aos_runtime.adapters import AdapterSettings
@@ -29,6 +32,8 @@ async def started_adapter(keys: Keys, endpoint: str, run_dir: Path, service: str
 class AdapterProcess:
     """A process with one adapter, and how the middleware speaks to it."""
 
+    call: Callable[..., Awaitable[SkillResult]]
+
     def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path):
         self.bus = bus
         self.keys = keys
@@ -43,6 +48,12 @@ class AdapterProcess:
 
     async def ask(self, call: SkillCall) -> SkillResult:
         return await self.bus.ask(self.keys.call(call.path), call, SkillResult, timeout_s=HANG_S)
+
+    async def refusal(self, *call: Any, **how: Any) -> AosError:
+        """The error of a call, which has the arguments of the robot's `call`."""
+        with pytest.raises(AosError) as error:
+            await self.call(*call, **how)
+        return error.value
 
     async def cancel(self, path: str) -> Cancelled:
         return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=HANG_S)

@@ -128,11 +128,6 @@ class Robot(AdapterProcess):
     async def call(self, path: str, step: int = 1, deadline_s: float = 20.0, **fields: Any) -> SkillResult:
         return await self.ask(SkillCall(ActivationId("m", step), path, fields, deadline_s))
 
-    async def refusal(self, path: str, step: int = 1, **given: Any) -> AosError:
-        with pytest.raises(AosError) as error:
-            await self.call(path, step, **given)
-        return error.value
-
 
 @pytest_asyncio.fixture
 async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path) -> AsyncIterator[Robot]:

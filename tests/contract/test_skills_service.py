@@ -11,7 +11,6 @@ from places import DEPLOY
 from processes import HANG_S
 from starting import until_present
 
-from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     ActivationId,
@@ -56,13 +55,6 @@ class Robot(AdapterProcess):
         limit_s: float = 60.0,
     ) -> SkillResult:
         return await self.ask(SkillCall(ActivationId("m", step), path, fields or {}, limit_s, epoch=epoch))
-
-    async def refusal(
-        self, path: str, step: int = 1, fields: dict[str, Any] | None = None, **how: Any
-    ) -> AosError:
-        with pytest.raises(AosError) as error:
-            await self.call(path, step, fields, **how)
-        return error.value
 
     async def moving(self):
         """Returns when simulated time passes: the sensors publish while a skill runs."""

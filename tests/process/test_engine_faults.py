@@ -1,7 +1,6 @@
 import asyncio
 import json
 from asyncio.subprocess import PIPE
-from pathlib import Path
 
 import pytest
 from hostile.counters import counting
@@ -10,6 +9,7 @@ from models import built_text, engine_of_text
 from processes import HANG_S
 from projects import text_project
 
+from aos_deploy.places import cache_dir
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import EngineDefectError, ModelError
 from aos_protocol.messages import BeliefSummary
@@ -53,8 +53,8 @@ async def test_a_text_that_is_cut_within_a_letter_is_a_fault_at_its_line():
     assert (told.code, told.span.file, told.span.line) == ("AOS215", "tell.sd", 4)
 
 
-async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path):
-    shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
+async def test_documents_that_give_a_running_mission_no_belief_are_refused():
+    shelf = ModelShelf(cache_dir(), lambda remark: None, started, lambda revision: True)
     wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
     project = text_project(wider)
     async with engine_of_text(LAMP) as engine:
@@ -71,16 +71,14 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
         ("while (state.count > 0) { state__.count = 1; }", "AOS211", "press.sd"),
     ],
 )
-async def test_documents_whose_code_would_end_a_running_mission_are_refused(
-    code, fault, file, cache_dir: Path
-):
-    refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
+async def test_documents_whose_code_would_end_a_running_mission_are_refused(code, fault, file):
+    refusal = await refused(counting("lamp", "press", code=code, steps="1000"))
     assert (refusal.code, refusal.span.file) == (fault, file)
 
 
-async def refused(documents: dict[str, str], cache_dir: Path) -> Diagnostic:
+async def refused(documents: dict[str, str]) -> Diagnostic:
     """The one reason for which documents are not taken into a mission."""
-    shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
+    shelf = ModelShelf(cache_dir(), lambda remark: None, started, lambda revision: True)
     project = text_project(documents)
     good = counting("lamp", "press", steps="1000")
     async with engine_of_text(good) as engine:
@@ -96,18 +94,18 @@ def slow(name: str, rounds: int) -> str:
     )
 
 
-async def test_code_that_makes_steps_slow_is_told_at_its_statement(cache_dir: Path):
+async def test_code_that_makes_steps_slow_is_told_at_its_statement():
     code = f"int quick = 1;\nquick += 2;\n{slow('state__.count', 40_000_000)}"
-    refusal = await refused(counting("lamp", "press", code=code, steps="1000"), cache_dir)
+    refusal = await refused(counting("lamp", "press", code=code, steps="1000"))
     assert (refusal.code, str(refusal.span)) == ("AOS211", "press.sd:7:53")
     assert "of that here" in refusal.message
 
 
-async def test_of_slow_code_in_many_places_the_environment_document_is_told(cache_dir: Path):
+async def test_of_slow_code_in_many_places_the_environment_document_is_told():
     changes, moves, earns = (slow(name, 15_000_000) for name in ("state_.count", "state__.count", "__reward"))
     documents = counting("lamp", "press", code=moves, steps="1000")
     documents["lamp.ef"] += f"{earns}\n\nextrinsic_code:\n{changes}\n"
-    refusal = await refused(documents, cache_dir)
+    refusal = await refused(documents)
     assert (refusal.code, refusal.span.file) == ("AOS211", "lamp.ef")
     assert "no one place" in refusal.message
 

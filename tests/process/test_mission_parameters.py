@@ -14,6 +14,7 @@ from processes import COMMAND_S, HANG_S, finished
 from projects import files_project, text_project
 
 from aos_deploy.history_check.files import check_run
+from aos_deploy.places import cache_dir
 from aos_deploy.runs.directory import RunDirectory
 from aos_language.mission_parameters import mission_value_of_option
 from aos_protocol.documents import Project
@@ -130,12 +131,12 @@ async def test_defaults_and_initial_values_follow_from_what_is_set(options, valu
 class Shelf(ModelShelf):
     """A shelf for a mission with these values, on a middleware that runs every revision."""
 
-    def __init__(self, cache_dir: Path, *options: str):
+    def __init__(self, *options: str):
         async def start(built: BuiltModel) -> Engine:
             return await Engine.start(built, seed=1)
 
         values = tuple(map(mission_value_of_option, options))
-        super().__init__(cache_dir, lambda remark: None, start, lambda revision: True, (), values)
+        super().__init__(cache_dir(), lambda remark: None, start, lambda revision: True, (), values)
 
 
 def errand(**replaced: str) -> Project:
@@ -146,8 +147,8 @@ def errand(**replaced: str) -> Project:
     return files_project(files)
 
 
-async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values(cache_dir: Path):
-    shelf = Shelf(cache_dir)
+async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values():
+    shelf = Shelf()
     await shelf.make(ProjectRevision(1, "", errand()))
     running = await shelf.first()
     # Nobody has set the parameter: the mission has the default that the documents had at its start.
@@ -164,8 +165,8 @@ async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values
         await shelf.close()
 
 
-async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_seen(cache_dir: Path):
-    shelf = Shelf(cache_dir, "target=bob")
+async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_seen():
+    shelf = Shelf("target=bob")
     await shelf.make(ProjectRevision(1, "", errand()))
     running = await shelf.first()
     past = Past(steps=[Evidence("look", "look", "nobody")])
@@ -189,8 +190,8 @@ async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_s
     assert newest.model.engine.description.mission_parameters == {"target": "bob"}
 
 
-async def test_documents_without_the_value_that_was_set_are_refused(cache_dir: Path):
-    shelf = Shelf(cache_dir, "target=bob")
+async def test_documents_without_the_value_that_was_set_are_refused():
+    shelf = Shelf("target=bob")
     await shelf.make(ProjectRevision(1, "", errand()))
     running = await shelf.first()
     (found,) = await shelf.check(errand(before="target", after="whom"), running)
@@ -199,8 +200,8 @@ async def test_documents_without_the_value_that_was_set_are_refused(cache_dir: P
     await shelf.close()
 
 
-async def test_values_are_for_all_bundles_of_a_start_together(cache_dir: Path):
-    shelf = Shelf(cache_dir, "whom=bob")
+async def test_values_are_for_all_bundles_of_a_start_together():
+    shelf = Shelf("whom=bob")
     try:
         assert await shelf.check(errand(), None) == ()
         await shelf.make(ProjectRevision(1, "", errand()))

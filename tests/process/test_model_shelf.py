@@ -1,10 +1,10 @@
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from pathlib import Path
 
 from projects import files_project
 
+from aos_deploy.places import cache_dir
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
@@ -42,12 +42,12 @@ def lamp(revision: int) -> ProjectRevision:
 class Workshop:
     """A shelf whose engines are real and remembered, and a middleware that has what the test says."""
 
-    def __init__(self, cache_dir: Path):
+    def __init__(self):
         self.engines: list[Engine] = []
         self.mapped = {1, 2, 3}
         self.past = Past()
         self.shelf = ModelShelf(
-            cache_dir, lambda remark: None, self._start, lambda revision: revision in self.mapped
+            cache_dir(), lambda remark: None, self._start, lambda revision: revision in self.mapped
         )
 
     async def _start(self, built: BuiltModel) -> Engine:
@@ -64,9 +64,9 @@ class Workshop:
 
 
 @asynccontextmanager
-async def workshop(cache_dir: Path) -> AsyncIterator[Workshop]:
+async def workshop() -> AsyncIterator[Workshop]:
     """Gives a workshop, of which nobody's child is left."""
-    made = Workshop(cache_dir)
+    made = Workshop()
     try:
         yield made
         await made.shelf.close()
@@ -98,10 +98,8 @@ class Slowed:
         return await self._import(beliefs)
 
 
-async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_lost_nor_left_running(
-    cache_dir: Path,
-):
-    async with workshop(cache_dir) as made:
+async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_lost_nor_left_running():
+    async with workshop() as made:
         running = await running_lamp(made)
         belief = await running.engine.export_belief()
         assert len(belief.particles) == 1
@@ -123,8 +121,8 @@ async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_l
         assert (await newest.engine.export_belief()).particles == belief.particles
 
 
-async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cache_dir: Path):
-    async with workshop(cache_dir) as made:
+async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready():
+    async with workshop() as made:
         for revision in (1, 2):
             await made.shelf.make(lamp(revision))
         assert len(made.engines) == 2
@@ -133,8 +131,8 @@ async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cach
         assert made.living == made.engines[1:]
 
 
-async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for(cache_dir: Path):
-    async with workshop(cache_dir) as made:
+async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for():
+    async with workshop() as made:
         made.mapped.remove(2)
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
@@ -143,8 +141,8 @@ async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for(cac
         assert (await made.taken(running)).revision == 2
 
 
-async def test_a_revision_that_cannot_import_the_belief_replays_the_mission_instead(cache_dir: Path):
-    async with workshop(cache_dir) as made:
+async def test_a_revision_that_cannot_import_the_belief_replays_the_mission_instead():
+    async with workshop() as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
         made.engines[1].import_beliefs = refuse
@@ -164,8 +162,8 @@ async def refuse(_: ExportedBeliefs) -> BeliefSummary:
     raise ModelError("the state does not fit")
 
 
-async def test_a_shelf_that_ends_while_a_revision_waits_for_its_place_leaves_no_engine(cache_dir: Path):
-    async with workshop(cache_dir) as made:
+async def test_a_shelf_that_ends_while_a_revision_waits_for_its_place_leaves_no_engine():
+    async with workshop() as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
         slowed = Slowed(made.engines[1])

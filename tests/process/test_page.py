@@ -85,10 +85,10 @@ def wait_for_width(page: Page):
     assert page.evaluate(FITS), "something stays wider than the screen"
 
 
-def violations(page: Page, cache_dir: Path) -> list[tuple[str, list[str]]]:
+def violations(page: Page) -> list[tuple[str, list[str]]]:
     """The findings of the accessibility checker: the rule, and the elements. A screen may not be too wide."""
     wait_for_width(page)
-    page.evaluate((installed_sources(cache_dir) / AXE).read_text())
+    page.evaluate((installed_sources() / AXE).read_text())
     found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
     return [(each["id"], [node["target"] for node in each["nodes"]]) for each in found]
 
@@ -101,9 +101,7 @@ def worn(tmp_path_factory) -> Iterator[tuple[Gateway, str]]:
         yield served, f"{run.name}-1"
 
 
-def test_slider_and_keys_move_all_views_and_the_address(
-    browser: Browser, past: tuple[Gateway, str], cache_dir: Path
-):
+def test_slider_and_keys_move_all_views_and_the_address(browser: Browser, past: tuple[Gateway, str]):
     served, name = past
     steps = served.ask(f"/v1/missions/{name}/trace").json["steps"]
     page = opened(browser, served)
@@ -123,7 +121,7 @@ def test_slider_and_keys_move_all_views_and_the_address(
     page.get_by_role("button", name="Show the tree").click()
     expect(page.locator(".tree .branches").first).to_contain_text(f"{steps[0]['action']} ")
     expect(page.locator(".tree details[open] > summary").last).to_contain_text("seen")
-    assert violations(page, cache_dir) == []
+    assert violations(page) == []
     page.get_by_role("link", name="Overview", exact=True).click()
     page.keyboard.press("Tab")
     page.locator("h1").click()
@@ -211,7 +209,7 @@ def test_a_mission_is_started_from_the_list(browser: Browser, past: tuple[Gatewa
 
 
 def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
-    browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
+    browser: Browser, worn: tuple[Gateway, str]
 ):
     served, name = worn
     rows = served.ask(f"/v1/missions/{name}/trace").json["steps"]
@@ -225,7 +223,7 @@ def test_an_alarm_is_in_the_head_and_on_the_model_view_from_its_step_on(
     expect(cells).to_have_text(["press", alarm["response"], *told])
     for screen in screens(page):
         kept(page, f"alarm-{screen}")
-        assert violations(page, cache_dir) == []
+        assert violations(page) == []
     page.keyboard.press("ArrowLeft")
     expect(page.locator(".alarm")).to_have_count(0)
 
@@ -262,9 +260,7 @@ def test_documents_that_are_given_in_mid_mission_take_over_at_a_diamond_and_are_
     expect(page.locator(".source")).to_contain_text("0.85 : 0.15")
 
 
-def test_the_next_mission_is_begun_where_one_has_ended(
-    browser: Browser, worn: tuple[Gateway, str], cache_dir: Path
-):
+def test_the_next_mission_is_begun_where_one_has_ended(browser: Browser, worn: tuple[Gateway, str]):
     served, name = worn
     page = opened(browser, served, 390)
     page.goto(f"http://127.0.0.1:{served.port}/#/missions/{name}")
@@ -274,7 +270,7 @@ def test_the_next_mission_is_begun_where_one_has_ended(
     expect(page.locator(".next .problem")).to_contain_text("AOS516")
     for screen in screens(page):
         kept(page, f"next-{screen}")
-        assert violations(page, cache_dir) == []
+        assert violations(page) == []
     page.get_by_label("What is known").fill("!state.is_lit")
     page.get_by_label("Belief at the start").select_option("keep")
     page.get_by_role("textbox", name="room").fill("lab")
@@ -290,7 +286,7 @@ def test_the_next_mission_is_begun_where_one_has_ended(
 
 
 def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
-    browser: Browser, past: tuple[Gateway, str], cache_dir: Path
+    browser: Browser, past: tuple[Gateway, str]
 ):
     served, name = past
     action = served.ask(f"/v1/missions/{name}/trace").json["steps"][1]["action"]
@@ -304,11 +300,11 @@ def test_every_view_has_an_address_fits_the_screen_and_can_be_used_by_everybody(
             expect(page.locator("main .card").last).to_be_visible()
             expect(page.locator("[aria-busy=true]")).to_have_count(0)
             kept(page, f"{screen}{view.replace('/', '-')}")
-            assert violations(page, cache_dir) == [], (view, screen)
+            assert violations(page) == [], (view, screen)
 
 
 def test_a_number_of_many_values_is_shown_by_its_median_and_range(
-    browser: Browser, past: tuple[Gateway, str], cache_dir: Path
+    browser: Browser, past: tuple[Gateway, str]
 ):
     served, _ = past
     depth = Marginal("depth", {"1.512345": 0.001}, 0.999, (-0.5123, 1.0, 1.5123, 2.0, 2.5123))
@@ -322,7 +318,7 @@ def test_a_number_of_many_values_is_shown_by_its_median_and_range(
         ).to_be_visible()
         kept(page, f"numbers-{screen}")
         expect(page.locator(".values .aside")).to_have_text(told)
-        assert violations(page, cache_dir) == []
+        assert violations(page) == []
 
 
 def test_long_names_are_told_whole_and_widen_no_screen(

@@ -9,6 +9,7 @@ from scripted_missions import Surroundings, observed
 from texts import encoded
 
 from aos_deploy.history_check.replayed import replayed
+from aos_deploy.places import cache_dir
 from aos_protocol.documents import Project
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionBegun, ModelAdopted, Outcome
@@ -57,9 +58,9 @@ class Growing(Surroundings):
         return await successor.take_over(running, past)
 
 
-def settings(run: Path, cache_dir: Path) -> Settings:
+def settings(run: Path) -> Settings:
     return Settings(
-        robot="t", service="solver", endpoint="", run_dir=str(run), project="hall", cache_dir=str(cache_dir)
+        robot="t", service="solver", endpoint="", run_dir=str(run), project="hall", cache_dir=str(cache_dir())
     )
 
 
@@ -94,13 +95,13 @@ def memory_of(rows: Rows) -> MissionMemory:
     )
 
 
-async def taken_up(rows: Rows, revision: int, run: Path, cache_dir: Path) -> Rows:
+async def taken_up(rows: Rows, revision: int, run: Path) -> Rows:
     """The journal after another solver has taken the mission up with this newest revision."""
     memory = memory_of(rows)
     around = Surroundings(robot)
     async with engine_of_text(REVISIONS[revision]) as engine:
         running = RunningModel(revision, engine)
-        of_before = settings(run, cache_dir)
+        of_before = settings(run)
         earlier = await earlier_models(memory, running, documents, of_before, lambda text: None)
         begun = MissionBegun("run", 2, 1, revision, running.digest, is_retraced=bool(earlier))
         around.journal(BEGUN, begun)
@@ -115,9 +116,9 @@ def digests(rows: Rows) -> list[str]:
     return [record.belief.digest for record in records]
 
 
-def write_run(rows: Rows, run: Path, cache_dir: Path):
+def write_run(rows: Rows, run: Path):
     (run / "settings").mkdir(parents=True)
-    (run / "settings" / "solver.json").write_bytes(msgspec.json.encode(settings(run, cache_dir)))
+    (run / "settings" / "solver.json").write_bytes(msgspec.json.encode(settings(run)))
     catalogue = Catalogue.open(run / "catalogue.db")
     for number, files in REVISIONS.items():
         catalogue.store("hall", f"digest {number}", encoded(files), (), 0)
@@ -127,40 +128,36 @@ def write_run(rows: Rows, run: Path, cache_dir: Path):
             journal.append(kind, payload)
 
 
-async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbed_twin(
-    cache_dir: Path, tmp_path
-):
+async def test_a_belief_that_came_through_three_models_is_that_of_the_undisturbed_twin(tmp_path):
     rows = await whole()
     adopted = [said for _, said in rows if isinstance(said, ModelAdopted)]
     assert [row.by for row in adopted] == ["import", "projection"]
     last = rows.index(("adopted", adopted[-1]))
     # Right after the takeover, in the middle of a step, and at the end of one.
     for cut in (last + 1, *(n for n, (kind, _) in enumerate(rows) if n > last and kind == "outcome")):
-        journal = await taken_up(rows[:cut], 3, tmp_path, cache_dir)
+        journal = await taken_up(rows[:cut], 3, tmp_path)
         assert digests(journal) == digests(rows), f"cut off after row {cut}, {rows[cut - 1][0]}"
     # `aos check` goes through the same models.
-    write_run(journal, tmp_path / "run", cache_dir)
+    write_run(journal, tmp_path / "run")
     replay = await replayed(tmp_path / "run", lambda text: None)
     assert (replay.violations, replay.compared, replay.remark) == ([], 2 * STEPS, "")
 
 
-async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_ones(
-    cache_dir: Path, tmp_path
-):
+async def test_documents_that_nobody_has_used_yet_import_the_belief_of_the_last_ones(tmp_path):
     rows = await whole()
     first = next(number for number, (_, said) in enumerate(rows) if isinstance(said, ModelAdopted))
-    journal = await taken_up(rows[:first], 2, tmp_path, cache_dir)
+    journal = await taken_up(rows[:first], 2, tmp_path)
     assert digests(journal)[:5] == digests(rows)[:5], "they take over at once, as after the same step before"
     assert memory_of(journal).stretches[-1].by == "import"
 
 
-async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(cache_dir: Path, tmp_path):
+async def test_a_revision_that_is_gone_leaves_the_replay_to_the_newest(tmp_path):
     async def gone(_: int) -> Project:
         raise StorageError("the catalogue has no revision 1", code="AOS702")
 
     rows = await whole()
     async with engine_of_text(REVISIONS[3]) as engine:
-        running, of_before = RunningModel(3, engine), settings(tmp_path, cache_dir)
+        running, of_before = RunningModel(3, engine), settings(tmp_path)
         assert await earlier_models(memory_of(rows), running, gone, of_before, lambda text: None) == ()
 
 

@@ -44,8 +44,8 @@ def test_the_page_asks_no_other_server():
         assert not {address for address in named if not address.startswith("http://www.w3.org/")}, name
 
 
-def test_what_its_sources_make_is_what_comes_with_aos(tmp_path, cache_dir: Path):
-    libraries = installed_sources(cache_dir) / "node_modules"
+def test_what_its_sources_make_is_what_comes_with_aos(tmp_path):
+    libraries = installed_sources() / "node_modules"
     sources = tmp_path / "page"
     shutil.copytree(ROOT / SOURCES, sources, ignore=shutil.ignore_patterns("node_modules"))
     (sources / "node_modules").symlink_to(libraries)
