@@ -36,7 +36,7 @@ if (is_real && state.charge && state.place && !state.is_ready) __reward = 7;
 async def test_whatever_a_condition_is_made_of_its_reward_is_as_documented(code):
     writer = BundleWriter("counted", ENVIRONMENT)
     end = "state__.doors[2] = 1;\nstate__.is_ready = true;\n__moduleResponse = ok;\n"
-    writer.skill("close", ["ok"], code + end)
+    writer.skill("close", code + end)
     async with engine_of_text(writer.files) as engine:
         exact = await engine.exact_values(1)
     assert exact.values[0].q == pytest.approx(17)

@@ -27,8 +27,8 @@ if (state.fell) {
 """,
     )
     dare = f"__reward = 2;\n{far}\nstate__.fell = drawn > 3.0902;\n__moduleResponse = done;"
-    writer.skill("dare", ["done"], dare)
-    writer.skill("rest", ["done"], "__reward = 1;\n__moduleResponse = done;")
+    writer.skill("dare", dare)
+    writer.skill("rest", "__reward = 1;\n__moduleResponse = done;")
     return writer.files
 
 

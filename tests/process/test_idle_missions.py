@@ -32,11 +32,10 @@ if (state.is_through) __isGoalState = true;
     )
     writer.skill(
         "go",
-        ["through", "hurt"],
         "__reward = state_.is_open ? 5 : -5;\nstate__.is_through = state_.is_open;\n"
         "__moduleResponse = state_.is_open ? through : hurt;",
     )
-    writer.skill("wait", ["open", "closed"], "__moduleResponse = state_.is_open ? open : closed;")
+    writer.skill("wait", "__moduleResponse = state_.is_open ? open : closed;")
     return writer.files
 
 

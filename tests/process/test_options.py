@@ -70,9 +70,9 @@ state.x = AOS.SampleUniform(0, 4);
 """,
     )
     look = "__reward = -0.1;\n__moduleResponse = state.x < 1 ? left : right;"
-    writer.skill("look", ["left", "right"], look)
+    writer.skill("look", look)
     reach = "__reward = state.x < 1 + where ? 10 - 3.5 * where : -2;\n__moduleResponse = done;"
-    writer.skill("reach", ["done"], reach, over={"where": "3"})
+    writer.skill("reach", reach, over={"where": "3"})
     async with engine_of_text(writer.files) as engine:
         plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     told = {value.action: value for value in plan.actions}
@@ -147,17 +147,13 @@ for (int i = 1; i < 10; i++) __reward -= state.intruder[i] ? 0.3 : 0;
 """,
     )
     go = "state__.battery--;\n__reward = -0.1;\nstate__.at = (state.at + (east ? 1 : 9)) % 10;\n"
-    patrol.skill("go", ["moved"], go + "__moduleResponse = moved;", over={"east": "2"})
+    patrol.skill("go", go + "__moduleResponse = moved;", over={"east": "2"})
     look = "__reward = -0.1;\nbool is_seen = AOS.Bernoulli(state_.intruder[state.at] ? 0.9 : 0.1);\n"
-    patrol.skill(
-        "look",
-        ["somebody", "nobody"],
-        look + "state__.battery--;\n__moduleResponse = is_seen ? somebody : nobody;",
-    )
+    patrol.skill("look", look + "state__.battery--;\n__moduleResponse = is_seen ? somebody : nobody;")
     expel = "state__.battery -= 2;\n__reward = state_.intruder[state.at] ? 4 : -3;\n"
-    patrol.skill("expel", ["done"], expel + "state__.intruder[state.at] = false;\n__moduleResponse = done;")
+    patrol.skill("expel", expel + "state__.intruder[state.at] = false;\n__moduleResponse = done;")
     charge = "__reward = state.at == 0 ? -0.1 : -0.5;\nif (state.at == 0) state__.battery = 24;\n"
-    patrol.skill("charge", ["charged"], charge + "__moduleResponse = charged;")
+    patrol.skill("charge", charge + "__moduleResponse = charged;")
     async with engine_of_text(patrol.files) as engine:
         run = await simulated(engine, 1000, goal_probability=1, step_limit=30)
         plan = await engine.plan(simulations=100, seed=1, planner="auto")

@@ -74,12 +74,12 @@ __reward = -0.2 * std::max(34 - flow, 0);
 __reward = (who == 0 ? -1 : -0.4) - (is_free ? 0 : 1);
 if (is_free) state__.site[who] = pump;
 __moduleResponse = is_free ? went : busy;"""
-    writer.skill("order", ["went", "busy"], order, over={"who": "2", "pump": "9"})
+    writer.skill("order", order, over={"who": "2", "pump": "9"})
     gauge = """__reward = -0.1;
 bool seems_clogged = AOS.Bernoulli(0.85) == (state__.clogged[pump] > 1);
 __moduleResponse = seems_clogged ? clogged : clear;"""
-    writer.skill("gauge", ["clogged", "clear"], gauge, over={"pump": "9"})
-    writer.skill("wait", ["waited"], "__moduleResponse = waited;")
+    writer.skill("gauge", gauge, over={"pump": "9"})
+    writer.skill("wait", "__moduleResponse = waited;")
     return writer.files
 
 

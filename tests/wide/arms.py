@@ -46,16 +46,16 @@ if (state.held[arm] >= 0 || state.gone[which]) {{
     state__.gone[which] = true;
     __moduleResponse = picked;
 }}"""
-    writer.skill("pick", ["picked", "refused"], pick, over=arm | {"part": str(count)})
+    writer.skill("pick", pick, over=arm | {"part": str(count)})
     inspect = """__reward = -0.3;
 if (state.held[arm] < 0) {
     __moduleResponse = empty;
 } else {
     __moduleResponse = AOS.Bernoulli(state.good[state.held[arm]] ? 0.85 : 0.2) ? looks_good : looks_bad;
 }"""
-    writer.skill("inspect", ["looks_good", "looks_bad", "empty"], inspect, over=arm)
+    writer.skill("inspect", inspect, over=arm)
     put = "__reward = -0.5;\nstate__.held[arm] = -1;\n__moduleResponse = done;"
-    writer.skill("put_away", ["done"], put, over=arm)
+    writer.skill("put_away", put, over=arm)
     join = """if (state.held[0] < 0 || state.held[1] < 0) {
     __reward = -2;
     __moduleResponse = nothing;
@@ -71,7 +71,7 @@ if (state.held[arm] < 0) {
     state__.held[1] = -1;
     __moduleResponse = broke;
 }"""
-    writer.skill("join", ["holds", "broke", "nothing"], join)
+    writer.skill("join", join)
     return writer.files
 
 

@@ -66,7 +66,7 @@ if (state_.battery == 0) {{
     state__.battery = state_.battery - 1;
     __moduleResponse = moves ? moved : slipped;
 }}"""
-    writer.skill("go", ["moved", "slipped", "refused"], go, over={"onward": "2"})
+    writer.skill("go", go, over={"onward": "2"})
     clean = f"""__reward = -0.1;
 if (state_.battery < 2 || state_.at == 0 || state_.bin == {_BIN}) {{
     __moduleResponse = refused;
@@ -77,7 +77,7 @@ if (state_.battery < 2 || state_.at == 0 || state_.bin == {_BIN}) {{
     state__.battery = state_.battery - 2;
     __moduleResponse = cleaned;
 }}"""
-    writer.skill("clean", ["cleaned", "refused"], clean)
+    writer.skill("clean", clean)
     look = """__reward = -0.02;
 if (state_.at == 0) {
     __moduleResponse = refused;
@@ -85,13 +85,11 @@ if (state_.at == 0) {
     bool is_dirty = state_.dirt[state_.at - 1] > 0;
     __moduleResponse = AOS.Bernoulli(0.85) == is_dirty ? dirty : tidy;
 }"""
-    writer.skill("look", ["dirty", "tidy", "refused"], look)
+    writer.skill("look", look)
     home = "__moduleResponse = state_.at == 0 ? done : refused;\n"
-    writer.skill(
-        "empty_bin", ["done", "refused"], f"__reward = -0.1;\nif (state_.at == 0) state__.bin = 0;\n{home}"
-    )
+    writer.skill("empty_bin", f"__reward = -0.1;\nif (state_.at == 0) state__.bin = 0;\n{home}")
     charge = f"if (state_.at == 0) state__.battery = std::min(state_.battery + {_CHARGE}, {_BATTERY});\n"
-    writer.skill("charge", ["done", "refused"], charge + home)
+    writer.skill("charge", charge + home)
     return writer.files
 
 

@@ -70,7 +70,7 @@ if (takes_lift && state.lift_is_broken) {
     state__.at = to;
     __moduleResponse = arrived;
 }"""
-    writer.skill("ride", ["arrived", "stuck"], ride, over={"to": str(_ROOMS)})
+    writer.skill("ride", ride, over={"to": str(_ROOMS)})
     what = {"what": str(parcels)}
     take = f"""int carried = 0;
 for (int i = 0; i < {parcels}; i++) carried += state.held[i];
@@ -82,7 +82,7 @@ if (state.at == 0 && carried < 2 && !state.held[what] && !state.brought[what]) {
     __reward = -1;
     __moduleResponse = refused;
 }}"""
-    writer.skill("take", ["taken", "refused"], take, over=what)
+    writer.skill("take", take, over=what)
     hand = """if (state.held[what] && state.receiver[what] == state.at) {
     state__.held[what] = false;
     state__.brought[what] = true;
@@ -92,12 +92,12 @@ if (state.at == 0 && carried < 2 && !state.held[what] && !state.brought[what]) {
     __reward = -3;
     __moduleResponse = not_mine;
 }"""
-    writer.skill("hand", ["thanks", "not_mine"], hand, over=what)
+    writer.skill("hand", hand, over=what)
     ask = f"""__reward = -0.3;
 int told = state.receiver[what];
 if (!AOS.Bernoulli({_TRUE})) told = 1 + (told + AOSUtils::SampleDiscrete(vector<double>(6, 1.0))) % 7;
 __moduleResponse = told == 1 ? room1 : told == 2 ? room2 : told == 3 ? room3 : told == 4 ? room4
     : told == 5 ? room5 : told == 6 ? room6 : room7;"""
-    writer.skill("ask", [f"room{room}" for room in range(1, _ROOMS)], ask, over=what)
+    writer.skill("ask", ask, over=what)
     writer.charger(_BATTERY)
     return writer.files

@@ -45,26 +45,26 @@ if (is_over) __isGoalState = true;
     )
     sharp = f"double sharp = state.is_broken ? 0.5 : {_SHARP} - {_BLUR} * state.dust;\n"
     drive = "__reward = -0.4;\nstate__.at = place;\n__moduleResponse = there;"
-    writer.skill("drive", ["there"], drive, over={"place": str(count + 1)})
+    writer.skill("drive", drive, over={"place": str(count + 1)})
     read = f"""__reward = -0.2;
 {sharp}bool is_bad = AOS.Bernoulli(sharp) == state.is_bad[std::min(state.at, {count - 1})];
 __moduleResponse = state.at == {count} ? nothing : is_bad ? bad : fine;"""
-    writer.skill("read", ["fine", "bad", "nothing"], read)
+    writer.skill("read", read)
     check = f"""__reward = -0.2;
 {sharp}__moduleResponse = state.at == {count} && AOS.Bernoulli(sharp) ? clear : blurred;"""
-    writer.skill("check", ["clear", "blurred"], check)
+    writer.skill("check", check)
     wipe = "__reward = -0.6;\nstate__.dust = 0;\n__moduleResponse = wiped;"
-    writer.skill("wipe", ["wiped"], wipe)
+    writer.skill("wipe", wipe)
     swap = f"""__reward = -2;
 if (state.at == {count}) {{ state__.dust = 0; state__.is_broken = false; }}
 __moduleResponse = state.at == {count} ? swapped : refused;"""
-    writer.skill("swap", ["swapped", "refused"], swap)
+    writer.skill("swap", swap)
     report = f"""int gauge = std::min(state.at, {count - 1});
 bool can = state.at < {count} && !state.is_told[gauge];
 __reward = !can ? -1 : state.is_bad[gauge] == (bad == 1) ? 3 : -5;
 if (can) state__.is_told[gauge] = true;
 __moduleResponse = told;"""
-    writer.skill("report", ["told"], report, over={"bad": "2"})
+    writer.skill("report", report, over={"bad": "2"})
     return writer.files
 
 

@@ -50,7 +50,7 @@ def greenhouse(bays: int = 5) -> Bundle:
     drive = """__reward = -0.3;
 if (AOS.Bernoulli(0.95)) state__.at = place;
 __moduleResponse = state__.at == place ? arrived : blocked;"""
-    writer.skill("drive", ["arrived", "blocked"], drive, over={"place": str(bays + 1)})
+    writer.skill("drive", drive, over={"place": str(bays + 1)})
     water = """__reward = -0.2;
 if (plant / 2 != state.at || state.tank == 0) {
     __moduleResponse = refused;
@@ -60,15 +60,15 @@ if (plant / 2 != state.at || state.tank == 0) {
     state__.tank = state.tank - 1;
     __moduleResponse = watered;
 }"""
-    writer.skill("water", ["watered", "refused"], water, over={"plant": str(plants)})
+    writer.skill("water", water, over={"plant": str(plants)})
     probe = """__reward = -0.1;
 bool seems_dry = AOS.Bernoulli(0.85) == (state.moisture[plant] <= 1);
 __moduleResponse = plant / 2 != state.at ? refused : seems_dry ? dry : moist;"""
-    writer.skill("probe", ["dry", "moist", "refused"], probe, over={"plant": str(plants)})
+    writer.skill("probe", probe, over={"plant": str(plants)})
     refill = f"""__reward = -0.5;
 if (state.at == {bays}) state__.tank = {_TANK};
 __moduleResponse = state.at == {bays} ? full : refused;"""
-    writer.skill("refill", ["full", "refused"], refill)
+    writer.skill("refill", refill)
     return writer.files
 
 

@@ -46,17 +46,17 @@ if (state.has_left) __isGoalState = true;
     drive = f"""__reward = -0.5;
 state__.at = std::max(0, std::min(state.at + (east == 1 ? 1 : -1), {sites - 1}));
 __moduleResponse = there;"""
-    writer.skill("drive", ["there"], drive, over={"east": "2"})
+    writer.skill("drive", drive, over={"east": "2"})
     probe = f"""__reward = -0.5;
 __moduleResponse = AOS.Bernoulli({_TELLS}) == state.is_good[state.at] ? good : bad;"""
-    writer.skill("probe", ["good", "bad"], probe)
+    writer.skill("probe", probe)
     dig = """__reward = state.is_taken[state.at] ? -4 : state.is_good[state.at] ? 3 : -5;
 state__.is_taken[state.at] = true;
 __moduleResponse = dug;"""
-    writer.skill("dig", ["dug"], dig)
+    writer.skill("dig", dig)
     leave = """state__.has_left = true;
 __moduleResponse = left;"""
-    writer.skill("leave", ["left"], leave)
+    writer.skill("leave", leave)
     return writer.files
 
 
@@ -126,14 +126,14 @@ if (state.is_over) __isGoalState = true;
     )
     ask = f"""__reward = -0.3;
 __moduleResponse = AOS.Bernoulli({_RIGHT}) == (state.number > limit) ? above : below;"""
-    writer.skill("ask", ["above", "below"], ask, over={"limit": str(_NUMBERS - 1)})
+    writer.skill("ask", ask, over={"limit": str(_NUMBERS - 1)})
     see = "__reward = -0.3;\n__moduleResponse = state.is_lit[lamp] ? lit : dark;"
-    writer.skill("see", ["lit", "dark"], see, over={"lamp": str(lamps)})
+    writer.skill("see", see, over={"lamp": str(lamps)})
     guess = """__reward = state.number == number ? 15 : -10;
 state__.is_over = true;
 __moduleResponse = guessed;"""
-    writer.skill("guess", ["guessed"], guess, over={"number": str(_NUMBERS)})
-    writer.skill("leave", ["left"], "state__.is_over = true;\n__moduleResponse = left;")
+    writer.skill("guess", guess, over={"number": str(_NUMBERS)})
+    writer.skill("leave", "state__.is_over = true;\n__moduleResponse = left;")
     return writer.files
 
 

@@ -42,12 +42,12 @@ def lock(count: int = 5) -> Bundle:
     turn = f"""__reward = -0.2;
 state__.dial[which] = (state.dial[which] + (up == 1 ? 1 : {_DIGITS - 1})) % {_DIGITS};
 __moduleResponse = turned;"""
-    writer.skill("turn", ["turned"], turn, over=one | {"up": "2"})
+    writer.skill("turn", turn, over=one | {"up": "2"})
     probe = f"""__reward = -0.3;
 int told = state.dial[which] < state.digit[which] ? 0 : state.dial[which] == state.digit[which] ? 1 : 2;
 if (!AOS.Bernoulli({_TRUE})) told = (told + 1 + AOSUtils::SampleDiscrete(vector<double>{{0.5, 0.5}})) % 3;
 __moduleResponse = told == 0 ? below : told == 1 ? right : above;"""
-    writer.skill("probe", ["below", "right", "above"], probe, over=one)
+    writer.skill("probe", probe, over=one)
     pull = f"""int right = 0;
 for (int i = 0; i < {count}; i++) right += state.dial[i] == state.digit[i];
 if (right == {count}) {{
@@ -58,7 +58,7 @@ if (right == {count}) {{
     __reward = -5;
     __moduleResponse = stuck;
 }}"""
-    writer.skill("pull", ["opened", "stuck"], pull)
+    writer.skill("pull", pull)
     return writer.files
 
 

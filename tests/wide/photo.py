@@ -62,23 +62,23 @@ state__.x = std::max(0, std::min(state.x + (direction == 1) - (direction == 3) +
 state__.y = std::max(0, std::min(state.y + (direction == 0) - (direction == 2), {size - 1}));
 state__.charge = state.charge - 1;
 __moduleResponse = AOS.Bernoulli({_FELT}) == is_blown ? blown : calm;"""
-    writer.skill("fly", ["blown", "calm"], fly, over={"direction": "4"})
+    writer.skill("fly", fly, over={"direction": "4"})
     look = f"""__reward = -0.2;
 state__.charge = state.charge - 1;
 int distance = std::max(abs(state.x - state.at_x), abs(state.y - state.at_y));
 __moduleResponse = !AOS.Bernoulli({_SEEN}) || distance > 2 ? unseen : distance == 0 ? below : near;"""
-    writer.skill("look", ["below", "near", "unseen"], look)
+    writer.skill("look", look)
     locate = """__reward = -0.2;
 state__.charge = state.charge - 1;
 __moduleResponse = state.x < 4 ? west : state.x < 8 ? middle : east;"""
-    writer.skill("locate", ["west", "middle", "east"], locate)
+    writer.skill("locate", locate)
     take = """bool is_there = state.x == state.at_x && state.y == state.at_y;
 __reward = is_there ? -0.2 : -2;
 state__.charge = state.charge - 1;
 if (is_there) state__.has_photo = true;
 __moduleResponse = is_there ? taken : missed;"""
-    writer.skill("take", ["taken", "missed"], take)
-    writer.skill("land", ["landed"], "state__.has_landed = true;\n__moduleResponse = landed;")
+    writer.skill("take", take)
+    writer.skill("land", "state__.has_landed = true;\n__moduleResponse = landed;")
     return writer.files
 
 

@@ -29,7 +29,6 @@ if (over) {{
 """,
     )
     one = {"parcel": str(count)}
-    labels = ["first", "second", "third"]
     told = "__moduleResponse = {0} == 0 ? first : {0} == 1 ? second : third;"
     guarded = "if (state.gone[parcel]) {{\n    __moduleResponse = not_there;\n}} else {{\n{0}\n}}"
     scan = (
@@ -37,19 +36,16 @@ if (over) {{
         "if (!AOS.Bernoulli(0.7)) "
         "seen = (seen + 1 + AOSUtils::SampleDiscrete(vector<double>{0.5, 0.5})) % 3;\n"
     )
-    responses = [*labels, "not_there"]
-    writer.skill(
-        "scan", responses, "__reward = -0.4;\n" + guarded.format(scan + told.format("seen")), over=one
-    )
+    writer.skill("scan", "__reward = -0.4;\n" + guarded.format(scan + told.format("seen")), over=one)
     opened = told.format("state.place[parcel]")
-    writer.skill("open", responses, "__reward = -2;\n" + guarded.format(opened), over=one)
+    writer.skill("open", "__reward = -2;\n" + guarded.format(opened), over=one)
     send = (
         "__reward = state.place[parcel] == where ? 6 : -8;\n"
         "state__.gone[parcel] = true;\n"
         "__moduleResponse = sent;"
     )
     over = one | {"where": "3"}
-    writer.skill("send", ["sent", "not_there"], "__reward = -1;\n" + guarded.format(send), over=over)
+    writer.skill("send", "__reward = -1;\n" + guarded.format(send), over=over)
     return writer.files
 
 
@@ -86,9 +82,9 @@ if (state.covered[spot]) {
 } else {
     __moduleResponse = AOS.Bernoulli(spot == state.place ? 0.9 : 0.03) ? thing : nothing;
 }"""
-    writer.skill("look", ["thing", "nothing", "covered"], look, over=spot)
+    writer.skill("look", look, over=spot)
     lift = "__reward = -1;\nstate__.covered[spot] = false;\n__moduleResponse = lifted;"
-    writer.skill("lift", ["lifted"], lift, over=spot)
+    writer.skill("lift", lift, over=spot)
     pick = """if (spot == state.place && !state.covered[spot]) {
     state__.found = true;
     __moduleResponse = picked;
@@ -96,7 +92,7 @@ if (state.covered[spot]) {
     __reward = -10;
     __moduleResponse = empty;
 }"""
-    writer.skill("pick", ["picked", "empty"], pick, over=spot)
+    writer.skill("pick", pick, over=spot)
     return writer.files
 
 
@@ -132,6 +128,6 @@ double deviation = 0.3 + 0.5 * fabs({light} - state__.y);
 __moduleResponse = moved;
 __observed.east = AOS.SampleNormal(state__.x, deviation);
 __observed.north = AOS.SampleNormal(state__.y, deviation);"""
-    writer.skill("move", ["moved"], move, over={"direction": "4"}, numbers=["east", "north"])
-    writer.skill("stop", ["stopped"], "state__.has_stopped = true;\n__moduleResponse = stopped;")
+    writer.skill("move", move, over={"direction": "4"})
+    writer.skill("stop", "state__.has_stopped = true;\n__moduleResponse = stopped;")
     return writer.files

@@ -74,7 +74,7 @@ if (is_wall || state.is_jammed[door]) {{
     state__.at = to_y * {_WIDE} + to_x;
     __moduleResponse = moved;
 }}"""
-    writer.skill("go", ["moved", "blocked"], go, over={"direction": "4"})
+    writer.skill("go", go, over={"direction": "4"})
     force = f"""{way}state__.battery = state.battery - 3;
 __reward = -1;
 if (!is_wall && AOS.Bernoulli({_FORCED})) {{
@@ -83,7 +83,7 @@ if (!is_wall && AOS.Bernoulli({_FORCED})) {{
 }} else {{
     __moduleResponse = stuck;
 }}"""
-    writer.skill("force", ["opened", "stuck"], force, over={"direction": "4"})
+    writer.skill("force", force, over={"direction": "4"})
     listen = f"""__reward = -0.2;
 double odds = {_MISTAKES};
 for (int i = 0; i < 2; i++) {{
@@ -93,17 +93,17 @@ for (int i = 0; i < 2; i++) {{
     if (!state.is_helped[i]) odds = std::max(odds, heard);
 }}
 __moduleResponse = AOS.Bernoulli(odds) ? voice : silence;"""
-    writer.skill("listen", ["voice", "silence"], listen)
+    writer.skill("listen", listen)
     here = "bool is_here = false;\n" + (
         "for (int i = 0; i < 2; i++) is_here |= state.person[i] == state.at && !state.is_helped[i];\n"
     )
     look = f"""__reward = -0.2;
 {here}__moduleResponse = AOS.Bernoulli(is_here ? {_SEES} : {_MISTAKES}) ? somebody : nobody;"""
-    writer.skill("look", ["somebody", "nobody"], look)
+    writer.skill("look", look)
     assist = f"""{here}__reward = is_here ? 20 : -3;
 for (int i = 0; i < 2; i++) if (state.person[i] == state.at) state__.is_helped[i] = true;
 __moduleResponse = is_here ? helped : nobody;"""
-    writer.skill("assist", ["helped", "nobody"], assist)
+    writer.skill("assist", assist)
     writer.charger(_BATTERY)
     return writer.files
 

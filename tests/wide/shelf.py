@@ -43,16 +43,16 @@ if (state.left <= 0) __isFailureState = true;
 bool fails = AOS.SampleNormal(0, 1) > 1.0;
 if (!fails) state__.at = shelf;
 __moduleResponse = fails ? failed : there;"""
-    writer.skill("go", ["there", "failed"], go, over={"shelf": "3"})
+    writer.skill("go", go, over={"shelf": "3"})
     look = f"""__reward = -0.5;
 bool is_it = state.at == state.box;
 __moduleResponse = AOS.Bernoulli({_LOOK}) == is_it ? box_there : no_box;"""
-    writer.skill("look", ["box_there", "no_box"], look)
+    writer.skill("look", look)
     grab = """bool holds = state.at == state.box && AOS.SampleUniform(0, 1) < 0.8;
 __reward = holds ? -1 : -4;
 if (holds) state__.has_it = true;
 __moduleResponse = holds ? got : missed;"""
-    writer.skill("grab", ["got", "missed"], grab)
+    writer.skill("grab", grab)
     return writer.files
 
 

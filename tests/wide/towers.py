@@ -62,13 +62,13 @@ if (is_free && state.held < 0 && !slips) {{
     state__.held = block;
     __moduleResponse = done;
 }}"""
-    writer.skill("pick", ["done", "stuck"], pick, over={"block": str(count)})
+    writer.skill("pick", pick, over={"block": str(count)})
     put = f"""{free}if (is_free && state.held >= 0) {{
     state__.on[state.held] = block;
     state__.held = -1;
     __moduleResponse = done;
 }}"""
-    writer.skill("put", ["done", "stuck"], put, over={"block": str(count)})
+    writer.skill("put", put, over={"block": str(count)})
     lay = f"""__reward = -0.4;
 __moduleResponse = stuck;
 if (state.held >= 0) {{
@@ -76,7 +76,7 @@ if (state.held >= 0) {{
     state__.held = -1;
     __moduleResponse = done;
 }}"""
-    writer.skill("lay", ["done", "stuck"], lay)
+    writer.skill("lay", lay)
     return writer.files
 
 

@@ -1,5 +1,3 @@
-from mappings import mapping_text
-
 Bundle = dict[str, str]  # file name to text
 
 
@@ -8,15 +6,7 @@ class BundleWriter:
         self.project = project
         self.files: Bundle = {"e.ef": f"project: {project}\n{environment}"}
 
-    def skill(
-        self,
-        name: str,
-        responses: list[str],
-        model: str,
-        *,
-        over: dict[str, str] | None = None,
-        numbers: list[str] | None = None,
-    ):
+    def skill(self, name: str, model: str, *, over: dict[str, str] | None = None):
         over = over or {}
         values = "".join(f"parameter: int {parameter}\n" for parameter in over)
         loops = "".join(
@@ -30,10 +20,6 @@ class BundleWriter:
             else ""
         )
         self.files[f"{name}.sd"] = f"project: {self.project}\n{values}\n{listed}\ndynamic_model:\n{model}\n"
-        reports = dict.fromkeys(numbers or (), "float")
-        self.files[f"{name}.am"] = mapping_text(
-            *responses, project=self.project, skill=name, parameters=list(over), reports=reports
-        )
 
     def charger(self, battery: int):
         """A skill that fills the battery where `at` is 0."""
@@ -44,4 +30,4 @@ if (state.at == 0) {{
 }} else {{
     __moduleResponse = refused;
 }}"""
-        self.skill("charge", ["charged", "refused"], model)
+        self.skill("charge", model)
