@@ -10,7 +10,6 @@ from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mappings import mapping_text
 from places import BIN, BUNDLES, DEPLOY
 from processes import COMMAND_S, HANG_S
 
@@ -62,7 +61,7 @@ runs: runs
 """,
     "robot.py": """\
 async def press(call, room):
-    return {"answer": "stuck"}
+    return {"response": "stuck"}
 """,
     "lamp/lamp.ef": """\
 project: lamp
@@ -92,7 +91,6 @@ __moduleResponse = AOS.Bernoulli(0.9) ? pressed : stuck;
 state__.is_lit = __moduleResponse == pressed;
 __reward = -1;
 """,
-    "lamp/press.am": mapping_text("pressed", "stuck", project="lamp", skill="press", parameters=("room",)),
 }
 """A switch that its document holds to work in nine of ten uses, and that never does."""
 

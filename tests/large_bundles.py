@@ -9,7 +9,6 @@ import sys
 import time
 from collections.abc import Mapping
 
-from mappings import mapping_text
 from models import built_text, engine_of
 from texts import encoded
 
@@ -60,7 +59,6 @@ def _bundle(environment: list[str], dynamic_model: list[str]) -> dict[str, str]:
     return {
         "large.ef": _ENVIRONMENT + "\n".join(environment) + "\n",
         "act.sd": _SKILL + "\n".join(dynamic_model) + "\n",
-        "act.am": mapping_text("one", "two", project="large", parameters=["at"]),
     }
 
 

@@ -1,7 +1,6 @@
 import json
 
 import pytest
-from mappings import mapping_text
 from models import built_text, engine_of, engine_of_text
 from processes import COMMAND_S
 
@@ -92,7 +91,6 @@ __moduleResponse = ok;
 if (fault == eResponse)
     __moduleResponse = 9;  // eResponse
 """
-ANSWERING = mapping_text("ok: True", project="ward", skill="slip")
 FAULTS = {
     "eNull": ("AOS210", "signal 11, as for an index out of range or a pointer"),
     "eRange": ("AOS215", "element 7 of a vector of 3"),
@@ -137,7 +135,7 @@ def in_json(sdl: str) -> str:
 
 
 DOCUMENTS = {"slip.sd": SLIP, "trip.json": in_json(SLIP)}
-BUNDLE = {"ward.ef": WARD, **DOCUMENTS, "slip.am": ANSWERING, "trip.am": ANSWERING}
+BUNDLE = {"ward.ef": WARD, **DOCUMENTS}
 
 
 async def fault_of(built: BuiltModel, skill: str, name: str) -> ModelError:
@@ -195,8 +193,7 @@ __moduleResponse = drawn;
 
 
 async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot():
-    drawing = ANSWERING.replace("ward", "board").replace("response: ok", "response: drawn")
-    async with engine_of_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing}) as running:
+    async with engine_of_text({"board.ef": BOARD, "draw.sd": DRAW}) as running:
         await running.reset_world(1)
         await running.step_world(0)  # Theirs, then ours; with their second mark the board is full.
         await running.step_world(0)

@@ -47,14 +47,6 @@ violate_penalty: -1
 dynamic_model:
 __moduleResponse = opened;
 """
-MAPPING = """project: hall
-response: {response}
-response_rule: True
-
-module_activation: ros_service
-path: /{skill}
-srv: {skill}
-"""
 
 
 @pytest.fixture
@@ -66,8 +58,6 @@ def hall(tmp_path) -> Callable[..., Path]:
             "hall.ef": HALL.format(goal=goal),
             "walk.sd": WALK.format(code=code),
             "open.sd": OPEN.format(door=door),
-            "walk.am": MAPPING.format(response="walked", skill="walk"),
-            "open.am": MAPPING.format(response="opened", skill="open"),
         }
         write_texts(files, tmp_path)
         return tmp_path

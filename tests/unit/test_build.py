@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 from kept_cache import link_engines
-from mappings import mapping_of_model, mapping_text
 from places import BUNDLES
 from processes import COMMAND_S, HANG_S, until_ended
 from projects import bundle_project, text_project
@@ -45,7 +44,7 @@ def cache_dir(cache_dir: Path, tmp_path_factory) -> Path:
 def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
     """A model with one skill, whose dynamic model starts in line 3 of act.sd."""
     act = f"project: test\ndynamic_model:\n{code}\n"
-    return lowered(text_project({"home.ef": home, "act.sd": act, "act.am": mapping_of_model(act)}))[0]
+    return lowered(text_project({"home.ef": home, "act.sd": act}))[0]
 
 
 async def build_error(emitted: EmittedModel, cache_dir: Path) -> ModelError:
@@ -319,8 +318,7 @@ async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path):
     }  # fmt: skip
     text = json_text(document, "PLP", "act")
     # The registry knows the built-ins; the compiler has the last word about documents that it did not read.
-    project = text_project({"home.ef": HOME, "act.json": text.replace("Bernouli", "Bernoulli"),
-                            "act.am": mapping_text()})  # fmt: skip
+    project = text_project({"home.ef": HOME, "act.json": text.replace("Bernouli", "Bernoulli")})
     error = await build_error(lowered(project)[0], cache_dir)
     line = next(n for n, content in enumerate(text.split("\n"), 1) if "int a" in content)
     # g++ points at the value, clang at the variable.

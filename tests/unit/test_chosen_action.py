@@ -1,5 +1,4 @@
 import pytest
-from mappings import mapping_text
 from projects import text_project
 from scripted_models import ScriptedModel, scripted
 
@@ -34,7 +33,6 @@ __reward = fly != NULL ? -1 : 0;
     "turn.sd": skill_over("2, 3"),
     "lean.sd": skill_over("4"),
     "never.sd": skill_over(""),
-    **{f"{skill}.am": mapping_text() for skill in ("fly", "rest", "sing", "turn", "lean", "never")},
 }
 
 

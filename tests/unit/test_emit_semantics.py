@@ -1,5 +1,4 @@
 import pytest
-from mappings import mapping_text
 from projects import text_project
 from scripted_models import ScriptedModel, json_text, scripted
 
@@ -55,9 +54,7 @@ state__.shown = state.level + 1000 * state_.seen + 100000 * (state__.seen == sta
 __reward = __meetPrecondition ? -1 : -2;
 __moduleResponse = AOS.Bernoulli(0.9) ? raised : stuck;
 """,
-    "raise.am": mapping_text("raised", "stuck"),
     "wait.sd": "project: test\ndynamic_model:\n",
-    "wait.am": mapping_text(),
 }
 
 
@@ -171,7 +168,6 @@ ENDED_AT_THE_START = {
         "PLP",
         "step",
     ),
-    "step.am": mapping_text(),
 }  # fmt: skip
 
 

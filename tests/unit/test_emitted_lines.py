@@ -1,7 +1,6 @@
 import re
 
 import pytest
-from mappings import mapping_text
 from places import BUNDLES
 from projects import bundle_project, text_project
 from scripted_models import lowered
@@ -37,7 +36,7 @@ def test_long_lists_go_on_in_the_next_line():
         f"project: test\nhorizon: 3\ndefine_type: Place\nenum_members: {values}\nstate_variable: Place at\n"
     )
     act = "project: test\ndynamic_model:\nstate__.at = place_number_7;\n"
-    project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text()})
+    project = text_project({"home.ef": home, "act.sd": act})
     own = own_lines(lowered(project)[0])
     assert max(map(len, own)) <= MAX_COLUMNS
     assert sum("place_number_39" in line for line in own) >= 1
@@ -46,6 +45,6 @@ def test_long_lists_go_on_in_the_next_line():
 def test_names_of_the_emitted_model_are_no_names_of_documents():
     home = "project: test\nhorizon: 3\nstate_variable: int aos_ending\n"
     act = "project: test\ndynamic_model:\nstate__.aos_ending = 1;\n"
-    project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text()})
+    project = text_project({"home.ef": home, "act.sd": act})
     _, findings = lower(project)
     assert "the emitted model uses the name `aos_ending`" in [finding.message for finding in findings]

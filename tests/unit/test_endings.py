@@ -1,7 +1,6 @@
 import msgspec
 import pytest
 from dialects import say_the_same
-from mappings import mapping_text
 from projects import text_project
 from scripted_models import ScriptedModel, scripted
 from texts import encoded
@@ -65,7 +64,7 @@ for (int to = 0; to < 12; to++) __possibleParameters.push_back(std::make_tuple(t
 dynamic_model:
 state__.n = to;
 """
-BUNDLE = {"room.ef": ROOM, "go.sd": GO, "go.am": mapping_text()}
+BUNDLE = {"room.ef": ROOM, "go.sd": GO}
 
 
 @pytest.fixture(scope="module")

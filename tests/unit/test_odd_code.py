@@ -1,5 +1,4 @@
 import pytest
-from mappings import mapping_text
 from projects import text_project
 from scripted_models import ScriptedModel, scripted
 
@@ -147,7 +146,6 @@ state__.left = k + seen.size() * 10 + ages["b"] * 100 + (mode == Mode::Fast ? 10
 __reward = mean - spot.worth - std::hypot(3.0, 4.0);
 switch (kind) { case kScrew: __moduleResponse = ok ? yes : no; break; default: { __moduleResponse = no; } }
 """,
-    "poke.am": mapping_text("yes", "no"),
     "shift.sd": """project: test
 parameter: tWeight load
 parameter: std::string hand
