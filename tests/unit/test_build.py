@@ -286,6 +286,16 @@ async def test_a_list_of_other_parameters_is_told_with_those_of_the_skill(values
             "`int` cannot be set to a list in braces",
             "excess elements in scalar initializer",
         ),
+        (
+            "int k = 1; auto f = [](int n) { return n + k; }; f(2);",
+            "`k` is not captured by this lambda",
+            "`k` is not captured by this lambda",
+        ),
+        (
+            "std::map<int, std::pair<int, int>> m{{1, {2, 3}}}; state__.total = m.at(1).fist;",
+            "`std::pair<int, int>` has no member named `fist`",
+            "no member named `fist` in `std::pair<int, int>`",
+        ),
         ("int n = 1; state__.total = n[0];", *["this is one value, and has no elements"] * 2),
         ("Bool ok = true;\nstate__.total = ok;", "`Bool` was not declared", "unknown type name `Bool`"),
         (

@@ -1,6 +1,7 @@
 import pytest
 from lint_texts import ENVIRONMENT, MAPPING, SKILL, finding_texts, found, skill_after
 from places import ROOT
+from texts import encoded
 
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
@@ -330,6 +331,7 @@ def test_a_constant_of_a_message_class_is_told():
         ),
         ("if steps", 16, "`if` cannot stand here. This is one expression: leave `if` out"),
         ("steps;", 21, "`;` cannot stand here. This is one expression: leave `;` out"),
+        ("steps++ > 1", 24, "`>` cannot stand here. Python writes `steps += 1`"),
         ("steps AND 3", 22, "`AND` cannot stand here. Python writes `and`, `or`, `not`"),
         ("steps =< 3", 22, "`=` cannot stand here. Python writes `<=`"),
         ("steps ? 1 : 0", 22, "`?` cannot stand here. Python writes `a if condition else b`"),
@@ -339,3 +341,29 @@ def test_a_constant_of_a_message_class_is_told():
 def test_a_word_that_python_cannot_read_is_told_with_what_to_write(rule, column, told):
     (only,) = found(mapping=MAPPING.replace("response_rule: True", f"response_rule: {rule}"))
     assert (f"{only.message}. {only.hint}", only.span.column) == (f"this is not Python: {told}", column)
+
+
+def test_a_mistyped_low_level_type_of_a_constant_is_told():
+    low_level = (
+        "project: hall\ndefine_type: Pose\nvariable: float x\n\nconstant: Psoe home\ncode:\nhome.x = 1\n"
+    )
+    files = {"hall.ef": ENVIRONMENT, "walk.sd": SKILL, "walk.am": MAPPING, "hall.lf": low_level}
+    (only,) = load_files(encoded(files)).diagnostics
+    assert (only.message, only.hint) == ("unknown low-level type `Psoe`", "Did you mean `Pose`?")
+
+
+@pytest.mark.parametrize(
+    ("rule", "told"),
+    [
+        ("__skill_status == 'fail'", "3 AOS149 no value of __skill_status is called 'fail'. "),
+        (
+            "__skill_status in ('failed', 'timedout')",
+            "3 AOS149 no value of __skill_status is called 'timedout'. ",
+        ),
+        ("__skill_status not in ('failed', 'timed_out')", ""),
+    ],
+)
+def test_a_status_that_no_skill_has_is_told(rule, told):
+    rules = f"response_rule: {rule}\nresponse: walked\nresponse_rule: True"
+    texts = finding_texts(mapping=MAPPING.replace("response_rule: True", rules))
+    assert [text[: len(told)] for text in texts if "AOS149" in text] == [told] * bool(told)

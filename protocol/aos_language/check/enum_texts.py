@@ -12,6 +12,7 @@ from aos_protocol import documents
 from aos_protocol.spelling import nearest, quoted
 
 _OF_NUMBERS = frozenset({"abs", "chr", "float", "int", "round"})
+_STATUSES = ("succeeded", "refused", "failed", "timed_out", "cancelled", "unknown", "stopped")
 _ORDERINGS = (ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE)
 
 
@@ -26,11 +27,12 @@ def check_enum_texts(
     calculations, and AOS121 for fields of a compound that are taken as attributes."""
     kinds = {variable.name: _type_of(variable, model, scope) for variable in mapping.local_variables}
     enums = {name: scope.enums[kind] for name, kind in kinds.items() if kind in scope.enums}
+    enums["__skill_status"] = documents.EnumType("__skill_status", _STATUSES, mapping.span)
     compounds = {name: scope.compounds[kind] for name, kind in kinds.items() if kind in scope.compounds}
     plain = {name: kind for name, kind in kinds.items() if kind in ELEMENTS}
     # A skill may take some of the values alone.
     takes_all = not model.possible_parameters and not any(v.is_constant for v in scope.variables.values())
-    for snippet in snippets if enums or compounds or plain else ():
+    for snippet in snippets:
         tree, lines_above = _tree(snippet)
         nodes = list(ast.walk(tree))
         own = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
@@ -90,6 +92,9 @@ def _mistakes(
         for name, other in ((name_of(sides[0]), sides[1]), (name_of(sides[1]), sides[0])):
             if name is not None and isinstance(node.ops[0], _ORDERINGS):
                 yield from _compared(name, other, enums[name.id])
+        name, listed = name_of(node.left), getattr(node.comparators[0], "elts", [])
+        for element in listed if name is not None and isinstance(node.ops[0], ast.In | ast.NotIn) else ():
+            yield from _compared(element, element, enums[name.id]) if name is not None else ()
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _OF_NUMBERS:
         for argument in node.args:
             if (name := name_of(argument)) is not None:

@@ -75,7 +75,11 @@ def check_low_level(
 ) -> None:
     """The code that makes low-level constants."""
     names = python_names.PythonNames.of_constants(mappings, scope)
+    types = [type.name for type in document.types]
     for constant in document.constants:
+        if constant.type not in types and nearest(constant.type, types):
+            message = f"unknown low-level type `{constant.type}`"
+            findings.unknown(constant.type, types, message, constant.span, severity=Severity.WARNING)
         tree = parsed(constant.code, "exec", findings)
         if tree is not None:
             python_names.check_names(constant.code, tree, names, findings)

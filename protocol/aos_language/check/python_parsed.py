@@ -12,6 +12,7 @@ from aos_protocol.documents import Snippet
 from aos_protocol.spelling import column_of
 
 _OTHER_OPERATOR = re.compile(r"&&|\|\||!(?!=)|\b(?:AND|OR|NOT)\b")
+_COUNTED = re.compile(r"(\w+)([-+])\2")
 _TURNED = re.compile(r"=([<>])(?!=)")
 _LINE = re.compile(r"(?<=(?:on|at) line )\d+")
 _TEXT = re.compile(r"'[^'\n]*'|\"[^\"\n]*\"|#.*")
@@ -51,6 +52,8 @@ def _instead(code: str, wrong: str, mode: str) -> str:
     """Advice on what Python cannot read; empty where there is none."""
     if (turned := _TURNED.search(code)) is not None:
         return f"Python writes `{turned[1]}=`"
+    if (counted := _COUNTED.search(code)) is not None:
+        return f"Python writes `{counted[1]} {counted[2]}= 1`"
     if _OTHER_OPERATOR.search(code):
         return "Python writes `and`, `or`, `not`"
     if mode != "eval":

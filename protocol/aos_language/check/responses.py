@@ -121,7 +121,9 @@ def _check_text_response(
         hint = "Name the local variable that holds it with `response_local_variable:`"
         message = f"the abstraction mapping of {model.name} gives no text response"
         findings.warning("AOS116", message, span, hint)
-    if mapping.response_variable and not writes and model.dynamic_model:
+    roots = {mention.path[0] for _, cpp in read for mention in cpp.mentions}
+    is_mistyped = any(get_close_matches("__moduleResponseStr", roots, n=1, cutoff=0.85))
+    if mapping.response_variable and not writes and model.dynamic_model and not is_mistyped:
         message = f"the skill document of {model.name} never sets __moduleResponseStr"
         findings.warning("AOS117", message, mapping.response_variable_span or mapping.span)
 

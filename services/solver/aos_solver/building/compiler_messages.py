@@ -199,6 +199,7 @@ def _plain(text: str) -> tuple[str, str]:
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
     text = re.sub(r"`\(lambda at [^)]*\)`", "a lambda", text)
+    text = re.sub(r"^(`\w+`) has not been declared$", r"\1 was not declared", text)
     text = text.replace("was not declared in this scope", "was not declared").replace(
         "aos::AnySource::", "AOS."
     )

@@ -42,6 +42,7 @@ _LIST_FOR_ONE = re.compile(
 )
 _OTHER_TYPES = re.compile(r"no matching function for call to `(max|min)\(([a-z ]+)&?, ([a-z ]+)&?\)`")
 _NO_ARRAY = re.compile(r"invalid types `(.+)\[.*\]` for array subscript|subscripted value is n.*")
+_NOT_CAPTURED = re.compile(r"`(\w+)` is not captured|variable `(\w+)` cannot be implicitly captured .*")
 _NOT_ASSIGNED = "no viable overloaded `=`"
 """Clang's words, without the types."""
 
@@ -49,6 +50,9 @@ _NOT_ASSIGNED = "no viable overloaded `=`"
 def in_words(text: str) -> tuple[str, str]:
     """Returns a message with our types by their names in documents, and a hint where one is known."""
     text = _OF_LIBRARY.sub("", STATE_PART.sub(r"\1\2", text))
+    text = re.sub(r"`(?:class|struct) ", "`", re.sub(r"`[^`]*` \{aka (`[^`]*`)\}", r"\1", text))
+    if (outer := _NOT_CAPTURED.fullmatch(text)) is not None:
+        return f"`{outer[1] or outer[2]}` is not captured by this lambda", "Write `[&]` at its beginning"
     is_text = "`const char" in text
     plain = text
     for pattern, word in _WORDS:
