@@ -393,7 +393,8 @@ def _place_of(run: Path, user: str) -> tuple[_Place, Credential | None]:
     try:
         place = msgspec.json.decode((run / "run.json").read_bytes(), type=_Place)
     except (OSError, *UNREADABLE) as error:
-        raise BusError(f"{run} is no run directory: {error}", code="AOS605") from error
+        why = getattr(error, "strerror", None) or error
+        raise BusError(f"{run} is no run directory: run.json: {why}", code="AOS605") from error
     return place, credential_of_run(run, user)
 
 

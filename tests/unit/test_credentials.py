@@ -20,6 +20,7 @@ from aos_deploy.runs.directory import RunDirectory
 from aos_protocol.access import ADAPTER, OPERATOR, SOLVER, WATCHER, Party
 from aos_protocol.errors import BusError, DeployError
 from aos_runtime.bus.credentials import Credential, credential_of_environment, credential_of_run
+from aos_runtime.client import AosClient
 
 ARM = Party(name="arm", role=ADAPTER, paths=("/pick",))
 
@@ -27,6 +28,12 @@ ARM = Party(name="arm", role=ADAPTER, paths=("/pick",))
 @pytest.fixture
 def run(tmp_path) -> RunDirectory:
     return RunDirectory.create(tmp_path, "r", 0)
+
+
+async def test_a_folder_that_is_no_run_is_named_once(tmp_path: Path):
+    with pytest.raises(BusError) as caught:
+        await AosClient.of_run(tmp_path).__aenter__()
+    assert caught.value.message == f"{tmp_path} is no run directory: run.json: No such file or directory"
 
 
 def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory):
