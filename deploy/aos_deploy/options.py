@@ -21,6 +21,8 @@ def _print_version(is_asked: bool) -> None:
         raise typer.Exit
 
 
+_WEEK_S = 7 * 86_400.0
+
 Version = Annotated[
     bool, typer.Option("--version", help="Print the version and end", callback=_print_version, is_eager=True)
 ]
@@ -31,6 +33,11 @@ def finite(value: float | None) -> float | None:
     if value is not None and not math.isfinite(value):
         raise typer.BadParameter(f"{value} is not a finite number")
     return value
+
+
+def seconds(*names: str, least: float, help: str) -> Any:
+    """Gives an option with a time of `least` seconds, and of a week at most."""
+    return typer.Option(*names, min=least, max=_WEEK_S, callback=finite, help=help)
 
 
 def writable(path: Path | None) -> Path | None:

@@ -11,7 +11,7 @@ from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.constraints import constraint_of_option
 from aos_deploy.deployment.mission_values import values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT, MAX_SEED
-from aos_deploy.options import finite
+from aos_deploy.options import seconds
 from aos_protocol.documents import MAX_HORIZON
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
@@ -28,10 +28,7 @@ Bundle = Annotated[
 Simulations = Annotated[
     int, typer.Option(min=1, max=MAX_COUNT, help="Planning budget of a decision, in simulations")
 ]
-Time = Annotated[
-    float | None,
-    typer.Option("--time", min=0.001, callback=finite, help="Planning budget in seconds, instead"),
-]
+Time = Annotated[float | None, seconds("--time", least=0.001, help="Planning budget in seconds, instead")]
 Horizon = Annotated[
     int | None,
     typer.Option(min=1, max=MAX_HORIZON, help="Look-ahead in decisions; else the environment document's"),

@@ -67,6 +67,16 @@ def shortened(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[:most]}... ({len(text):,} characters)"
 
 
+def error_text(error: BaseException) -> str:
+    """The type of an exception and its text, also where making the text raises."""
+    name = type(error).__name__
+    try:
+        text = str(error)
+    except BaseException as failure:
+        text = f"(its text raised {type(failure).__name__})"
+    return f"{name}: {text}" if text else name
+
+
 def sendable_text(text: str) -> str:
     """The text; half of a surrogate pair, as in the name of a file that is no UTF-8, is escaped."""
     return text.encode(errors="backslashreplace").decode()

@@ -153,7 +153,7 @@ class System:
         self.adapter = adapter
         self.child: Child | None = None
         self._settings = settings
-        self._log = ""
+        self.log = ""
         self._has_logged = asyncio.Event()
         self._running: asyncio.Task[None] | None = None
 
@@ -225,15 +225,15 @@ class System:
         await asyncio.wait_for(self.adapter.is_cancelled.wait(), HANG_S)
         return waiting, is_still
 
-    async def logged(self, text: str) -> str:
+    async def logged(self, text: str, times: int = 1) -> str:
         async with asyncio.timeout(HANG_S):
-            while text not in self._log:
+            while self.log.count(text) < times:
                 self._has_logged.clear()
                 await self._has_logged.wait()
-            return self._log
+            return self.log
 
     def _note(self, text: str):
-        self._log += text
+        self.log += text
         self._has_logged.set()
 
     async def _read_log(self, child: Child):

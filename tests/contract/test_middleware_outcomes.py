@@ -23,7 +23,7 @@ async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(syst
     (call,) = system.adapter.calls
     assert (call.path, call.fields) == ("/navigate", {"x": 4.0, "y": 0.0, "yaw": 0.5})
     assert call.id == outcome.id == ActivationId("m", 1)
-    assert 0 < call.deadline_s <= 10.0
+    assert call.deadline_s == 10.0, "the start of the mapping's process takes nothing of it"
     assert (outcome.status, outcome.response, outcome.fault) == ("observed", "arrived", None)
     assert outcome.local_variables["success"] == "true"
     assert 0 < outcome.started_ns <= outcome.ended_ns
@@ -93,14 +93,25 @@ async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: S
     assert silent.fault.message.endswith("; level has no value, for no message came on /level")
 
 
-async def test_a_topic_on_which_nothing_ever_comes_is_told(system: System):
-    async def publish_elsewhere(_: SkillCall) -> dict[str, Any]:
-        system.adapter.publish("/levels", {"data": 9})
+@pytest.mark.parametrize(
+    ("topic", "sent_at", "told"),
+    [("/levels", 1, "Did you mean `/levels`?"), ("/level", 0, "They come between calls"), ("/level", 1, "")],
+)
+async def test_a_topic_on_which_nothing_ever_comes_is_told_once(
+    system: System, topic: str, sent_at: int, told: str
+):
+    async def publish(call: SkillCall) -> dict[str, Any]:
+        if call.id.step == sent_at:
+            system.adapter.publish(topic, {"data": 9})
         return {}
 
-    await system.adapter.serve("/sense", publish_elsewhere)
-    assert [(await system.activate("sense", step)).response for step in (1, 2, 3)] == ["quiet"] * 3
-    await system.logged("no message has come on /level in 3 calls of skills. Did you mean `/levels`?")
+    await system.adapter.serve("/sense", publish)
+    if sent_at == 0:
+        system.adapter.publish(topic, {"data": 9})
+    responses = {(await system.activate("sense", step)).response for step in range(1, 8)}
+    assert responses == ({"quiet"} if told else {"heard", "quiet"})
+    said = [line for line in system.log.splitlines() if "no message has come" in line]
+    assert said == [f"no message has come on /level in 3 calls of skills. {told}"] * bool(told)
 
 
 async def test_a_number_that_is_not_finite_is_told_once_for_each_field(system: System):

@@ -8,6 +8,7 @@ import pytest
 from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang, succeed
 
+from aos_middleware.robot.served_paths import ServedPaths
 from aos_protocol.errors import AosError, LostAnswerError, SkillError
 from aos_protocol.messages import Outcome, SkillCall
 from aos_runtime.processes.children import PIPE, Child
@@ -64,6 +65,27 @@ async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(
     await system.logged("revision 2 is not used")
     await system.logged("sense.am:7")
     assert (await system.activate("sense")).response == "quiet"
+
+
+async def test_a_new_middleware_tells_no_skill_as_lost_of_whose_adapter_it_has_not_heard_yet(
+    system: System, monkeypatch: pytest.MonkeyPatch
+):
+    await system.adapter.serve("/sense", succeed)
+    await system.stop()
+    hears = asyncio.Event()
+    follow = ServedPaths.follow
+
+    async def follow_later(served: ServedPaths):
+        await hears.wait()
+        await follow(served)
+
+    monkeypatch.setattr(ServedPaths, "follow", follow_later)
+    loaded = system.log.count("revision 1: mappings")
+    await system.host()
+    asking = asyncio.create_task(system.state(1))
+    await system.logged("revision 1: mappings", loaded + 1)
+    hears.set()
+    assert "sense" not in (await asking).unavailable
 
 
 async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(process_system: System):

@@ -56,6 +56,18 @@ async def fail(call):
 async def names_a_file(call):
     raise RuntimeError("no \\udcff.png")
 
+class Mute(Exception):
+    def __str__(self):
+        raise KeyError("text")
+
+async def cannot_say(call):
+    raise Mute
+
+async def loses_a_part(call):
+    part = asyncio.create_task(asyncio.sleep(1000))
+    part.cancel()
+    await part
+
 async def odd(call):
     return 3
 
@@ -85,6 +97,15 @@ async def says_it_to_none(call):
 async def nonsense(call):
     return Observed(3)
 
+def leave(call):
+    raise SystemExit(4)
+
+async def leave_soon(call):
+    raise SystemExit(4)
+
+def look_in_vain(call):
+    return {"cup": next(cup for cup in [] if cup)}
+
 async def turn(angle):
     return {}
 
@@ -100,6 +121,16 @@ class Arm:
 
     async def count(self, call):
         return {"picks": self.picks}
+
+class Near:
+    def __init__(self, port="/dev/ttyUSB0"):
+        self.port = port
+    def reach(self, call): return {"port": self.port}
+
+class Hosted:
+    def __init__(self, host=None):
+        self.host = host
+    def reach(self, call): return {"name": self.host.name}
 """
 
 
@@ -157,6 +188,12 @@ async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: R
     assert (await robot.call("/count", 3)).fields == {"picks": 1}
 
 
+async def test_a_class_is_made_with_the_host_only_where_it_asks_for_one(robot: Robot):
+    await robot.start(near="robot.py:Near.reach", hosted="robot.py:Hosted.reach")
+    assert (await robot.call("/near", 1)).fields == {"port": "/dev/ttyUSB0"}
+    assert (await robot.call("/hosted", 2)).fields == {"name": "python"}
+
+
 async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot):
     await robot.start(measure="robot.py:measure")
     scans = robot.bus.listen(robot.keys.topic("/scan"), TopicMessage)
@@ -173,6 +210,11 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(robot: Robot)
     wrong: list[tuple[str, dict[str, Any], str, str]] = [
         ("fail", {}, "AOS510", "/fail failed: RuntimeError: gripper jammed"),
         ("names_a_file", {}, "AOS510", "failed: RuntimeError: no \\udcff.png"),
+        ("cannot_say", {}, "AOS510", "/cannot_say failed: Mute: (its text raised KeyError)"),
+        ("loses_a_part", {}, "AOS510", "failed: CancelledError: what it awaits was cancelled"),
+        ("leave", {}, "AOS510", "/leave failed: SystemExit: 4"),
+        ("leave_soon", {}, "AOS510", "/leave_soon failed: SystemExit: 4"),
+        ("look_in_vain", {}, "AOS510", "/look_in_vain failed: StopIteration"),
         ("odd", {}, "AOS504", "/odd answered 3, which is no mapping of field names to values"),
         ("unsendable", {}, "AOS504", "the field picture of the result of /unsendable cannot be sent"),
         ("huge", {}, "AOS504", "the result of /huge has 17000005 bytes, and the bus carries 16777216"),
@@ -290,11 +332,17 @@ async def test_a_shell_script_is_a_skill_by_the_function_of_the_page(robot: Robo
             "script.py, which cannot be loaded: SystemExit: 3. What it does as a program stands",
         ),
         ("camera.py:go", "cannot be loaded: OSError: no camera. It was raised at camera.py:2"),
+        ("far.py:Far.reach", "'port' and 'speed'. It is made without arguments, or with the host alone"),
+        ("far.py:Lost.reach", "cannot be made: OSError: no arm. It was raised at far.py:4"),
     ],
 )
 async def test_what_cannot_be_bound_ends_the_process_with_one_message(robot: Robot, target, text):
     (robot.folder / "script.py").write_text("raise SystemExit(3)\n")
     (robot.folder / "camera.py").write_text("import os\nraise OSError('no camera')\n")
+    (robot.folder / "far.py").write_text(
+        "class Far:\n    def __init__(self, port, speed): pass\n"
+        "class Lost:\n    def __init__(self): raise OSError('no arm')\n"
+    )
     child = await robot.launch(skill=target)
     async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1

@@ -3,12 +3,12 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 
 import pytest
 import typer
 from places import ROOT
-from typer.core import TyperGroup
+from typer.core import TyperGroup, TyperOption
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
@@ -48,6 +48,28 @@ def test_each_command_has_an_example_of_itself(helps: dict[str, str]):
     assert len(helps) > 50
     examples = {name: " ".join(text.split()).replace("aos-up", "aos up") for name, text in helps.items()}
     assert [name for name, text in examples.items() if f"Example: {name}" not in text] == []
+
+
+def options_below(group: TyperGroup) -> Iterator[TyperOption]:
+    for command in group.commands.values():
+        if isinstance(command, TyperGroup):
+            yield from options_below(command)
+        else:
+            yield from (option for option in command.params if isinstance(option, TyperOption))
+
+
+def test_each_option_refuses_what_is_no_number_and_only_values_may_be_as_large_as_they_like():
+    root = typer.main.get_command(aos_app())
+    assert isinstance(root, TyperGroup)
+    numbers = [option for option in options_below(root) if option.type.name.startswith("float")]
+    taken: dict[str, set[str | None]] = {"nan": set(), "1e300": set()}
+    for option in numbers:
+        for text, takers in taken.items():
+            with suppress(typer.BadParameter):
+                option.process_value(typer.Context(root), text)
+                takers.add(option.name)
+    assert len(numbers) > 8
+    assert taken == {"nan": set(), "1e300": {"precision", "stop_value", "stop_below_value"}}
 
 
 def test_files_of_examples_are_there_or_made_by_commands(helps: dict[str, str]):
@@ -93,12 +115,12 @@ def test_a_command_is_found_behind_two_dashes(arguments):
         ("plan x --horizon 10001", "'--horizon': 10001 is not a whole number from 1 to 10000, such as 1"),
         ("simulate x --runs 0", "'--runs': 0 is not a whole number of at least 1, such as 10"),
         ("plan x --threads 33", "'--threads': 33 is not a whole number from 1 to 32, such as 1"),
-        ("plan x --time soon", "'--time': 'soon' is not a number of at least 0.001, such as 1"),
         ("solve x --discount 2", "'--discount': 2.0 is not a number from 0 to 1, such as 0.5"),
         (
             "simulate x --goal-probability 2",
             "'--goal-probability': 2.0 is not a number from 0.001 to 1, such as 0.9",
         ),
+        ("plan x --time soon", "'--time': 'soon' is not a number from 0.001 to 604800.0, such as 1"),
         ("serve --port -1", "'--port': -1 is not a whole number from 0 to 65535, such as 7480"),
         ("runs prune --keep all", "'--keep': 'all' is not a whole number of at least 0, such as 1"),
         ("up x --seed z", f"'--seed': 'z' is not a whole number from 0 to {2**63 - 1}, such as 1"),

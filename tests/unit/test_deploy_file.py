@@ -9,7 +9,7 @@ from aos_deploy.bundles.files import files_of_bundle
 from aos_deploy.deployment.own_programs import ReadyPart
 from aos_deploy.deployment.parts import MAX_SEED
 from aos_deploy.deployment.reading import check_endpoint, read_deploy_file, without_a_robot
-from aos_deploy.missions.readiness import misspelt_paths
+from aos_deploy.missions.readiness import misspelt_paths, unbound_adapters
 from aos_deploy.processes.needed_here import check_needed_here
 from aos_deploy.processes.program import programs_of_deployment
 from aos_protocol.errors import DeployError
@@ -282,6 +282,13 @@ def test_a_path_that_is_nearly_one_of_a_skill_is_remarked_where_another_adapter_
         "`bind:` names /drvie, which no skill calls. Did you mean /drive? model serves that",
     )
     assert misspelt_paths(deployment, ["/drvie", "/look"]) == (), "a skill that picks may come"
+
+
+def test_an_adapter_that_nothing_is_bound_to_is_remarked_unless_documents_play_all(folder: Path):
+    text = HEAD + "adapters: {arm: {command: [./arm]}, eye: external}\nbind: {/drive: eye, '*': model}\n"
+    deployment = read(folder, text)
+    assert [remark.split(":")[0] for remark in unbound_adapters(deployment)] == ["arm is left out"]
+    assert unbound_adapters(without_a_robot(deployment)) == ()
 
 
 def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path):

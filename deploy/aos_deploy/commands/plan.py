@@ -11,7 +11,7 @@ import typer
 from aos_deploy import planning_options
 from aos_deploy.deployment.mission_values import SetValues
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments
+from aos_deploy.options import AsJson, TrustDocuments, seconds
 from aos_deploy.printing import show
 from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text
@@ -159,7 +159,7 @@ class Rate(msgspec.Struct):
 @command("Example: aos rate deploy/bundles/armadillo-finer")
 def rate(
     bundle: planning_options.Bundle,
-    seconds: Annotated[float, typer.Option(min=0.01, help="Length of one repetition")] = 1.0,
+    length_s: Annotated[float, seconds("--seconds", least=0.01, help="Length of one repetition")] = 1.0,
     seed: planning_options.Seed = 1,
     set_values: SetValues = None,
     as_json: AsJson = False,
@@ -172,10 +172,10 @@ def rate(
     """
 
     async def measure(engine: Engine) -> list[float]:
-        counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]
+        counts = [await engine.rate(length_s, seed + turn) for turn in range(RATE_REPETITIONS)]
         return [count.samples / count.seconds for count in counts]
 
     rates = planning_options.with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
-    result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
-    told = f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)"
+    result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, length_s)
+    told = f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {length_s:g} s)"
     show(result, as_json, lambda _: typer.echo(told))

@@ -9,7 +9,7 @@ import msgspec
 import typer
 
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, seconds
 from aos_deploy.printing import print_json
 from aos_deploy.running_system import System, on_system
 from aos_protocol import messages
@@ -87,7 +87,7 @@ def call(
     system: System,
     name: Annotated[str, typer.Argument(metavar="PATH", help="The path that somebody serves, or a skill")],
     fields: Annotated[list[str] | None, typer.Argument(help="NAME=VALUE; values are JSON, or texts")] = None,
-    deadline: Annotated[float, typer.Option(min=0.1, help="Seconds that it may take")] = 60.0,
+    deadline: Annotated[float, seconds(least=0.1, help="Seconds that it may take")] = 60.0,
     anyway: Annotated[bool, typer.Option("--anyway", help="Also while the mission moves the robot")] = False,
     as_json: AsJson = False,
 ) -> None:

@@ -7,12 +7,11 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from aos_deploy.deployment.own_programs import ProgramPart
+from aos_deploy.deployment.own_programs import ProgramPart, Seconds
 from aos_protocol.documents import MAX_HORIZON
 from aos_solver.mission.rules.failures import SkillRule
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
-Seconds = Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 MAX_COUNT = 2**31 - 1
 MAX_SEED = 2**63 - 1
 Count = Annotated[int, msgspec.Meta(ge=1, le=MAX_COUNT)]

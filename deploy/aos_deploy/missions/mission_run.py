@@ -11,7 +11,7 @@ import msgspec
 from aos_deploy.bundles.files import BundledFiles, files_of_bundles, project_of
 from aos_deploy.deployment.reading import Deployment, with_whole_paths
 from aos_deploy.events import Event, Report, ServiceChanged, Told
-from aos_deploy.missions.readiness import tell_lost_skills, until_skills_can_run
+from aos_deploy.missions.readiness import tell_lost_skills, unbound_adapters, until_skills_can_run
 from aos_deploy.missions.taking_up import TakenUp, worlds_text
 from aos_deploy.page_address import page_address
 from aos_deploy.printing import count, from_here, time_text
@@ -97,6 +97,8 @@ class MissionRun:
             self._report(Told(sandbox_text()))
         if self._taken_up is not None and (lost := worlds_text(self._deployment)):
             self._report(Told(lost))
+        for remark in unbound_adapters(self._deployment):
+            self._report(Told(remark))
         was_interrupted = False
         try:
             if self._taken_up is None:

@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Collection
 
+from aos_deploy.deployment.adapter_kinds import MODEL
 from aos_deploy.deployment.reading import Deployment
 from aos_deploy.events import Report, Told
 from aos_deploy.processes.supervisor import Supervisor
@@ -157,6 +158,19 @@ def misspelt_paths(deployment: Deployment, called: Collection[str]) -> tuple[str
                 f"`bind:` names {path}, which no skill calls. Did you mean {close}? {others} serves that"
             )
     return tuple(remarks)
+
+
+def unbound_adapters(deployment: Deployment) -> tuple[str, ...]:
+    """A remark for each adapter of `adapters:` that nothing is bound to; none where documents play all."""
+    kinds = {plan.kind_name for plan in deployment.adapters}
+    if kinds == {MODEL}:
+        return ()
+    bound = {plan.name for plan in deployment.adapters}
+    return tuple(
+        f"{name} is left out: `bind:` binds no path to this adapter, as `/PATH: {name}` does"
+        for name in deployment.file.adapters
+        if name not in bound
+    )
 
 
 def _hint(supervisor: Supervisor, deployment: Deployment, away: Collection[str]) -> str:

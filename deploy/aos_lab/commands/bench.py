@@ -7,7 +7,7 @@ from typing import Annotated, get_args
 import typer
 
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, finite
+from aos_deploy.options import AsJson, TrustDocuments, seconds
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
@@ -20,9 +20,7 @@ PLANNERS: tuple[Planner, ...] = get_args(Planner)
 
 _QUICK_RUNS = 4
 
-Time = Annotated[
-    float, typer.Option("--time", min=0.001, callback=finite, help="Processor seconds of a decision")
-]
+Time = Annotated[float, seconds("--time", least=0.001, help="Processor seconds of a decision")]
 
 
 @command("Example: aos bench tiger rocksample-7-8 --quick")

@@ -18,7 +18,7 @@ from aos_deploy.bundles.engine import engine_of_bundle
 from aos_deploy.deployment.mission_values import SetValues, values_of_options
 from aos_deploy.deployment.parts import MAX_COUNT
 from aos_deploy.marked_commands import command
-from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, writable
+from aos_deploy.options import AsJson, TrustDocuments, all_writable, finite, seconds, writable
 from aos_deploy.places import cache_dir
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import progress, waiting
@@ -39,9 +39,7 @@ from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, check_di
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
 
-Time = Annotated[
-    float, typer.Option("--time", min=0.001, callback=finite, help="Seconds of computing at most")
-]
+Time = Annotated[float, seconds("--time", least=0.001, help="Seconds of computing at most")]
 Precision = Annotated[
     float | None,
     typer.Option(

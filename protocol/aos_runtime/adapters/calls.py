@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import Cancel, Cancelled, SkillCall, SkillProgress, SkillResult
-from aos_protocol.spelling import sendable_text
+from aos_protocol.spelling import error_text, sendable_text
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, MovesOn
 from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
@@ -184,20 +184,21 @@ class Calls:
             raise self._stuck(call)
         self._running = None
         self._outbox.send()  # Its last messages go before its answer.
-        error = None if task.cancelled() else task.exception()
-        if error is None and not task.cancelled():
+        what_it_awaits = asyncio.CancelledError("what it awaits was cancelled")
+        error = what_it_awaits if task.cancelled() else task.exception()
+        if error is None:
             return task.result()
         is_unknown = isinstance(error, AosError) and error.code == "AOS504"
         if is_late and not is_unknown:
             raise SkillError(
                 f"{call.path} took longer than it may, {round(call.deadline_s, 1):g} s", code="AOS503"
             )
-        if error is None:
+        if task.cancelled() and call.is_cancelled:
             raise SkillError(f"{call.path} was cancelled: {running.reason}", code="AOS507")
         if isinstance(error, AosError):
             raise error
         _log.error("%s failed", call.path, exc_info=error)
-        message = f"{call.path} failed: {type(error).__name__}: {error}"
+        message = f"{call.path} failed: {error_text(error)}"
         raise SkillError(message, code="AOS510", hint=f"See the log of {self._settings.service}") from error
 
     async def cancel(self, cancel: Cancel, _: str) -> Cancelled:

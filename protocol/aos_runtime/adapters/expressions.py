@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from aos_protocol.errors import SkillError
+from aos_protocol.spelling import error_text
 
 _KNOWN = {name: value for name, value in vars(math).items() if not name.startswith("_")}
 
@@ -37,7 +38,7 @@ def translated(expressions: Mapping[str, str] | None, fields: Mapping[str, Any],
         except Exception as error:
             known = ", ".join(sorted(fields)) or "none"
             raise SkillError(
-                f"the field {name} of {what} cannot be computed by {text!r}: {type(error).__name__}: {error}",
+                f"the field {name} of {what} cannot be computed by {text!r}: {error_text(error)}",
                 hint=f"See `bind:` in the deploy file; the fields that come in are {known}",
             ) from error
     return values

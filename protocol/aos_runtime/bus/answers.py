@@ -13,6 +13,7 @@ from zenoh.handlers import Callback
 from aos_protocol.codec import decode, encode, encode_fault
 from aos_protocol.errors import AosError, BusError, LostAnswerError
 from aos_protocol.messages import Message
+from aos_protocol.spelling import error_text
 from aos_runtime.background import Background
 from aos_runtime.bus.question import RECEIPT
 from aos_runtime.clock import Clock
@@ -77,7 +78,7 @@ class Answers:
                 raise
             except Exception as error:
                 _log.exception("the handler of %s failed", key)
-                text = f"{self._sender} failed on {key}: {type(error).__name__}: {error}"
+                text = f"{self._sender} failed on {key}: {error_text(error)}"
                 self._refuse(query, BusError(text, code="AOS606", hint=f"See the log of {self._sender}"))
             else:
                 try:

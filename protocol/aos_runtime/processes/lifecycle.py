@@ -24,6 +24,7 @@ from aos_protocol.codec import UNREADABLE
 from aos_protocol.errors import AosError, DeployError, StorageError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
+from aos_protocol.spelling import error_text
 from aos_runtime.bus.bus import Access, Bus
 from aos_runtime.bus.config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
@@ -124,7 +125,7 @@ def run_process(
         status = STORAGE_STATUS if isinstance(error, StorageError) else 1
     except Exception as error:
         _log.exception("ended by a defect")
-        text = f"ended by a defect: {type(error).__name__}: {error}"
+        text = f"ended by a defect: {error_text(error)}"
         place = place_of(traceback.extract_tb(error.__traceback__))
         hint = f"It was raised in {place}; the log has all of it"
         _leave_fault(settings, Fault("AOS606", text, hint))

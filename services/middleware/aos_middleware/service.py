@@ -109,6 +109,7 @@ class _Middleware:
         return Evaluator(emitted, self._logs / f"mapping-{emitted.skill}.log", self._limits)
 
     async def _answer_state(self, _: MappingQuery, __: str) -> MappingState:
+        await self._served.until_heard()
         return self._state()
 
     def _state(self) -> MappingState:
@@ -135,7 +136,9 @@ class _Middleware:
         self._tell_state()
 
     def _tell_state(self) -> None:
-        self._service.bus.tell(self._service.keys.mapping_state, self._state())
+        """Tells the state, unless adapters that are there may not be known yet: they are none that left."""
+        if self._served.has_heard:
+            self._service.bus.tell(self._service.keys.mapping_state, self._state())
 
     async def _activate(self, request: Activate, key: str) -> Outcome:
         """Runs an activation, joins the one of the same id, or tells again how it ended."""

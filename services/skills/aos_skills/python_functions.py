@@ -21,6 +21,7 @@ from types import ModuleType
 from typing import Any
 
 from aos_protocol.errors import DeployError, SkillError
+from aos_protocol.spelling import error_text
 from aos_runtime.adapters import Answer, Call, Host
 from aos_runtime.code_places import place_of
 
@@ -69,6 +70,8 @@ class PythonAdapter:
         try:
             return await asyncio.shield(ended)
         except asyncio.CancelledError:
+            if ended.done():
+                raise
             stopping = asyncio.run_coroutine_threadsafe(self._cancel(call), self._loop)
             both = {asyncio.wrap_future(stopping), ended}
             _, going_on = await asyncio.wait(both, timeout=_TOLD_S)
@@ -146,7 +149,7 @@ class PythonAdapter:
             hint = f"It was raised at {place}:{lines[-1]}" if lines else hint
             if isinstance(error, SystemExit):
                 hint = "What it does as a program stands behind `if __name__ == '__main__':`"
-            message = f"{path} is bound to {place}, which cannot be loaded: {type(error).__name__}: {error}"
+            message = f"{path} is bound to {place}, which cannot be loaded: {error_text(error)}"
             raise DeployError(message, hint=hint) from error
         self._modules[place] = module
         return module
@@ -159,7 +162,7 @@ class PythonAdapter:
         except (Exception, SystemExit) as error:
             frame = traceback.extract_tb(error.__traceback__)[-1]
             raise DeployError(
-                f"{name} of {place} cannot be made: {type(error).__name__}: {error}",
+                f"{name} of {place} cannot be made: {error_text(error)}",
                 hint="It is made without arguments, or with the host alone"
                 if frame.filename == __file__
                 else f"It was raised at {Path(frame.filename).name}:{frame.lineno}",
@@ -265,7 +268,7 @@ def _failure(call: Call, error: BaseException) -> Exception:
     """The exception of a call; one that no future can hold, or that would end the process, told in words."""
     if isinstance(error, Exception) and not isinstance(error, StopIteration):
         return error
-    text = f"{call.path} failed: {error!r}"
+    text = f"{call.path} failed: {error_text(error)}"
     return SkillError(text, code="AOS510", hint="A function ends by an answer or an error of its own")
 
 

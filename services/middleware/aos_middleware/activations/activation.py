@@ -146,7 +146,6 @@ class _Activation:
         constants = self._evaluator.emitted.constants
         try:
             await self._evaluator.start()
-            self.call.begin()
             return await self._evaluator.begin(*self._around.low_level.arguments(self._request, constants))
         except MappingFault as error:
             if not self._around.is_played(self._mapping.activation.path):
@@ -214,6 +213,7 @@ class _Activation:
         if topics.fault is not None:
             raise topics.fault
         assert result is not None
+        topics.end(result)
         return result
 
     @property

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from contextlib import suppress
 from typing import Any
 
 from aos_middleware.activations.surroundings import Surroundings
@@ -75,7 +76,7 @@ class HeardTopics:
             messages = messages[max(taken.messages, 1) :]
 
     async def catch_up(self, result: SkillResult) -> None:
-        """Waits until every message that the adapter had sent when the call ended has been evaluated."""
+        """Waits a while for what the adapter had sent when the call ended to come, and to be evaluated."""
         published = {path.strip("/"): number for path, number in result.published.items()}
         # An unchanged number: the topic was silent, and there is nothing to wait for.
         before = self._published_before
@@ -87,18 +88,17 @@ class HeardTopics:
             if topic.strip("/") in spoken
         }
         first = set() if result.response else self._awaited  # A skill that its document plays sends nothing.
-        try:
+        with suppress(TimeoutError):
             async with asyncio.timeout(CATCH_UP_S):
                 while (first - self._last_numbers.keys()) or any(
                     self._last_numbers.get(key, 0) < number for key, number in sent.items()
                 ):
                     self._has_received.clear()
                     await self._has_received.wait()
-        except TimeoutError:
-            for key, number in sent.items():
-                _log.info("%s: message %d did not come, seen %d", key, number, self._last_numbers.get(key, 0))
-        monitors = self._around.monitors
-        await monitors.catch_up(spoken, CATCH_UP_S)
+        await self._around.monitors.catch_up(spoken, CATCH_UP_S)
+
+    def end(self, result: SkillResult) -> None:
+        """Notes which topics were silent, now that all that came has been evaluated."""
         if not result.response:
             own = {topic: key in self._last_numbers for key, topic in self._topic_of.items()}
-            self._around.silent.take_call(monitors.has_heard() | own, published)
+            self._around.silent.take_call(self._around.monitors.has_heard() | own, result.published)

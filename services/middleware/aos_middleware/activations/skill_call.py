@@ -22,17 +22,13 @@ from aos_runtime.parties.asking import AWAY_S
 _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25
 """An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
-_TOLD_BEFORE_S = 0.1
 _RETURN_S = 5.0
-_TIME_HINT = (
-    "Its time is the mapping's `max_duration`, or `timeout_s` or `activation_timeout_s` of the deploy file"
-)
 
 _log = logging.getLogger("aos.middleware")
 
 
 class Call:
-    """One call of a skill. The time of its activation begins when this is made, or with `begin`.
+    """One call of a skill.
 
     `was_called` says that the skill may have begun, `has_lost_router` that messages may have been lost since.
     """
@@ -46,11 +42,6 @@ class Call:
         self._around = around
         self._bus, self._keys, self._clock = around.bus, around.keys, around.clock
         self._stop = stop
-        self.begin()
-
-    def begin(self) -> None:
-        """The time of its activation begins now: what came before was none of the skill's."""
-        self._ends_at_s = self._clock.monotonic_s() + self._request.deadline_s
 
     async def run(self, fields: dict[str, Any]) -> SkillResult:
         """Calls the skill once nothing else moves, and returns its result.
@@ -66,14 +57,9 @@ class Call:
             await self._around.gate.confirm()
             # An adapter that cannot stop ends its process, and is started again.
             if was_served and not self._around.served.servers(path):
-                left_s = self._ends_at_s - self._clock.monotonic_s()
-                if await self._around.served.is_back(path, min(left_s, _RETURN_S)):
-                    self.begin()
+                await self._around.served.is_back(path, _RETURN_S)
             if fault := self._around.served.fault(path):
                 raise fault
-            if self._clock.monotonic_s() >= self._ends_at_s:
-                message = f"the time of {path} was over before what ran earlier stood still"
-                raise SkillError(message, code="AOS512", hint=_TIME_HINT)
             self._stop.let_out()
             return await self._call_path(path, fields)
 
@@ -82,7 +68,7 @@ class Call:
         request = self._request
         self.was_called = True
         started_s = self._clock.monotonic_s()
-        limit_s = max(self._ends_at_s - started_s, 0.0)
+        limit_s = request.deadline_s
         if self._max_duration_s is not None:
             limit_s = min(limit_s, self._max_duration_s)
         call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters, request.epoch)
@@ -92,8 +78,10 @@ class Call:
             has_ended = result.id == request.id
         except LateAnswerError as error:
             has_ended = await self._cancel(f"{request.skill} did not end within {limit_s:g} s")
-            before_s = 0.0 if limit_s == self._max_duration_s else request.deadline_s - limit_s
-            raise _timed_out(path, limit_s, before_s) from error
+            message = f"the skill at {path} did not answer within {round(limit_s, 1):g} s"
+            hint = "See the skill's log. Its time is the mapping's `max_duration`, or `timeout_s` or "
+            hint += "`activation_timeout_s` of the deploy file"
+            raise SkillError(message, code="AOS503", hint=hint) from error
         except LostAnswerError as error:
             after_s = self._clock.monotonic_s() - started_s
             has_left = await self._around.served.has_left(path, GONE_S)
@@ -162,13 +150,6 @@ class Call:
         text = str(reply) if isinstance(reply, AosError) else f"a result for {reply.id}"
         _log.warning("%s: a %s reply for %s is not used: %s", path, kind, request.id, text)
         self._around.on_stray(Stray(request.id, path, kind, text))
-
-
-def _timed_out(path: str, limit_s: float, before_s: float) -> SkillError:
-    text = f"the skill at {path} did not answer within {round(limit_s, 1):g} s"
-    if before_s >= _TOLD_BEFORE_S:
-        text += f", after {before_s:.1f} s of its time had passed before the call"
-    return SkillError(text, code="AOS503", hint=f"See the skill's log. {_TIME_HINT}")
 
 
 def _dropped(path: str, after_s: float) -> SkillError:

@@ -41,7 +41,7 @@ class ServedPaths:
         all_keys = (self._keys.all_serve, self._keys.all_live, self._keys.all_lacks, self._keys.all_returning)
         async with merged(*(self._bus.presence(keys) for keys in all_keys)) as changes:
             if not changes.has_items:
-                self._has_heard.set()
+                self._tell()
             async for key, is_alive in changes:
                 if serving := self._keys.serving_of(key):
                     self._take_in(serving, is_alive)
@@ -53,8 +53,12 @@ class ServedPaths:
                     self._is_ready[self._keys.service_of(key)] = is_alive
                 self._changed.set()
                 if not changes.has_items:
-                    self._has_heard.set()
-                    self._on_change()
+                    self._tell()
+
+    def _tell(self) -> None:
+        """All that is known of now was heard."""
+        self._has_heard.set()
+        self._on_change()
 
     def _take_in(self, serving: Serving, is_alive: bool) -> None:
         servers = self._servers.setdefault(serving.path, [])
@@ -69,6 +73,11 @@ class ServedPaths:
             told[lack.adapter] = lack
         elif told.get(lack.adapter) == lack:
             del told[lack.adapter]
+
+    @property
+    def has_heard(self) -> bool:
+        """Says whether everybody who was there before is known."""
+        return self._has_heard.is_set()
 
     async def until_heard(self) -> None:
         """Returns once everybody who was there before is known."""

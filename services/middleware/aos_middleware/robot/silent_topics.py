@@ -31,5 +31,7 @@ class SilentTopics:
         for topic in has_heard.keys() - self._heard:
             self._calls[topic] += 1
             if self._calls[topic] == CALLS:
-                hint = did_you_mean(topic, [f"/{name}" for name in sent])
+                known = [f"/{name.strip('/')}" for name in sent]
+                is_sent = f"/{topic.strip('/')}" in known
+                hint = "They come between calls" if is_sent else did_you_mean(topic, known)
                 _log.warning("no message has come on %s in %d calls of skills. %s", topic, CALLS, hint)

@@ -4,7 +4,7 @@ import re
 from types import CodeType, TracebackType
 
 from aos_middleware.workers.frames import Raised
-from aos_protocol.spelling import column_of, shortened
+from aos_protocol.spelling import column_of, error_text, shortened
 
 _MAX_ERROR_CHARACTERS = 2000
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*")
@@ -33,24 +33,17 @@ def raised(
     """
     failed = ""
     if isinstance(error, NoTruthValue):
-        text, (line, column) = f"TypeError: {_said(error)}", _start(error.code, lines)
+        text, (line, column) = f"TypeError: {error}", _start(error.code, lines)
     else:
-        text = f"{type(error).__name__}: {_said(error)}"
+        text = error_text(error)
         line, column, failed = _place(error.__traceback__, file_name, lines)
-    text = text[:_MAX_ERROR_CHARACTERS].rstrip(": ")
+    text = text[:_MAX_ERROR_CHARACTERS]
     named = set(_NAME.findall(failed))
     if isinstance(error, TypeError) and "NoneType" not in text:
         values = (local_variables or {}).items()
         text += "".join(f"; {name} is {shortened(value, 60)}" for name, value in values if name in named)
     told = tuple(name for name in unset if name in named) or unset
     return Raised(text, line, column, told, local_variables or {})
-
-
-def _said(error: BaseException) -> str:
-    try:
-        return str(error)
-    except BaseException as failure:
-        return f"(its text raised {type(failure).__name__})"
 
 
 def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int, str]:
