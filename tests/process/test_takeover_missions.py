@@ -1,8 +1,9 @@
 import msgspec
 import pytest
 from hall import HALL, marginal, with_peek
+from mapping_documents import skill_of
 from models import built_text, engine_of_text
-from scripted_missions import Surroundings, observed, run_mission
+from scripted_missions import Surroundings, jammed, observed, run_mission
 
 from aos_deploy.views.lines import adopted_line
 from aos_protocol.errors import PlanningError
@@ -55,6 +56,25 @@ async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold():
         None,
         "revision 2 takes over from 1, its belief by import",
     )
+
+
+@pytest.mark.parametrize(("renewed", "looks"), [("peek.am", 3), ("look.am", 6)])
+async def test_a_skill_that_is_set_aside_is_used_again_with_other_documents_of_its_own(renewed, looks):
+    look = f"{HALL['look.sd']}__reward = "
+    files = HALL | {"look.sd": f"{look}2;\n", "peek.sd": f"{look}1;\n"}
+    mapping = "project: hall\nresponse: above\nresponse_rule: True\nmodule_activation: skill\npath: /look\n"
+
+    def jams(request: Activate) -> Outcome:
+        if request.id.step == 6:
+            mended = RunningModel(2, engine, (skill_of(mapping, renewed),))
+            around.successor = Successor(mended, SystemClock())
+        return jammed(request) if request.skill == "look" else observed(request, "above")
+
+    around = Plugged(jams)
+    async with engine_of_text(files) as engine:
+        limits = MissionLimits(step_limit=12)
+        await run_mission(await built_text(files), jams, limits=limits, around=around)
+    assert [record.skill for record in around.decisions].count("look") == looks
 
 
 class Prepared(Search, frozen=True, kw_only=True):

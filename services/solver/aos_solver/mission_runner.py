@@ -219,12 +219,12 @@ class MissionRunner:
         """
         first = earlier[0].model if earlier else running
         begun = await self._succession.at_start_of(first, book.number)
-        first = RunningModel(first.revision, begun.engine)
+        first = msgspec.structs.replace(first, engine=begun.engine)
         if earlier:
             await earlier[0].model.engine.close()
             earlier = (Earlier(first, earlier[0].until), *earlier[1:])
             own = await running.engine.anew(book.seed, book.memory.mission_parameters)
-            first = RunningModel(running.revision, own)
+            first = msgspec.structs.replace(running, engine=own)
         await self._shelf.turn_to(first, self._succession.values(book.start))
         return first, begun.past, earlier
 
@@ -234,7 +234,7 @@ class MissionRunner:
         await self._unless_given_up(self._until_accepted_documents_are_ready())
         running = await self._succession.model(self._shelf, await self._first_model(), start, self.mission)
         begun = await self._unless_given_up(self._succession.next(running, start, self.mission))
-        running = RunningModel(running.revision, begun.engine)
+        running = msgspec.structs.replace(running, engine=begun.engine)
         await self._shelf.turn_to(running, self._succession.values(start))
         drift = self._last_drift()
         self._begin(self._books.open_next(), running, start, begun.past, drift)

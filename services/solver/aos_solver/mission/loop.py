@@ -248,6 +248,7 @@ class Mission:
             return False
         before, self._model = self._model, takeover.model
         self.belief, self._adopted = takeover.belief, takeover.row
+        self._failures.renew(takeover.model.renewed_since(before))
         if takeover.model.engine is not before.engine:
             self._chooser.forget_searches()
         if takeover.model.digest != before.digest:

@@ -90,9 +90,10 @@ class ModelShelf:
     async def _make(self, revision: ProjectRevision) -> None:
         try:
             built = await self._built(revision.project)
-            model = RunningModel(revision.revision, await self._start_engine(built))
+            engine = await self._start_engine(built)
         except AosError as error:
             return await self._refuse(revision, error)
+        model = RunningModel(revision.revision, engine, revision.project.skills)
         successor = Successor(model, self._clock)
         try:
             await self._put(successor)

@@ -8,9 +8,11 @@ that both models have keep their joint distribution, and the others are as the i
 import asyncio
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Self
 
 import msgspec
 
+from aos_protocol.documents import Skill
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary, DriftTests, Marginal, ModelAdopted, TakeoverWay
 from aos_runtime.clock import Clock
@@ -33,14 +35,19 @@ _VARIABLE = re.compile(r"\w+")
 
 
 class RunningModel(msgspec.Struct, frozen=True):
-    """A compiled model with its engine child."""
+    """A compiled model with its engine child, and the documents of its skills where they are known."""
 
     revision: int
     engine: Engine
+    skills: tuple[Skill, ...] = ()
 
     @property
     def digest(self) -> str:
         return self.engine.model_digest
+
+    def renewed_since(self, before: Self) -> list[str]:
+        """Returns the skills whose documents are new, or others than those of the model before."""
+        return [skill.name for skill in self.skills if skill not in before.skills]
 
     def drift_tests(self) -> DriftTests:
         """The tests of the model, as they begin. Skills that report any text have none."""

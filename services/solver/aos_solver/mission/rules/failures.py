@@ -3,7 +3,7 @@
 docs/when-a-skill-fails.md has all rules.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Annotated, Literal
 
 import msgspec
@@ -89,6 +89,11 @@ class Failures:
     def s_until_return(self, now_s: float) -> float:
         """Returns how long it takes until a skill that is set aside comes back by itself."""
         return self._setting_aside.s_until_return(now_s)
+
+    def renew(self, skills: Collection[str]) -> None:
+        """Somebody has mended these, or has written them anew."""
+        for skill in skills:
+            self._setting_aside.renew(skill)
 
     @property
     def retry_text(self) -> str:

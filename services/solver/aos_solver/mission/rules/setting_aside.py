@@ -72,6 +72,11 @@ class SettingAside:
         """The skill did what it should, or somebody has looked after it."""
         self._rows.pop(skill, None)
 
+    def renew(self, skill: str) -> None:
+        """The skill is another one: its row and its pause are over."""
+        self.end_row(skill)
+        self._pauses.pop(skill, None)
+
     def set_aside(self, skill: str, after: int, pause_s: float, now_s: float, last: str) -> str:
         """Sets a skill aside whose row counts for `after` failures; the reason, empty if it does not."""
         row = self._rows.get(skill)
