@@ -4,7 +4,7 @@ import pytest
 from models import built_bundle, built_text
 from places import BUNDLES
 from processes import HANG_S
-from scripted_missions import Clock, Surroundings, jammed, observed, run_mission, timed_out
+from scripted_missions import Clock, Robot, Surroundings, jammed, observed, run_mission, timed_out
 
 from aos_protocol.messages import Activate, Fault, Outcome, Steer
 from aos_solver.building.build import BuiltModel
@@ -89,9 +89,8 @@ async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_say
 
     rules = FailureRules(skills={"pick": SkillRule(on_failure="retry", retries=2)})
     state, around = await run_mission(finer, robot, rules=rules)
-    decisions = [record for record in around.records if record.outcome is None]
-    assert [decision.skill for decision in decisions[1:4]] == ["pick", "pick", "pick"]
-    assert decisions[2].why == "it is tried again after a failure, 1 of 2"
+    assert [decision.skill for decision in around.decisions[1:4]] == ["pick", "pick", "pick"]
+    assert around.decisions[2].why == "it is tried again after a failure, 1 of 2"
     assert statuses(around)[1:4] == ["failed", "failed", "observed"]
     assert state.ending == "goal"
 
@@ -134,7 +133,7 @@ async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltMo
 
 async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: BuiltModel):
     around = Surroundings(good)
-    around.unavailable = {"navigate": "its adapter has left"}
+    around.unavailable = {"navigate": LEFT}
     await run_mission(finer, good, limits=MissionLimits(step_limit=2), around=around)
     assert {record.skill for record in around.records} <= ANSWERS.keys() - {"navigate"}
     # All actions are valued all the same: the belief and the model have not changed.
@@ -146,7 +145,7 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
         around.unavailable = {}
 
     around = Surroundings(good)
-    around.unavailable = dict.fromkeys(ANSWERS, "its adapter has left")
+    around.unavailable = dict.fromkeys(ANSWERS, LEFT)
     around.on_hold = come_back
     state, _ = await run_mission(finer, good, around=around)
     assert [state.remark for state in around.states if state.phase == "holding"] == [
@@ -154,6 +153,8 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
     ]
     assert state.ending == "goal"
 
+
+LEFT = "its adapter has left"
 
 FIELD = """project: field
 horizon: 8
@@ -182,30 +183,41 @@ FIELD_SKILLS = {
 @pytest.fixture
 async def field() -> BuiltModel:
     """A field that is first flooded in the north, and then watered in the south."""
-    files = {"field.ef": FIELD}
-    for skill, code in FIELD_SKILLS.items():
+    return await built_text(documents(FIELD, FIELD_SKILLS))
+
+
+def documents(environment: str, skills: dict[str, str]) -> dict[str, str]:
+    files = {"field.ef": environment}
+    for skill, code in skills.items():
         files[f"{skill}.sd"] = f"project: field\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
-    return await built_text(files)
+    return files
 
 
 def done(request: Activate) -> Outcome:
     return observed(request, "done")
 
 
+def without_flood(robot: Robot = done) -> Surroundings:
+    """Surroundings that the adapter of a skill has left."""
+    around = Surroundings(robot)
+    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around.unavailable = {"flood": LEFT}
+    return around
+
+
 async def test_a_robot_waits_at_most_three_decisions_for_a_skill_that_nobody_can_run(field: BuiltModel):
     around = Surroundings(done)
-    around.unavailable = {"flood": "its adapter has left"}
+    around.unavailable = {"flood": LEFT}
     state, _ = await run_mission(field, done, limits=MissionLimits(step_limit=20), around=around)
-    decisions = [record for record in around.records if record.outcome is None]
-    assert [decision.skill for decision in decisions] == ["drive", *["water"] * 3, "drive", "water"]
-    assert "flood is left out after 3 decisions for want of it: its adapter has left" in decisions[-1].why
+    assert [decision.skill for decision in around.decisions] == ["drive", *["water"] * 3, "drive", "water"]
+    assert f"flood is left out after 3 decisions for want of it: {LEFT}" in around.decisions[-1].why
     assert state.ending == "goal"
 
 
 async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_is_chosen(field: BuiltModel):
     def robot(request: Activate) -> Outcome:
         if len(waits) == 0 and request.skill == "drive":
-            around.unavailable = {"flood": "its adapter has left"}
+            around.unavailable = {"flood": LEFT}
         return done(request)
 
     def come_back():
@@ -214,8 +226,8 @@ async def test_an_adapter_that_has_just_left_is_waited_for_before_another_skill_
             around.unavailable = {}
 
     waits: list[int] = []
-    around = Surroundings(robot)
-    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around = without_flood(robot)
+    around.unavailable = {}
     around.on_hold = come_back
     await run_mission(field, robot, limits=MissionLimits(step_limit=2), around=around)
     assert [record.skill for record in around.decisions] == ["drive", "flood"]
@@ -232,10 +244,8 @@ async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for
         waits.append(len(around.decisions))
         clock.now_s += changes_every_s  # Something else comes or goes, such as another adapter's skill.
 
-    around = Surroundings(done)
+    around = without_flood()
     around.clock = clock = Clock()
-    around.unavailable = {"flood": "its adapter has left"}
-    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
     around.on_hold = wait
     waits: list[int] = []
     state, _ = await run_mission(field, done, around=around)
@@ -247,9 +257,7 @@ async def test_an_adapter_that_stays_away_is_waited_for_once_and_not_planned_for
 
 
 async def test_a_mission_that_ends_since_a_skill_has_left_names_it(field: BuiltModel):
-    around = Surroundings(done)
-    around.unavailable = {"flood": "its adapter has left"}
-    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around = without_flood()
     state, _ = await run_mission(field, done, limits=MissionLimits(stop_below_value=1.9), around=around)
     assert state.ending == "nothing_worthwhile"
     assert "to return more than 1.9: flood is left out, as it was waited for" in state.remark
@@ -262,10 +270,8 @@ async def test_an_adapter_that_is_started_again_is_waited_for_as_long_as_that_ta
             around.unavailable = {}
 
     waits: list[int] = []
-    around = Surroundings(done)
-    around.unavailable = {"flood": "its adapter has left"}
+    around = without_flood()
     around.returning = ["flood"]
-    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
     around.on_hold = come_back
     await run_mission(field, done, limits=MissionLimits(step_limit=2), around=around)
     assert [record.skill for record in around.decisions] == ["drive", "flood"]
@@ -276,11 +282,9 @@ async def test_an_adapter_that_is_expected_back_is_not_waited_for_for_ever(field
     def wait():
         clock.now_s += 30
 
-    around = Surroundings(done)
+    around = without_flood()
     around.clock = clock = Clock()
-    around.unavailable = {"flood": "its adapter has left"}
     around.returning = ["flood"]
-    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
     around.on_hold = wait
     state, _ = await run_mission(field, done, around=around)
     assert (state.ending, clock.now_s) == ("goal", 900.0)
@@ -291,9 +295,7 @@ async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(field: Bui
         around.mission.steer(Steer("stop", by="ana"))
         await asyncio.Event().wait()  # Only a stop ends it.
 
-    around = Surroundings(done)
-    around.unavailable = {"flood": "its adapter has left"}
-    around.announced = dict.fromkeys(FIELD_SKILLS, 1)
+    around = without_flood()
     monkeypatch.setattr(around, "until_changed", until_changed)
     async with asyncio.timeout(HANG_S):
         state, _ = await run_mission(field, done, around=around)
@@ -301,20 +303,13 @@ async def test_a_mission_that_waits_for_an_adapter_is_stopped_at_once(field: Bui
 
 
 async def test_a_skill_that_stays_away_and_is_worth_as_much_as_others_is_passed_over():
-    spray = "state__.is_sprayed = true;"
-    skills = {"inspect": "__reward = 0;", "spray": spray}
-    environment = FIELD.replace("field", "row").replace("is_watered", "is_sprayed")
-    files = {"row.ef": environment.replace("0.95", "1.0")}
-    for skill, code in skills.items():
-        files[f"{skill}.sd"] = f"project: row\n\ndynamic_model:\n{code}\n__moduleResponse = done;\n"
-    row = await built_text(files)
-    around = Surroundings(done)
-    around.announced = dict.fromkeys(skills, 1)
-    around.unavailable = {"spray": "its adapter has left"}
-    state, _ = await run_mission(row, done, around=around)
+    skills = {"inspect": "__reward = 0;", "flood": "state__.is_watered = true;"}
+    built = await built_text(documents(FIELD.replace("0.95", "1.0"), skills))
+    around = without_flood()
+    state, _ = await run_mission(built, done, around=around)
     assert [record.skill for record in around.decisions] == ["inspect"] * 3
     assert state.ending == "skills_failed"
-    assert "spray is left out, as it was waited for" in state.remark
+    assert "flood is left out, as it was waited for" in state.remark
 
 
 async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_no_step_is_spent(
@@ -324,7 +319,7 @@ async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_n
         around.unavailable = {}
 
     around = Surroundings(done)
-    around.unavailable = dict.fromkeys(("flood", "water"), "its adapter has left")
+    around.unavailable = dict.fromkeys(("flood", "water"), LEFT)
     around.on_hold = come_back
     limits = MissionLimits(step_limit=20, stop_below_value=0.0)
     await run_mission(field, done, limits=limits, around=around)
@@ -335,8 +330,8 @@ async def test_where_nothing_else_is_worth_doing_the_adapter_is_waited_for_and_n
 
 async def test_a_mission_does_not_hold_for_ever(finer: BuiltModel):
     around = Surroundings(good)
-    around.unavailable = dict.fromkeys(ANSWERS, "its adapter has left")
+    around.unavailable = dict.fromkeys(ANSWERS, LEFT)
     state, _ = await run_mission(finer, good, around=around, hold_s=0.01)
     assert state.ending == "fault"
     assert "AOS513" in state.remark
-    assert "its adapter has left" in state.remark
+    assert LEFT in state.remark
