@@ -142,6 +142,12 @@ class Adapter:
         self._bus.tell(self._keys.topic(topic), messages.TopicMessage(self._sent[topic], fields))
 
 
+def assert_ended(outcome: messages.Outcome, status: str, code: str, text: str = ""):
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == (status, code)
+    assert text in f"{outcome.fault.message} {outcome.fault.hint}"
+
+
 class System:
     """A middleware with its surroundings, and how the solver speaks to it."""
 
@@ -196,6 +202,12 @@ class System:
             holds,
             timeout_s=HANG_S,
         )
+
+    async def can_run(self, skill: str) -> messages.MappingState:
+        return await self.state_when(lambda state: skill not in state.unavailable)
+
+    async def cannot_run(self, skill: str) -> messages.MappingState:
+        return await self.state_when(lambda state: skill in state.unavailable)
 
     async def activate(
         self,

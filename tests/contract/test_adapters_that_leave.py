@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from adapter_process import started_adapter
-from middleware_system import System
+from middleware_system import System, assert_ended
 from processes import HANG_S
 
 from aos_protocol.messages import MissionQuery, MissionState
@@ -34,7 +34,7 @@ async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
 ):
     child = await launch(system, endpoint, tmp_path)
     try:
-        await system.state_when(lambda state: "sense" not in state.unavailable)
+        await system.can_run("sense")
         os.kill(child.pid, death)
         await system.state_when(lambda state: "sense" in state.unavailable and not state.returning)
         assert (await system.activate("sense", 1)).status == "refused"
@@ -45,7 +45,7 @@ async def test_the_skills_of_an_adapter_that_leaves_wait_for_its_return(
             os.kill(child.pid, signal.SIGCONT)
         else:
             child = await launch(system, endpoint, tmp_path)
-        state = await system.state_when(lambda state: "sense" not in state.unavailable)
+        state = await system.can_run("sense")
         assert state.returning == ()
         assert (await system.activate("sense", 2)).status == "observed"
     finally:
@@ -73,22 +73,22 @@ async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_i
         step = 0
         status = ""
         while status != "observed":  # While it starts, its paths may come and go.
-            await system.state_when(lambda state: "sense" not in state.unavailable)
+            await system.can_run("sense")
             step += 1
             now = MissionState("m", "acting", step, 0.0)
             status = (await system.activate("sense", step)).status
         status = "refused"
         while status == "refused":  # The link was lost before the call went out.
             os.kill(child.pid, signal.SIGCONT)
-            await system.state_when(lambda state: "sense" not in state.unavailable)
+            await system.can_run("sense")
             step += 1
             now = MissionState("m", "acting", step, 0.0)
             os.kill(child.pid, signal.SIGSTOP)
             status = (await system.activate("sense", step)).status
         now = MissionState("m", "holding", step, 0.0)
-        await system.state_when(lambda state: "sense" in state.unavailable)
+        await system.cannot_run("sense")
         os.kill(child.pid, signal.SIGCONT)
-        await system.state_when(lambda state: "sense" not in state.unavailable)
+        await system.can_run("sense")
         given_up = step
         while status != "observed":
             step += 1
@@ -103,18 +103,18 @@ async def test_a_call_that_an_adapter_finds_after_a_pause_does_not_begin_where_i
 async def test_an_adapter_that_ends_at_once_may_have_begun(system: System, endpoint: str, tmp_path):
     for step in range(1, 5):
         child = await launch(system, endpoint, tmp_path, "import os\ndef sense(call):\n    os._exit(1)\n")
-        await system.state_when(lambda state: "sense" not in state.unavailable)
+        await system.can_run("sense")
         assert (await system.activate("sense", step)).status == "unknown"
         async with asyncio.timeout(HANG_S):
             await child.wait()
-        await system.state_when(lambda state: "sense" in state.unavailable)
+        await system.cannot_run("sense")
 
 
 async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_is_started_again(system: System):
     ready = system.keys.live("scripted")
     await system.adapter.announce("/sense")
     await system.bus.announce(ready)
-    await system.state_when(lambda state: "sense" not in state.unavailable)
+    await system.can_run("sense")
     system.bus.withdraw(ready)
     await system.state_when(lambda state: "still starting" in state.unavailable.get("sense", ""))
     await system.adapter.announce("/serve")
@@ -124,8 +124,5 @@ async def test_nobody_decides_for_the_first_skill_of_an_adapter_that_is_started_
 
 async def test_a_token_without_anybody_who_answers_is_no_adapter(system: System):
     await system.adapter.announce("/sense")
-    await system.state_when(lambda state: "sense" not in state.unavailable)
-    outcome = await system.activate("sense", 1)
-    assert outcome.status == "refused"
-    assert outcome.fault is not None
-    assert outcome.fault.code == "AOS505"
+    await system.can_run("sense")
+    assert_ended(await system.activate("sense", 1), "refused", "AOS505")

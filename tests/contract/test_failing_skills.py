@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import HANG_S, SENSE, System, answering, hang
+from middleware_system import HANG_S, SENSE, System, answering, assert_ended, hang
 
 from aos_protocol.codec import MAX_BYTES
 from aos_protocol.errors import LostAnswerError, SkillError
@@ -55,13 +55,13 @@ async def test_a_rule_can_tell_how_a_skill_has_ended(system: System):
 
 async def test_an_adapter_that_leaves_and_a_second_one_of_a_path_make_its_skills_unavailable(system: System):
     await system.adapter.serve("/sense", answering({}))
-    await system.state_when(lambda state: "sense" not in state.unavailable)
+    await system.can_run("sense")
     system.adapter.withdraw("/sense")
-    state = await system.state_when(lambda state: "sense" in state.unavailable)
+    state = await system.cannot_run("sense")
     assert state.unavailable["sense"] == "no adapter answers calls of /sense"
     assert state.announced["sense"] == 1
     await system.adapter.announce("/sense")
-    state = await system.state_when(lambda state: "sense" not in state.unavailable)
+    state = await system.can_run("sense")
     assert state.announced["sense"] == 2
     await system.adapter.announce("/sense", "other")
     await system.state_when(lambda state: "is served by" in state.unavailable.get("sense", ""))
@@ -69,7 +69,7 @@ async def test_an_adapter_that_leaves_and_a_second_one_of_a_path_make_its_skills
     both = " and ".join(f"{name} 1 (instance {system.adapter.instance})" for name in ("scripted", "other"))
     assert_refused(outcome, "AOS511", f"/sense is served by {both}")
     system.adapter.withdraw("/sense", "other")
-    await system.state_when(lambda state: "sense" not in state.unavailable)
+    await system.can_run("sense")
     assert (await system.activate("sense", 2)).status == "observed"
 
 
@@ -91,7 +91,7 @@ async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System):
 async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_called(system: System):
     waiting, is_still = await system.beside_a_motion("sense")
     system.adapter.withdraw("/sense")
-    await system.state_when(lambda state: "sense" in state.unavailable)
+    await system.cannot_run("sense")
     is_still.set()
     assert_refused(await waiting, "AOS505", "no adapter answers calls of /sense")
 
@@ -99,7 +99,7 @@ async def test_an_adapter_that_has_left_when_it_is_known_to_stand_still_is_not_c
 async def test_an_adapter_that_ends_since_it_cannot_stop_is_called_when_it_is_started_again(system: System):
     waiting, is_still = await system.beside_a_motion("sense", deadline_s=1e-3)
     system.adapter.withdraw("/sense")
-    await system.state_when(lambda state: "sense" in state.unavailable)
+    await system.cannot_run("sense")
     is_still.set()
     await system.logged("/sense of m-1 has stopped")
     await system.adapter.announce("/sense")
@@ -115,7 +115,7 @@ async def test_while_an_adapter_cannot_be_cancelled_no_skill_is_available(system
     assert_refused(await system.activate("sense", 2), "AOS512", "/sense may still be moving")
     await system.state_when(lambda state: "/sense may still" in state.unavailable.get("sense", ""))
     await system.adapter.serve_cancel("/sense")
-    await system.state_when(lambda state: "sense" not in state.unavailable)
+    await system.can_run("sense")
     assert (await system.activate("sense", 3)).status == "observed"
 
 
@@ -192,10 +192,7 @@ async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system:
 async def test_a_reply_that_cannot_be_read_says_nothing_of_the_skill(system: System):
     no_result: Any = Cancelled()
     await system.adapter.serve("/sense", answering({}), lambda _: no_result)
-    outcome = await system.activate("sense", 1)
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS602")
-    assert "docs/protocol.md" in outcome.fault.hint
+    assert_ended(await system.activate("sense", 1), "unknown", "AOS602", "docs/protocol.md")
 
 
 async def test_a_call_that_is_dropped_by_an_adapter_that_stays_is_no_loss_of_the_adapter(system: System):
@@ -203,10 +200,7 @@ async def test_a_call_that_is_dropped_by_an_adapter_that_stays_is_no_loss_of_the
         raise LostAnswerError("nothing more comes")
 
     await system.adapter.serve("/sense", drop)
-    outcome = await system.activate("sense", 1)
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS504")
-    assert "dropped the call" in outcome.fault.message
+    assert_ended(await system.activate("sense", 1), "unknown", "AOS504", "dropped the call")
 
 
 async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_doubt(system: System):
@@ -219,7 +213,4 @@ async def test_a_call_that_is_too_large_for_the_bus_is_refused_and_leaves_no_dou
 
 
 def assert_refused(outcome: Outcome, code: str, text: str):
-    assert outcome.status == "refused"
-    assert outcome.fault is not None
-    assert outcome.fault.code == code
-    assert text in outcome.fault.message
+    assert_ended(outcome, "refused", code, text)

@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import SENSE, System, answering, hang, succeed
+from middleware_system import SENSE, System, answering, assert_ended, hang, succeed
 
 from aos_middleware.robot.served_paths import ServedPaths
 from aos_protocol.errors import AosError, LostAnswerError, SkillError
@@ -93,9 +93,7 @@ async def test_a_repeated_id_brings_the_first_outcome_again_and_moves_nothing(pr
     first = await process_system.activate("pick")
     assert await process_system.activate("pick") == first
     # An id that stands for another motion moves nothing, and is a step of the mission.
-    outcome = await process_system.activate("serve")
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("refused", "AOS514")
+    assert_ended(await process_system.activate("serve"), "refused", "AOS514")
     await process_system.stop()
     await process_system.start()
     await process_system.state(1)
@@ -169,9 +167,7 @@ async def test_what_a_new_middleware_cannot_call_may_have_been_called_before(pro
     process_system.adapter.withdraw("/pick")
     await process_system.start()
     await process_system.state(1)
-    outcome = await process_system.activate("pick")
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS505")
+    assert_ended(await process_system.activate("pick"), "unknown", "AOS505")
 
 
 async def test_an_adapter_killed_during_the_call_leaves_the_outcome_unknown(system: System, endpoint: str):
@@ -181,9 +177,7 @@ async def test_an_adapter_killed_during_the_call_leaves_the_outcome_unknown(syst
         activation = tasks.create_task(system.activate("serve"))
         assert await adapter.stdout.readline() == b"called\n"
         adapter.kill()
-    outcome = activation.result()
-    assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS504")
+    assert_ended(activation.result(), "unknown", "AOS504")
 
 
 async def _error_of(asked: Awaitable[Outcome]) -> AosError:

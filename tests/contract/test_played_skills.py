@@ -35,7 +35,7 @@ async def outcome_of(system: System) -> Outcome:
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(NO_FIELDS, "sense.am"),)))
     await system.state(system.registry.current.revision)
     await system.adapter.serve("/sense", answering({}), observed)
-    await system.state_when(lambda state: "sense" not in state.unavailable)
+    await system.can_run("sense")
     return await system.activate("sense")
 
 
