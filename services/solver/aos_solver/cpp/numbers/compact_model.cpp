@@ -14,7 +14,7 @@ namespace aos {
 
 void CompactModel::add_row(std::vector<Outcome>& outcomes, float reward) {
   constexpr double certain = 1 - 1e-9;
-  if (outcomes.size() > 1) std::sort(outcomes.begin(), outcomes.end(), [](const Outcome& left, const Outcome& right) { return left.next < right.next; });
+  std::ranges::sort(outcomes, {}, &Outcome::next);
   add_up_neighbours(outcomes, &Outcome::next, &Outcome::probability);
   const bool is_certain = outcomes.size() == 1 && outcomes[0].probability > certain;
   if (outcomes.size() > max_outcomes) throw NotEnumerable{"a step has too many outcomes"};

@@ -147,15 +147,9 @@ double ExactEvaluation::loss_of_mission(Weighted belief, std::size_t action, int
   return loss;
 }
 std::size_t ExactEvaluation::best_action(const Weighted& belief, int horizon) {
-  std::size_t best = 0;
-  ExactValue highest = action_value(belief, best, horizon);
-  for (std::size_t action = 1; action < rows_.actions; ++action) {
-    const ExactValue value = action_value(belief, action, horizon);
-    if (!value.is_better_than(highest)) continue;
-    highest = value;
-    best = action;
-  }
-  return best;
+  const std::vector<ExactValue> values = action_values(belief, horizon);
+  const auto is_worse = [](const ExactValue& one, const ExactValue& other) { return other.is_better_than(one); };
+  return std::ranges::max_element(values, is_worse) - values.begin();
 }
 
 ExactValue ExactEvaluation::best_value(Weighted belief, int horizon) {

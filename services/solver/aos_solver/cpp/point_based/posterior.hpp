@@ -43,7 +43,19 @@ class Posterior {
   double observe(const ObservationBranch& branch) {
     belief_.states.clear();
     belief_.probabilities.clear();
-    return branch.is_ascending ? listed(branch) : gathered(branch);
+    double total = 0;
+    for (const ObservationBranch::Successor& successor : branch.successors) {
+      const double weight = predicted_[successor.target] * successor.probability;
+      if (weight <= 0) continue;
+      total += weight;
+      if (branch.is_ascending || dense_[successor.local] == 0) belief_.states.push_back(successor.local);
+      if (branch.is_ascending) belief_.probabilities.push_back(weight);
+      else dense_[successor.local] += weight;
+    }
+    if (branch.is_ascending) return total;
+    if (!std::ranges::is_sorted(belief_.states)) std::ranges::sort(belief_.states);
+    for (const std::uint32_t local : belief_.states) belief_.probabilities.push_back(std::exchange(dense_[local], 0.0));
+    return total;
   }
 
   // The weights as a belief, given their sum. States with no more than `negligible` probability are left out.
@@ -77,33 +89,6 @@ class Posterior {
   }
 
  private:
-  // For branches whose successors are in different states, in ascending order.
-  double listed(const ObservationBranch& branch) {
-    double total = 0;
-    for (const ObservationBranch::Successor& successor : branch.successors) {
-      const double weight = predicted_[successor.target] * successor.probability;
-      if (weight <= 0) continue;
-      belief_.states.push_back(successor.local);
-      belief_.probabilities.push_back(weight);
-      total += weight;
-    }
-    return total;
-  }
-
-  double gathered(const ObservationBranch& branch) {
-    double total = 0;
-    for (const ObservationBranch::Successor& successor : branch.successors) {
-      const double weight = predicted_[successor.target] * successor.probability;
-      if (weight <= 0) continue;
-      if (dense_[successor.local] == 0) belief_.states.push_back(successor.local);
-      dense_[successor.local] += weight;
-      total += weight;
-    }
-    if (!std::ranges::is_sorted(belief_.states)) std::ranges::sort(belief_.states);
-    for (const std::uint32_t local : belief_.states) belief_.probabilities.push_back(std::exchange(dense_[local], 0.0));
-    return total;
-  }
-
   std::vector<double> predicted_;  // by target
   std::vector<double> dense_;      // by state; all 0 between calls
   Belief belief_;

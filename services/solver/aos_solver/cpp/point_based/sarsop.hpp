@@ -76,11 +76,8 @@ class Sarsop {
   // Runs one trial with its backups. `is_over()` cuts the trial short, and `is_late()` its backups, too. Returns whether there may be
   // more to find out.
   bool improve(double precision, Asked is_over, Asked is_late) {
-    const Root* widest = nullptr;
-    for (const Root& root : roots_) {
-      if (widest == nullptr || weighted_gap(root) > weighted_gap(*widest)) widest = &root;
-    }
-    return widest != nullptr && improve_from(widest->node, precision, is_over, is_late);
+    const auto widest = std::ranges::max_element(roots_, {}, [this](const Root& root) { return weighted_gap(root); });
+    return widest != roots_.end() && improve_from(widest->node, precision, is_over, is_late);
   }
 
   // Runs one trial below an action that is being carried out at the only start.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/add_up.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/draws/observed_numbers.hpp"
 #include "aos/draws/random.hpp"
@@ -206,15 +207,12 @@ struct Cloud {
       weights.emplace_back(lineages[i].trace->origin, particles[i].weight);
     }
     std::sort(weights.begin(), weights.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    add_up_neighbours(weights, &std::pair<const Trace*, double>::first, &std::pair<const Trace*, double>::second);
     double sum = 0;
     double squares = 0;
-    for (auto next = weights.begin(); next != weights.end();) {
-      double of_one = 0;
-      for (const Trace* const origin = next->first; next != weights.end() && next->first == origin; ++next) {
-        of_one += next->second;
-      }
-      sum += of_one;
-      squares += of_one * of_one;
+    for (const auto& [origin, weight] : weights) {
+      sum += weight;
+      squares += weight * weight;
     }
     return squares > 0 ? sum * sum / squares : 0;
   }

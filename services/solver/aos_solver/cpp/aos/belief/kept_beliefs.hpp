@@ -39,7 +39,7 @@ class KeptBeliefs {
     }
     const bool has_traces = traces_.end();
     put_head({});
-    put(words.data(), words.size() * sizeof(Words::value_type));
+    file_.write(words.data(), words.size() * sizeof(Words::value_type));
     for (const Belief<Model>* belief : beliefs) put_belief(*belief);
     const bool is_whole = file_.flush() && has_traces && file_.place() - begin() <= area_bytes;
     if (is_whole) put_head({change_, beliefs.size(), words.size(), traces_.extent()});
@@ -51,7 +51,7 @@ class KeptBeliefs {
     change_ = change;
     Head head{};
     file_.seek(begin());
-    get(&head, sizeof head);
+    file_.read(&head, sizeof head);
     if (!file_.is_good() || head.change != change || head.beliefs == 0) return std::nullopt;
     const std::vector<TraceLink> traces = traces_.restore(head.traces);
     if (traces.size() != head.traces.blocks) return std::nullopt;
@@ -99,7 +99,7 @@ class KeptBeliefs {
   // The seek writes what was put before, so that the file has the same order.
   void put_head(const Head& head) {
     file_.seek(begin());
-    put(&head, sizeof head);
+    file_.write(&head, sizeof head);
   }
   void put_belief(const Belief<Model>& belief) {
     const auto& particles = belief.particles();
@@ -121,7 +121,7 @@ class KeptBeliefs {
     for (const Lineage& lineage : belief.lineages()) {
       put_as_bytes(KeptLineage{lineage.squares, lineage.trace == nullptr ? no_trace : lineage.trace->kept.number});
     }
-    put(step_words.data(), step_words.size() * sizeof(Words::value_type));
+    file_.write(step_words.data(), step_words.size() * sizeof(Words::value_type));
     if (!rest.origins) return;
     for (std::size_t i = 0; i < rest.origins->states.size(); ++i) {
       put_state(rest.origins->states[i], rest.origins->cumulative[i]);
@@ -129,13 +129,13 @@ class KeptBeliefs {
   }
   Belief<Model> next_belief(const std::vector<TraceLink>& traces) {
     BeliefHead head{};
-    get(&head, sizeof head);
+    file_.read(&head, sizeof head);
     Cloud<Model> cloud;
     cloud.particles.resize(file_.is_good() ? head.particles : 0);
     for (auto& [state, weight] : cloud.particles) get_state(state, weight);
     for (std::uint64_t left = file_.is_good() ? head.lineages : 0; left > 0; --left) {
       KeptLineage lineage{};
-      get(&lineage, sizeof lineage);
+      file_.read(&lineage, sizeof lineage);
       if (lineage.trace == no_trace) {
         cloud.lineages.push_back({lineage.squares, nullptr});
       } else if (lineage.trace < traces.size()) {
@@ -165,20 +165,18 @@ class KeptBeliefs {
   }
   Words next_words(std::uint64_t count) {
     Words words(file_.is_good() ? count : 0);
-    get(words.data(), words.size() * sizeof(Words::value_type));
+    file_.read(words.data(), words.size() * sizeof(Words::value_type));
     return words;
   }
   void put_state(const typename Model::State& state, double weight) {
     put_as_bytes(weight);
-    put(Model::bytes_of(state), Model::state_bytes());
+    file_.write(Model::bytes_of(state), Model::state_bytes());
   }
   void get_state(typename Model::State& state, double& weight) {
-    get(&weight, sizeof weight);
-    get(Model::bytes_of(state), Model::state_bytes());
+    file_.read(&weight, sizeof weight);
+    file_.read(Model::bytes_of(state), Model::state_bytes());
   }
-  void put_as_bytes(const auto& value) { put(&value, sizeof value); }
-  void put(const void* from, std::size_t count) { file_.write(from, count); }
-  void get(void* to, std::size_t count) { file_.read(to, count); }
+  void put_as_bytes(const auto& value) { file_.write(&value, sizeof value); }
 
   DescriptorFile file_;
   KeptTraces traces_;

@@ -5,6 +5,7 @@
 // aos_solver/child/lines/command_line.py writes the lines.
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <optional>
@@ -66,10 +67,8 @@ class Command {
   const std::vector<std::string_view>& items() const { return items_; }
 
   std::optional<std::string_view> optional_text(std::string_view field) const {
-    for (const Field& each : fields_) {
-      if (each.name == field) return each.value;
-    }
-    return std::nullopt;
+    const auto found = std::ranges::find(fields_, field, &Field::name);
+    return found != fields_.end() ? std::optional{found->value} : std::nullopt;
   }
   std::string_view text(std::string_view field) const {
     const auto found = optional_text(field);

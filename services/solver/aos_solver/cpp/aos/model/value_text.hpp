@@ -235,10 +235,8 @@ void SavedConstants::read_all(std::span<const Member> members, void* state, Stat
 }
 
 const std::string* SavedConstants::find(std::string_view name) const {
-  for (const auto& [known, text] : texts_) {
-    if (known == name) return &text;
-  }
-  return nullptr;
+  const auto known = std::ranges::find(texts_, name, &std::pair<std::string, std::string>::first);
+  return known != texts_.end() ? &known->second : nullptr;
 }
 
 }

@@ -295,12 +295,8 @@ class StateSpace {
     constexpr double unit = 0x1p51;  // differences below 1 / unit come from rounding
     likelihoods_.clear();
     key_.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      if (likelihoods_.empty() || likelihoods_.back().observation != paths_[i].observation) {
-        likelihoods_.push_back({paths_[i].observation, 0});
-      }
-      likelihoods_.back().probability += paths_[i].probability / total;
-    }
+    for (std::size_t i = first; i < last; ++i) likelihoods_.push_back({paths_[i].observation, paths_[i].probability / total});
+    add_up_neighbours(likelihoods_, &point_based::Likelihood::observation, &point_based::Likelihood::probability);
     for (const auto& [observation, probability] : likelihoods_) {
       key_.push_back(observation);
       key_.push_back(static_cast<std::uint64_t>(std::llround(unit * probability)));

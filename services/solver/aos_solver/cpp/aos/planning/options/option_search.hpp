@@ -128,7 +128,8 @@ class OptionSearch {
 
   // The ways from a state, the best first. `steps` is counted down.
   std::vector<Option> from(const State& state, double& steps, Sampler& random) {
-    std::vector<Option> found = counts_ ? options_of(confirmed(state, found_by_conditions(state, steps, random), steps, random)) : narrow(state, steps, random);
+    std::vector<Option> found = counts_ ? options_of(confirmed(state, found_by_conditions(state, steps, random), steps, random))
+                                        : narrow(state, steps, random);
     if (found.empty()) found = searched(state, 2, steps, random);
     return found;
   }

@@ -47,12 +47,10 @@ class StepReports {
 
   void clear() { branches_.clear(); }
   void add(double probability, Observation response, const KeptDistributions::Kept& numbers) {
-    for (Branch& branch : branches_) {
-      if (branch.response != response || branch.numbers != numbers) continue;
-      branch.probability += probability;
-      return;
-    }
-    branches_.push_back({probability, response, numbers});
+    const auto is_it = [&](const Branch& branch) { return branch.response == response && branch.numbers == numbers; };
+    const auto known = std::ranges::find_if(branches_, is_it);
+    if (known != branches_.end()) known->probability += probability;
+    else branches_.push_back({probability, response, numbers});
   }
   const std::vector<Branch>& branches() const { return branches_; }
 
@@ -65,12 +63,8 @@ class StepReports {
 
   Seen drawn(Sampler& random) const {
     double place = random.uniform();
-    const Branch* chosen = &branches_.back();
-    for (const Branch& branch : branches_) {
-      if ((place -= branch.probability) >= 0) continue;
-      chosen = &branch;
-      break;
-    }
+    auto chosen = std::ranges::find_if(branches_, [&](const Branch& branch) { return (place -= branch.probability) < 0; });
+    if (chosen == branches_.end()) --chosen;
     Seen observed{chosen->response, {}};
     for (const auto& number : chosen->numbers) observed.numbers.push_back(number.second.quantile(random.uniform()));
     return observed;

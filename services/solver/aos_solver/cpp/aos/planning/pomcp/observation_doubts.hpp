@@ -19,12 +19,9 @@ class ObservationOddsOfStep {
  public:
   void clear() { odds_.clear(); }
   void add(Observation seen, double probability) {
-    for (auto& known : odds_) {
-      if (known.first != seen) continue;
-      known.second += probability;
-      return;
-    }
-    odds_.emplace_back(seen, probability);
+    const auto known = std::ranges::find(odds_, seen, &std::pair<Observation, double>::first);
+    if (known != odds_.end()) known->second += probability;
+    else odds_.emplace_back(seen, probability);
   }
   double entropy() const { return entropy_of(odds_, &std::pair<Observation, double>::second); }
   const std::vector<std::pair<Observation, double>>& all() const { return odds_; }

@@ -85,6 +85,9 @@ class SavingLookahead {
 
   // The income of a group, times its weight.
   double of_group(std::span<const Told> group) {
+    const auto income_of = [&](const Told& told, std::size_t way) {
+      return belief_->weights()[told.state] * incomes_[told.state * best_.size() + way];
+    };
     double sum = 0;
     for (std::size_t half = 0; half < 2 && !group.empty(); ++half) {
       // One state alone knows nothing: it goes by itself.
@@ -92,11 +95,11 @@ class SavingLookahead {
       best_.assign(ways_.size() + 1, 0);
       for (std::size_t j = 0; j < group.size(); ++j) {
         if (is_split && j % 2 != half) continue;
-        for (std::size_t i = 0; i < best_.size(); ++i) best_[i] += belief_->weights()[group[j].state] * incomes_[group[j].state * best_.size() + i];
+        for (std::size_t i = 0; i < best_.size(); ++i) best_[i] += income_of(group[j], i);
       }
       const auto best = static_cast<std::size_t>(std::ranges::max_element(best_) - best_.begin());
       for (std::size_t j = 0; j < group.size(); ++j) {
-        if (!is_split || j % 2 != half) sum += (is_split ? 1 : 0.5) * belief_->weights()[group[j].state] * incomes_[group[j].state * best_.size() + best];
+        if (!is_split || j % 2 != half) sum += (is_split ? 1 : 0.5) * income_of(group[j], best);
       }
     }
     return sum;
