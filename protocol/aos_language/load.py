@@ -98,7 +98,8 @@ def load_files(
 def _draft(
     documents: Mapping[str, Document], assembly: Assembly, errors: Iterable[Diagnostic]
 ) -> Project | None:
-    """The project without the skills whose declarations are wrong; None where others are."""
+    """The project without the skills whose declarations are wrong, and without mappings of monitors that are
+    not there; None where other declarations are wrong."""
     wrong = set()
     for file in {found.span.file for found in errors if not _leaves_declarations(found)}:
         document = documents.get(file)
@@ -108,7 +109,10 @@ def _draft(
             wrong.add(document.name)
     models = {name: model for name, model in assembly.models.items() if name not in wrong}
     mappings = {name: mapping for name, mapping in assembly.mappings.items() if name in models}
-    return msgspec.structs.replace(assembly, models=models, mappings=mappings).project()
+    known = {model.name for model in assembly.environment.monitors} if assembly.environment else ()
+    monitors = {name: mapping for name, mapping in assembly.monitors.items() if mapping.monitor in known}
+    draft = msgspec.structs.replace(assembly, models=models, mappings=mappings, monitors=monitors)
+    return draft.project()
 
 
 def _leaves_declarations(found: Diagnostic) -> bool:

@@ -68,6 +68,13 @@ def test_a_mistake_is_told_at_its_line(file, find, put, finding):
     assert any(each.startswith(finding) for each in told), told
 
 
+def test_a_mapping_of_a_monitor_that_is_not_there_is_left_out_of_what_is_compiled():
+    files = BATTERY | {"battery.am": BATTERY["battery.am"].replace("monitor: battery", "monitor: batery")}
+    draft = load_files({name: text.encode() for name, text in files.items()}).draft
+    assert draft is not None
+    assert draft.monitors == ()
+
+
 def test_a_monitor_without_rules_or_topics_says_what_it_lacks():
     text = "project: battery\nmonitor: battery\n"
     told = findings(battery_am=(BATTERY["battery.am"], text))

@@ -270,6 +270,8 @@ def test_a_real_number_that_rounding_makes_miss_a_decimal_is_told():
             "__reward - (1);",
             "9 AOS149 this statement does nothing. To set a variable, write `NAME = __reward - (1);`",
         ),
+        ("__reward =+ 1;", "9 AOS149 this `+` does nothing. To add, write `+=`"),
+        ("__reward = +1; __reward += +1;", ""),
         ("(void)steps; if (steps > 1) state__.first.x++;", ""),
         ("state__.first.x += 0.2;", "9 AOS149 `state__.first.x` is a whole number, and `0.2` is none. "),
         ("int far = -1.5; state__.first.x = far;", "9 AOS149 `far` is a whole number, and `-1.5` is none. "),
@@ -310,6 +312,11 @@ def test_an_execution_time_with_a_fraction_is_told(time, is_told):
 def test_a_default_that_sets_nothing_or_loses_a_fraction_is_told(code, told):
     texts = finding_texts(environment=ENVIRONMENT.replace("state.near = 1;", code))
     assert [text[: len(told)] for text in texts] == [told] * bool(told)
+
+
+def test_a_decimal_comma_in_the_default_of_a_field_is_an_error():
+    (only,) = found(environment=ENVIRONMENT.replace("int x 0", "int x 0\nvariable: float far 0,5"))
+    assert (only.is_error, only.code, only.mend.text) == (True, "AOS149", ".")
 
 
 def test_a_constant_of_a_message_class_is_told():

@@ -167,10 +167,13 @@ class _BlockCheck:
             if self._cpp.code[operator.start] == ",":
                 hint = "A decimal is written with a point"
                 message, mend = "the number behind this comma does nothing", Mend(span, 1, ".")
+            elif self._cpp.code[operator.start] == "+":
+                message, hint, mend = "this `+` does nothing", "To add, write `+=`", None
             else:
                 hint = "To set what stands before it, write `=`"
                 message, mend = "this comparison does nothing", Mend(span, 2, "=")
-            self._findings.warning("AOS149", message, span, hint, mend)
+            report = self._findings.error if self._block.is_expression else self._findings.warning
+            report("AOS149", message, span, hint, mend)
         for value in self._cpp.idle_values:
             hint = f"To set a variable, write `NAME = {self._cpp.code[value.start : value.end]};`"
             self._findings.warning("AOS149", "this statement does nothing", self._span(value), hint)

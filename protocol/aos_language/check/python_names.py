@@ -201,7 +201,7 @@ def check_names(
         span = place_in(snippet, node)
         hint = _hint(node.id, names)
         if is_open:
-            close = get_close_matches(node.id, names.local_names, 1, _NEARLY)
+            close = get_close_matches(node.id, {*names.local_names, *names.known & {_INPUT}}, 1, _NEARLY)
             if not close and node.id.lower() not in _OF_OTHER_LANGUAGES:
                 continue
             severity = Severity.WARNING

@@ -99,9 +99,9 @@ class Declaration(msgspec.Struct, frozen=True):
 class Cpp(msgspec.Struct, frozen=True):
     """A snippet as read; everything in text order.
 
-    `idle_operators` are the `==` of statements that only compare, and the comma before a number that does
-    nothing, as in `x = 1,5;`. `idle_values` are other statements that only have a value: `x - 1;`.
-    `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`.
+    `idle_operators` are `==` of statements that only compare, the comma before a number that does nothing,
+    as in `x = 1,5;`, and the `+` of `x =+ 1;`. `idle_values` are other statements that only have a value, as
+    `x - 1;`. `set_in_conditions` are what conditions set, with the sign: `if (x = 1)`.
     """
 
     code: str

@@ -207,6 +207,9 @@ class TreeReader:
         is_plain = operator is None or text_of(operator) == "="
         left, right = child_of(node, "left"), node.child_by_field_name("right")
         kind = Access.WRITE if is_plain else Access.UPDATE
+        if operator is not None and right is not None and operator.end_byte == right.start_byte:
+            is_turned = text_of(right).startswith("+") and not text_of(right).startswith("++")
+            self.idle_operators += [self.extent(right)] if is_turned else []
         if is_plain and operator is not None and self._is_condition(node):
             self.set_in_conditions.append((self.extent(left), self.extent(operator)))
         if _HANDLERS.get(left.type) is TreeReader._path:
