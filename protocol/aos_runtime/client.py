@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import uuid
 from collections.abc import AsyncGenerator, AsyncIterator, Iterable, Mapping
-from contextlib import asynccontextmanager, suppress
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -135,9 +135,16 @@ class AosClient(SteeringQuestions):
         BusError AOS605 if this is no run directory, or the run is over.
         """
         place, credential = _place_of(Path(run), user)
-        async with cls.connect(
+        connected = cls.connect(
             place.endpoint, place.robot, connect_timeout_s=connect_timeout_s, credential=credential, by=by
-        ) as client:
+        )
+        async with AsyncExitStack() as stack:
+            try:
+                client = await stack.enter_async_context(connected)
+            except BusError as error:
+                if not (Path(run) / "summary.json").exists():
+                    raise
+                raise BusError(f"{run} is over", code="AOS605", hint="See `aos runs`") from error
             yield client
 
     async def mission_state(self) -> MissionState:

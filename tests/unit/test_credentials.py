@@ -36,6 +36,14 @@ async def test_a_folder_that_is_no_run_is_named_once(tmp_path: Path):
     assert caught.value.message == f"{tmp_path} is no run directory: run.json: No such file or directory"
 
 
+async def test_a_client_of_a_run_that_has_ended_is_told_so(run: RunDirectory):
+    (run.path / "run.json").write_text('{"endpoint": "tcp/127.0.0.1:1", "robot": "r"}')
+    (run.path / "summary.json").write_text("{}")
+    with pytest.raises(BusError) as caught:
+        await AosClient.of_run(run.path, connect_timeout_s=0.1).__aenter__()
+    assert caught.value.message == f"{run.path} is over"
+
+
 def test_each_party_has_a_password_in_a_file_of_its_own(run: RunDirectory):
     passes = Passes(run, [Party(name=SOLVER, role=SOLVER), ARM])
     names = (SOLVER, "arm", OPERATOR, WATCHER)
