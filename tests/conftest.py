@@ -41,11 +41,15 @@ def corpus() -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def cache_dir() -> Iterator[Path]:
-    """Compiled models kept from run to run, with the engines of setup.sh. Commands use them, too."""
+def cache_dir(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Compiled models kept from run to run, with the engines of setup.sh. Commands use them, too.
+
+    Commands find the missions that run in this process of the tests, and those of no other.
+    """
     folder = kept_cache()
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("AOS_CACHE_DIR", str(folder))
+        patch.setenv("AOS_RUNNING_DIR", str(tmp_path_factory.mktemp("running")))
         yield folder
 
 
