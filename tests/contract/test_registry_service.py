@@ -251,6 +251,38 @@ async def test_documents_beside_the_bundles_of_the_watched_folder_are_one_bundle
     assert (codes(alone), both.added) == ({"AOS114"}, ("pick",))
 
 
+async def test_a_document_left_in_the_watched_folder_does_not_undo_what_was_pushed_or_removed_later(
+    tmp_path, endpoint: str, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
+):
+    run_dir = tmp_path / "run"
+
+    def put(name: str, content: bytes):
+        (run_dir / name).write_bytes(content)
+        (run_dir / name).rename(run_dir / "drop" / name)
+
+    holding = finer["observe_holding.sd"] + b"\n"
+    removal = messages.RemoveDocuments("armadillo", "observe_holding")
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
+        told = aiter(reports)
+        async with running_registry(run_dir, endpoint, bus, keys):
+            drop(run_dir, "whole", finer)
+            await anext(told)
+            put("observe_holding.sd", holding)
+            await anext(told)
+            await bus.ask(keys.remove_bundle, removal, messages.BundleReport, timeout_s=HANG_S)
+            await anext(told)
+            put("pick.sd", finer["pick.sd"] + b"\n")
+            beside = (await anext(told))[1]
+        async with running_registry(run_dir, endpoint, bus, keys):
+            put("serve.sd", finer["serve.sd"] + b"\n")
+            after_restart = (await anext(told))[1]
+            put("observe_holding.sd", holding)
+            anew = (await anext(told))[1]
+    assert [(report.source, report.added, report.revision) for report in (beside, after_restart, anew)] == [
+        *(("drop", (), 4), ("drop", (), 5), ("drop", ("observe_holding",), 6))
+    ]
+
+
 async def test_the_catalogue_survives_a_restart(
     tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):

@@ -148,6 +148,13 @@ class Catalogue:
         )
         return Revision(project, row[0], row[1], dict(files.fetchall()))
 
+    def has_held(self, name: str, data: bytes) -> bool:
+        """Returns whether any revision has had a file of this name and content."""
+        found = self._db.execute(
+            "SELECT 1 FROM file WHERE name = ? AND content = ?", (name, hashlib.sha256(data).hexdigest())
+        )
+        return found.fetchone() is not None
+
     def history(self, project: str) -> tuple[RevisionEntry, ...]:
         """All revisions of a project, the oldest first."""
         entries = []

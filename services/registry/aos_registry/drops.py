@@ -3,6 +3,7 @@
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import msgspec
@@ -20,6 +21,8 @@ LACKING = ("AOS105", "AOS110", "AOS113", "AOS114", "AOS115")
 _log = logging.getLogger("aos.registry")
 
 Take = Callable[[Mapping[str, bytes], str], Awaitable[BundleReport]]
+IsStored = Callable[[str, bytes], bool]
+"""Says whether any revision has held a file of this name and content."""
 
 
 class DroppedBundles:
@@ -29,19 +32,30 @@ class DroppedBundles:
     the folder, after each `project_changed`. Only a new answer is told, and none of a bundle that was there
     before and waits for the first project. An acceptance ends the waiting and a refusal changes no project,
     so that the bundles that wait cannot keep one another going.
+
+    A document is taken once, until its file is written anew: a later push or removal stands, also where
+    another document is put beside it, or the registry starts again.
     """
 
     def __init__(
-        self, folder: Path, quiet_s: float, take: Take, tell: Callable[[BundleReport], None]
+        self,
+        folder: Path,
+        quiet_s: float,
+        take: Take,
+        tell: Callable[[BundleReport], None],
+        is_stored: IsStored,
     ) -> None:
         self._folder = folder
         self._quiet_s = quiet_s
         self._take = take
         self._tell = tell
+        self._is_stored = is_stored
         self._changed: asyncio.Queue[Path] = asyncio.Queue()
         self._waiting: dict[Path, BundleReport | None] = {}  # By what was told of them.
         self._again: set[Path] = set()
         self._from_before = {*bundles_in(folder)}
+        self._not_looked_at = {*self._from_before}
+        self._taken: dict[str, int] = {}  # When each document in the folder itself had been written.
 
     async def follow(self) -> None:
         """Follows the folder until it is cancelled."""
@@ -76,17 +90,44 @@ class DroppedBundles:
     async def _report(self, path: Path) -> BundleReport | None:
         """Takes a folder or an archive in and returns what becomes of it; None for an empty folder."""
         try:
+            written = _written_ns(path) if path == self._folder else {}
             files, remarks = read_bundle_files(path)
             if path == self._folder:  # Other bundles stand beside its documents.
                 remarks = [remark for remark in remarks if is_document_name(remark.span.file)]
             if has_errors(remarks):
                 return BundleReport("", False, 0, tuple(remarks), source=path.name)
-            return await self._take(files, path.name) if files else None
+            files = self._not_taken(path, files, written)
+            report = await self._take(files, path.name) if files else None
+            if report is not None and report.is_accepted:
+                self._taken |= {name: written[name] for name in files if name in written}
+            return report
         except AosError as error:
             return _refused(path, error.code, error.message, error.hint)
         except Exception as error:  # No bundle may take the registry down, whatever reading it runs into.
             _log.exception("the dropped bundle %s could not be taken", path.name)
             return _refused(path, "AOS606", f"it could not be taken: {error!r}", "See the registry's log")
+
+    def _not_taken(
+        self, path: Path, files: Mapping[str, bytes], written: Mapping[str, int]
+    ) -> dict[str, bytes]:
+        """Leaves out the documents that were taken before, by this registry or by one before it."""
+        if path in self._not_looked_at:
+            self._not_looked_at.discard(path)
+            stored = {name for name, content in files.items() if self._is_stored(name, content)}
+            self._taken |= {name: written[name] for name in stored if name in written}
+        else:
+            stored = {name for name in files if name in written and written[name] == self._taken.get(name)}
+        return {name: content for name, content in files.items() if name not in stored}
+
+
+def _written_ns(folder: Path) -> dict[str, int]:
+    """Returns when each document in a folder was last written, renamed or touched."""
+    written = {}
+    for path in folder.iterdir():
+        if is_document_name(path.name):
+            with suppress(OSError):  # An editor has just renamed it, or it is a link to nothing.
+                written[path.name] = path.stat().st_ctime_ns
+    return written
 
 
 def _refused(path: Path, code: str, message: str, hint: str) -> BundleReport:

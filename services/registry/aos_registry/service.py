@@ -53,7 +53,9 @@ class _Registry:
         self._intake = Intake(catalogue, service.clock, self._check_model)
         self._turn = asyncio.Lock()
         folder = _made(Path(self._settings.watch or Path(self._settings.run_dir) / "drop"))
-        self._dropped = DroppedBundles(folder, self._settings.quiet_s, self._take_in, self._tell_report)
+        self._dropped = DroppedBundles(
+            folder, self._settings.quiet_s, self._take_in, self._tell_report, catalogue.has_held
+        )
 
     async def run(self) -> None:
         for report in self._intake.recall():
