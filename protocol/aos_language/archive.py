@@ -133,7 +133,8 @@ def _in_tar(path: Path) -> Iterator[tuple[_Entry, IO[bytes]]]:
 
 
 class _BoundedTarInfo(tarfile.TarInfo):
-    """A header that neither leads backwards nor has a long text: some releases of Python hang on these."""
+    """A header that is there whole, and neither leads backwards nor has a long text: some releases of Python
+    hang on these. Python takes an archive that was cut before a header for a whole one."""
 
     @property
     def size(self) -> int:
@@ -148,6 +149,8 @@ class _BoundedTarInfo(tarfile.TarInfo):
 
     @classmethod
     def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
+        if len(buf) < tarfile.BLOCKSIZE:
+            raise tarfile.ReadError("unexpected end of data")
         header = super().frombuf(buf, encoding, errors)
         if header.type in _TAR_RECORDS and header.size > _MAX_TAR_RECORD_BYTES:
             raise tarfile.ReadError(f"a header of {header.size} bytes")

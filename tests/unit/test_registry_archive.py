@@ -103,6 +103,15 @@ def test_what_is_no_archive_is_said_to_be_none(tmp_path, name, data):
     assert refusal(tmp_path / name).startswith("the archive cannot be read: ")
 
 
+def test_an_archive_that_was_cut_anywhere_is_refused(tmp_path):
+    bundle = BUNDLES / "armadillo-retract"
+    whole = Path(shutil.make_archive(str(tmp_path / "whole"), "tar", bundle)).read_bytes()
+    end = len(whole.rstrip(b"\0")) // tarfile.BLOCKSIZE * tarfile.BLOCKSIZE + tarfile.BLOCKSIZE
+    for size in range(0, end + 1, 128):
+        (tmp_path / "b.tar").write_bytes(whole[:size])
+        assert refusal(tmp_path / "b.tar").startswith("the archive cannot be read: ")
+
+
 def test_other_files_and_hidden_ones_are_left_out(tmp_path):
     files, remarks = read_archive(tar_of(tmp_path / "b.tgz", file("a.sd"), file("README.md"), file(".b.sd")))
     assert list(files) == ["a.sd"]
