@@ -283,6 +283,18 @@ async def test_a_document_left_in_the_watched_folder_does_not_undo_what_was_push
     ]
 
 
+@pytest.mark.parametrize("name", ["outer", "outer.tar"])
+async def test_a_dropped_bundle_without_documents_is_told(registry: Path, other: Bus, keys: Keys, name: str):
+    (registry / "outer" / "inner").mkdir(parents=True)
+    (registry / "outer" / "inner" / "notes.txt").write_text("none")
+    if name == "outer.tar":
+        shutil.make_archive(str(registry / "outer"), "tar", registry / "outer")
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, messages.BundleReport) as reports:
+        (registry / name).rename(registry / "drop" / name)
+        told = (await anext(aiter(reports)))[1]
+    assert (told.source, told.is_accepted, codes(told)) == (name, False, {"AOS120"})
+
+
 async def test_the_catalogue_survives_a_restart(
     tmp_path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ):

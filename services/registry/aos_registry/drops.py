@@ -8,6 +8,7 @@ from pathlib import Path
 
 import msgspec
 
+from aos_language.archive import is_archive_name
 from aos_language.load import read_bundle_files
 from aos_language.reading.files import is_document_name
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
@@ -88,7 +89,7 @@ class DroppedBundles:
             self._tell(report)
 
     async def _report(self, path: Path) -> BundleReport | None:
-        """Takes a folder or an archive in and returns what becomes of it; None for an empty folder."""
+        """Takes a folder or an archive in and returns what becomes of it; None where it holds nothing new."""
         try:
             written = _written_ns(path) if path == self._folder else {}
             files, remarks = read_bundle_files(path)
@@ -96,6 +97,9 @@ class DroppedBundles:
                 remarks = [remark for remark in remarks if is_document_name(remark.span.file)]
             if has_errors(remarks):
                 return BundleReport("", False, 0, tuple(remarks), source=path.name)
+            if not files and path != self._folder and (remarks or is_archive_name(path.name)):
+                hint = "They end in .ef, .sd, .am, .lf or .json, and lie side by side"
+                return _refused(path, "AOS120", "there are no documents in it", hint)
             files = self._not_taken(path, files, written)
             report = await self._take(files, path.name) if files else None
             if report is not None and report.is_accepted:
