@@ -158,7 +158,7 @@ struct aos_skill_pour : aos::SkillDefaults {
 #line 21 "pour.sd"
       if (!each.is_full) {
 #line 23 "pour.sd"
-        aos::blame::at(16); each.is_full = AOS.sensing().Bernoulli(0.9);
+        aos::blame::at(16); each.is_full = AOS.Bernoulli(0.9);
 #line 163 "model.cpp"
       }
     }

@@ -244,13 +244,13 @@ class _BlockCheck:
             )
 
     def _check_lone_name(self) -> None:
-        """A default that is one name must be an enum's value, or low-level."""
+        """A default or condition that is one name must be an enum's value, declared, or low-level."""
         mentions = self._cpp.mentions
         if not self._block.is_expression or len(mentions) != 1 or len(mentions[0].path) != 1:
             return
         name = mentions[0].path[0]
         known = {*self._scope.enum_values, *self._scope.low_level_names, *self._block.names}
-        known |= self._scope.shared.all_names
+        known |= self._declared
         if name == self._block.snippet.code.strip() and not name.startswith("_") and name not in known:
             if name in LITERAL_NAMES or name.isupper():
                 return

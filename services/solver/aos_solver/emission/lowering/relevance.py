@@ -177,7 +177,8 @@ class _Influence:
         self._section += 1
         for assignment in assignments:
             for loop in (*assignment.over_previous, *assignment.over_next):
-                # The item may be any variable of its type.
+                # The item may be any variable of its type, so that what it is set to matters, too.
+                self._use([Name(loop.item)])
                 self._use(Name(name, is_of_state=True) for name in self._of_type(loop.type))
                 if loop.condition is not None:
                     self.use_expression(loop.condition.code)
@@ -227,13 +228,16 @@ class _Influence:
             self._sources.setdefault(target, set()).update(self._places(flow.sources))
 
     def use_expression(self, code: str) -> None:
-        """All that an expression mentions matters."""
+        """All that an expression mentions and draws matters."""
         cpp = read_cpp_expression(looked_through(read_cpp_expression(code), self._shared))
         if cpp.faults:
             self._use(Name(name, is_of_state=True) for name in self._variables)
         for mention in cpp.mentions:
             if mention.path[0] in STATES:
                 self._use([Name(mention.path[1] if len(mention.path) > 1 else "", is_of_state=True)])
+            else:
+                self._use([Name(mention.path[0])])
+        self._use(self.flows(read_cpp_expression(code)).draws)
 
     def _use(self, names: Iterable[Name]) -> None:
         self._used.update(self._places(names))
