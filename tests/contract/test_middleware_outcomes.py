@@ -93,7 +93,12 @@ async def test_a_first_message_that_comes_behind_the_answer_is_awaited(system: S
 
 @pytest.mark.parametrize(
     ("topic", "sent_at", "told"),
-    [("/levels", 1, "Did you mean `/levels`?"), ("/level", 0, "They come between calls"), ("/level", 1, "")],
+    [
+        ("/levels", 1, "Did you mean `/levels`?"),
+        ("/unlike", 1, "No adapter has sent on it"),
+        ("/level", 0, "They come between calls"),
+        ("/level", 1, ""),
+    ],
 )
 async def test_a_topic_on_which_nothing_ever_comes_is_told_once(
     system: System, topic: str, sent_at: int, told: str

@@ -33,5 +33,6 @@ class SilentTopics:
             if self._calls[topic] == CALLS:
                 known = [f"/{name.strip('/')}" for name in sent]
                 is_sent = f"/{topic.strip('/')}" in known
-                hint = "They come between calls" if is_sent else did_you_mean(topic, known)
+                unsent = did_you_mean(topic, known) or "No adapter has sent on it"
+                hint = "They come between calls" if is_sent else unsent
                 _log.warning("no message has come on %s in %d calls of skills. %s", topic, CALLS, hint)
