@@ -62,6 +62,7 @@ DRAWN = "bool hit = AOS.Bernoulli(0.5);"
     [
         (DRAWN, "p.id == 1", "p.wet = hit;"),
         (DRAWN, "hit", "p.wet = true;"),
+        (DRAWN, "p.id == 1", "if (hit) break; p.wet = true;"),
         ("", "AOS.Bernoulli(0.5)", "p.wet = true;"),
         ("", "p.id == 1", "p.wet = AOS.Bernoulli(0.5);"),
     ],

@@ -153,12 +153,13 @@ def test_a_field_of_a_whole_compound_is_taken_by_brackets():
 
 RESULT = "\nlocal_variable: {0}\ntype: float\nfrom_ros_service_response: true\ncode:\n{0} = {1}\n"
 NUMBERS = RESULT.format("a", "__input.a") + RESULT.format("b", "__input.b")
+COUNT = RESULT.format("count", "len(__input.found)").replace("float", "int")
 TWO = SKILL.replace("= walked;", "= AOS.Bernoulli(0.5) ? walked : stuck;")
 
 
 def ruled(first: str, second: str) -> str:
     rules = f"response: walked\nresponse_rule: {first}\nresponse: stuck\nresponse_rule: {second}\n"
-    return MAPPING.replace("response: walked\nresponse_rule: True\n", rules) + NUMBERS
+    return MAPPING.replace("response: walked\nresponse_rule: True\n", rules) + NUMBERS + COUNT
 
 
 @pytest.mark.parametrize(
@@ -167,8 +168,10 @@ def ruled(first: str, second: str) -> str:
         ("a > 4", "a < 4 and b", ""),
         ("a > 4", "a <= 4", ""),
         ("0 < a < 4", "a >= 4", ""),
+        ("count <= 1", "count >= 2", ""),
         ("a > 4", "a < 4", "AOS118 no rule holds where a is 4: what comes back is then unknown"),
         ("0 < a < 4", "a >= 5", "AOS118 no rule holds where a is 4: what comes back is then unknown"),
+        ("count <= 1", "count > 2", "AOS118 no rule holds where count is 2: what comes back is then unknown"),
         ("a > 4 & b", "True", "AOS149 `&` binds before the comparison: this compares with `4 & b`"),
         ("a & 4 == 4 or (a > 4) & b or a == (4 | b)", "True", ""),
     ],

@@ -1,6 +1,7 @@
 """Numbers for which no response rule holds."""
 
 import ast
+import math
 import operator
 from itertools import pairwise
 
@@ -31,6 +32,8 @@ def check_rule_gaps(mapping: AbstractionMapping, findings: Findings) -> None:
         return
     between = [(low + high) / 2 for low, high in pairwise(limits)]
     numbers = sorted({limits[0] - 1, *limits, *between, limits[-1] + 1})
+    if any(local.name in names and local.type == "int" for local in mapping.local_variables):
+        numbers = sorted({float(math.floor(number)) for number in numbers})
     held = [any(_holds(rule or [], number) for rule in rules) for number in numbers]
     for at, number in enumerate(numbers):
         if not held[at] and any(held[:at]) and any(held[at:]):
