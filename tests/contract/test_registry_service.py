@@ -273,13 +273,22 @@ async def test_a_document_left_in_the_watched_folder_does_not_undo_what_was_push
             await anext(told)
             put("pick.sd", finer["pick.sd"] + b"\n")
             beside = (await anext(told))[1]
+        holding_again = {name: finer[name] for name in finer if name.startswith("observe_holding")}
+        drop(run_dir, "meanwhile", holding_again | {"observe_holding.sd": holding + b"\n"})
         async with running_registry(run_dir, endpoint, bus, keys):
+            meanwhile = (await anext(told))[1]
+            stored = (await current(bus, keys)).project.skills
+            assert "observe_holding.am" in {skill.mapping.span.file for skill in stored}
             put("serve.sd", finer["serve.sd"] + b"\n")
             after_restart = (await anext(told))[1]
             put("observe_holding.sd", holding)
             anew = (await anext(told))[1]
-    assert [(report.source, report.added, report.revision) for report in (beside, after_restart, anew)] == [
-        *(("drop", (), 4), ("drop", (), 5), ("drop", ("observe_holding",), 6))
+    reports_of_all = (beside, meanwhile, after_restart, anew)
+    assert [(report.source, report.added, report.revision) for report in reports_of_all] == [
+        ("drop", (), 4),
+        ("meanwhile", ("observe_holding",), 5),
+        ("drop", (), 6),
+        ("drop", (), 7),
     ]
 
 

@@ -114,13 +114,18 @@ class DroppedBundles:
     def _not_taken(
         self, path: Path, files: Mapping[str, bytes], written: Mapping[str, int]
     ) -> dict[str, bytes]:
-        """Leaves out the documents that were taken before, by this registry or by one before it."""
+        """Leaves out the documents that were taken before, by this registry or by one before it.
+
+        A sub-folder or an archive in which something is new is taken whole.
+        """
         if path in self._not_looked_at:
             self._not_looked_at.discard(path)
             stored = {name for name, content in files.items() if self._is_stored(name, content)}
             self._taken |= {name: written[name] for name in stored if name in written}
         else:
             stored = {name for name in files if name in written and written[name] == self._taken.get(name)}
+        if path != self._folder and len(stored) < len(files):
+            return {**files}
         return {name: content for name, content in files.items() if name not in stored}
 
 
