@@ -1,9 +1,12 @@
 import pytest
+from commands import aos
 from models import engine_of_text
+from texts import write_texts
 from wide.missions import processor_s
 from wide.shelf import shelf
 from wide.writing import BundleWriter
 
+from aos_protocol.errors import IntractableError
 from aos_solver.child.answers.models import Plan
 
 
@@ -58,6 +61,14 @@ async def test_no_planner_tells_bounds_of_it(planner):
     plan = await _plan(shelf(), planner)
     assert all(action.at_least is None and action.at_most is None for action in plan.actions)
     assert "proven" not in plan.why
+
+
+def test_asked_for_exactly_the_command_says_why_not_and_what_to_do(tmp_path):
+    write_texts(shelf(), tmp_path)
+    error = aos("plan", tmp_path, "--exact").exception
+    assert isinstance(error, IntractableError)
+    assert error.message == "the values cannot be enumerated: a draw is continuous"
+    assert error.hint == "Leave out --exact to search for them"
 
 
 async def test_a_rare_draw_counts():

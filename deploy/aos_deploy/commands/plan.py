@@ -15,7 +15,7 @@ from aos_deploy.options import AsJson, TrustDocuments, seconds
 from aos_deploy.printing import show
 from aos_deploy.terminal import waiting
 from aos_deploy.views.lines import risk_text
-from aos_protocol.errors import PlanningError
+from aos_protocol.errors import IntractableError, PlanningError
 from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
@@ -89,7 +89,7 @@ def plan(
             for said in await believe_all(engine, supposed):
                 typer.echo(f"supposed {said}", err=True)
             if exact:
-                return _decision((await engine.exact_values(horizon)).values, 0)
+                return await _exact_decision(engine, horizon)
             return await _searched_decision(engine, search)
 
     decision = planning_options.with_engine(bundle, seed, decide, never=never, set_values=set_values)
@@ -108,6 +108,14 @@ def _suppositions(given: Iterable[str]) -> list[str]:
         else:
             raise typer.BadParameter(f"{text} is neither VAR=VALUE:P nor a file", param_hint="--belief")
     return found
+
+
+async def _exact_decision(engine: Engine, horizon: int | None) -> Decision:
+    try:
+        return _decision((await engine.exact_values(horizon)).values, 0)
+    except IntractableError as error:
+        message = f"the values cannot be enumerated: {error.message}"
+        raise IntractableError(message, hint="Leave out --exact to search for them") from error
 
 
 async def _searched_decision(engine: Engine, search: Search) -> Decision:
