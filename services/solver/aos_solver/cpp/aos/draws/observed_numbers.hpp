@@ -49,7 +49,6 @@ class ObservedNumbers {
     return true;
   }
 
-
  private:
   std::vector<ObservedNumber>::iterator place_of(NumberKey key) {
     return std::lower_bound(numbers_.begin(), numbers_.end(), key,

@@ -66,7 +66,6 @@ class LearnedValues final : public StateValues<Model> {
     for (int a = 0; a < Model::action_count(); ++a) worths[a] = this->stepped_value(state, a, horizon_, luck) - now;
   }
 
-
  private:
   static constexpr std::size_t walks_between_looks = 64;  // at the progress
 
