@@ -6,6 +6,7 @@ from marked_change import changed
 from test_reading_rules import JSON
 from texts import encoded
 
+from aos_language.follow_ups import told_once
 from aos_language.load import load_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 
@@ -138,6 +139,22 @@ def test_names_to_import_that_are_no_list_are_one_error():
     assert [each.message for each in errors if each.span.file == "walk.json"] == [
         '"Import" must be a list, not a string'
     ]
+
+
+@pytest.mark.parametrize(
+    ("change", "meant"),
+    [
+        ('"«ServicePath→ActionPath»"', "`ServicePath`"),
+        (
+            '"«FromGlobalVariable→SKILL_PARAM»"',
+            "`FromGlobalVariable` or `FromROSServiceResponse` or `RosTopicPath`",
+        ),
+    ],
+)
+def test_an_unknown_key_of_an_object_that_lacks_one_is_told_with_what_it_may_mean(change, meant):
+    files, _ = changed(encoded(JSON), "go glue.json", change)
+    (error,) = [each for each in told_once(load_files(files).diagnostics) if each.is_error]
+    assert (error.code, error.hint) == ("AOS102", f"Did you mean {meant}?")
 
 
 def test_a_misspelt_truth_of_a_source_is_one_error():

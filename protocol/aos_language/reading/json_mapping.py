@@ -5,7 +5,7 @@ import msgspec
 from aos_language.reading.code import dedented
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.json_record import Record
-from aos_language.reading.local_variable import LocalVariableParts, build_local_variable
+from aos_language.reading.local_variable import JSON_SOURCES, LocalVariableParts, build_local_variable
 from aos_language.reading.source import Text
 from aos_protocol import documents
 from aos_protocol.diagnostics import Span
@@ -168,6 +168,8 @@ def _local_variable(record: Record) -> documents.LocalVariable | None:
     if record.has("RosParameter"):
         message = "values from the ROS parameter server are not supported"
         record.findings.error("AOS124", message, record.key_span("RosParameter"))
+    elif not parts.sources:
+        record.lack(*JSON_SOURCES)
     record.finish()
     return build_local_variable(parts, record.findings)
 

@@ -29,6 +29,8 @@ T = TypeVar("T")
 
 _NEARLY = 0.85
 """A share of a key, from 0 to 1: with so much of one that others build on it is that one, mistyped."""
+_STANDS_FOR = 0.4
+"""Such a share where an object lacks the one: `ActionPath` is 0.48 of `ServicePath`."""
 _BUILT_ON = frozenset({
     "AssignServiceFieldCode", "AssignmentCode", "Constants", "Default", "DefaultCode", "Discount",
     "DynamicModel", "EnumName", "EnumValues", "EnvironmentGeneral", "FromGlobalVariable",
@@ -62,6 +64,7 @@ class Record:
         self.what = what
         self._members = {key.text: (key, item) for key, item in value.members}
         self._known: dict[str, None] = {}
+        self._lacking: list[str] = []
 
     def __contains__(self, key: str) -> bool:
         return self._value(key) is not None
@@ -102,11 +105,21 @@ class Record:
         if key in self._members:
             self.findings.warning("AOS102", f'"{key}" has no effect', self.key_span(key), reason)
 
+    def lack(self, *keys: str) -> None:
+        """Notes that one of these keys is needed, and none is there."""
+        self._lacking += keys
+
     def finish(self) -> None:
-        """Reports the keys that nobody asked for."""
+        """Reports the keys that nobody asked for: as errors where one may stand for a key that is lacking."""
         for name, (key, _) in self._members.items():
-            if name not in self._known:
-                message, span = f'unknown key "{name}" in {self.what}', self.source.span(key.start + 1)
+            if name in self._known:
+                continue
+            message, span = f'unknown key "{name}" in {self.what}', self.source.span(key.start + 1)
+            if self._lacking:
+                meant = get_close_matches(name, self._lacking, 1, _STANDS_FOR) or self._lacking
+                hint = f"Did you mean {' or '.join(f'`{each}`' for each in meant)}?"
+                self.findings.error("AOS102", message, span, hint)
+            else:
                 unknown = partial(self.findings.unknown, code="AOS102", severity=Severity.WARNING)
                 unknown(name, self._known, message, span, "It is ignored")
 
@@ -262,6 +275,7 @@ class Record:
         if value is None:
             if required:
                 self.findings.error("AOS105", f'{self.what} lacks "{key}"', self.span)
+                self.lack(key)
             return None
         accepted = accept(value)
         if accepted is None:

@@ -8,8 +8,8 @@ from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
 
-_JSON_SOURCES = ("`FromGlobalVariable`", "`FromROSServiceResponse`", "`RosTopicPath`")
-_SDL_SOURCES = ("`action_parameter:`", "`from_ros_service_response:`", "`topic:`")
+JSON_SOURCES = ("FromGlobalVariable", "FromROSServiceResponse", "RosTopicPath")
+_SDL_SOURCES = ("action_parameter:", "from_ros_service_response:", "topic:")
 
 
 class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,6 +27,16 @@ class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
     imports: tuple[Import, ...] = ()
     is_heavy: bool = False
     service_span: Span | None = None
+
+    @property
+    def sources(self) -> list[LocalSource]:
+        """The sources that are given; a variable has one."""
+        given = {
+            LocalSource.PARAMETER: self.parameter_path is not None,
+            LocalSource.SERVICE_RESPONSE: self.is_from_service,
+            LocalSource.TOPIC: self.topic is not None,
+        }
+        return [source for source, is_given in given.items() if is_given]
 
 
 def build_local_variable(parts: LocalVariableParts, findings: Findings) -> LocalVariable | None:
@@ -60,20 +70,16 @@ def build_local_variable(parts: LocalVariableParts, findings: Findings) -> Local
 
 
 def _source(parts: LocalVariableParts, findings: Findings) -> LocalSource | None:
-    given = {
-        LocalSource.PARAMETER: parts.parameter_path is not None,
-        LocalSource.SERVICE_RESPONSE: parts.is_from_service,
-        LocalSource.TOPIC: parts.topic is not None,
-    }
-    sources = [source for source, is_given in given.items() if is_given]
+    sources = parts.sources
     span = parts.name.span if parts.name else parts.span
     if len(sources) == 1:
         return sources[0]
     if not sources:
         is_json = span.file.endswith(".json")
-        parameter, result, topic = _JSON_SOURCES if is_json else _SDL_SOURCES
+        parameter, result, topic = JSON_SOURCES if is_json else _SDL_SOURCES
         hint = (
-            f"Take it from a skill parameter ({parameter}), the call's result ({result}) or a topic ({topic})"
+            f"Take it from a skill parameter (`{parameter}`), the call's result (`{result}`) "
+            f"or a topic (`{topic}`)"
         )
         findings.error("AOS105", "this local variable has no source", span, hint)
     else:
